@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from gbeam.analysis.response.peaks import maxima, near_maxima, quintic_hermite, seven_point, turning_points
+from gbeam.numerics.peaks import maxima, near_maxima, quintic_hermite, seven_point, turning_points
 
 OMEGA, PHASE = np.array([1.0, 1.7]), np.array([-1.0, -2.0])
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
 from gbeam.analysis.imitation.comparison import compare
-from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
+from gbeam.numerics.peaks import vector_peaks
 from gbeam.progress import Progress, tell
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import judging

@@ -13,7 +13,6 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from gbeam.analysis.case import Case, SystemCase
-from gbeam.analysis.response.peaks import vector_peaks
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.system.histories import deflection
@@ -27,6 +26,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
+from gbeam.numerics.peaks import vector_peaks
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, ModelRow, ModelStudy

@@ -184,7 +184,9 @@ def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Ite
 
 def _judged(errors: Any, carried: Loads) -> tuple[str, ...]:
     known = bool(np.isfinite(carried.stress).all())
-    return estimated({"loads": errors.loads.total, "stress": errors.stress.total if known else math.nan})
+    stress = (errors.stress.total, errors.stress.peak) if known else (math.nan,) * 2
+    parts = ("loads", "their peaks", "stress", "its peaks"), (errors.loads.total, errors.loads.peak, *stress)
+    return estimated(dict(zip(*parts, strict=True)))
 
 
 def _carried(

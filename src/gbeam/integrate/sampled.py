@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import Array
+from gbeam.errors import ComputationError
 from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
 from gbeam.integrate.steps import Steps
 from gbeam.numerics.series import STEP
@@ -46,7 +47,13 @@ class Controllers(Protocol):
         ...
 
     def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
-        """Command of a controller at time t, s, as its law asks for it and within its limits, and the next state."""
+        """Command of a controller at time t, s, as its law asks for it and within its limits, and the next state;
+        ComputationError if its law gives none.
+        """
+        ...
+
+    def refuse_memory(self, controller: int, t: float, measured: Array, state: Any, answer: Any) -> None:
+        """Raise InputError if a law does not answer a sample as it did, with command and next state."""
         ...
 
     def driven(self, inputs: Any, held: Array) -> Any:
@@ -77,8 +84,10 @@ class Uncontrolled:
 class Sampling:
     """Samples of controllers, taken at the beginnings of steps, and the commands `held` in every step (t, m): the
     last ones where no sample is known yet. A sample is its measurements, its command as asked and as limited, and the
-    next state.
+    next state. A `failure` is the step at whose beginning a law gave no command, and the error.
     """
+
+    failure: tuple[int, ComputationError] | None = None
 
     def __init__(self, controllers: Controllers, residual: Any, drive: Any, steps: Steps) -> None:
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
@@ -94,6 +103,12 @@ class Sampling:
             self.since.append(np.searchsorted(acting, np.arange(number[-1] + 2)).tolist())
         self.started = [controllers.started(c) for c in range(len(self.taken))]
         self.samples: list[list[tuple[Array, Array, Array, Any]]] = [[] for _ in self.taken]
+        self.repeated = set[tuple[int, int]]()
+
+    @property
+    def begun(self) -> bool:
+        """True if a sample of every controller is taken."""
+        return all(self.samples)
 
     def hold(self, end: int) -> None:
         """Let the last commands act until step `end`."""
@@ -101,13 +116,42 @@ class Sampling:
             if samples:
                 self.held[since[len(samples)] : end, part] = samples[-1][2]
 
-    def take(self, c: int, s: int, step: int, measured: Array) -> None:
-        """Take sample number `s` of controller `c`, measured at the beginning of a step, and forget later ones."""
+    def take(self, c: int, s: int, step: int, measured: Array) -> bool:
+        """Take sample number `s` of controller `c`, measured at the beginning of a step, and forget later ones; return
+        False if its law fails. An error at the first sample is raised.
+        """
         samples, since = self.samples[c], self.since[c]
-        state = samples[s - 1][3] if s else self.started[c]
-        asked, limited, after = self.controllers.commanded(c, float(self.steps.begin[step]), measured, state)
-        samples[s:] = [(measured, asked, limited, after)]
+        del samples[s:]
+        try:
+            asked, limited, after = self.controllers.commanded(c, *self._sample(c, s, step, measured))
+        except ComputationError as error:
+            if not s:
+                raise
+            self.failure = step, error
+            return False
+        self.failure = None
+        samples.append((measured, asked, limited, after))
         self.held[since[s] : since[s + 1], self.controllers.drives[c]] = limited
+        if s & (s - 1) == 0 and (c, s) not in self.repeated:
+            self._repeat(c, s)
+        return True
+
+    def _sample(self, c: int, s: int, step: int, measured: Array) -> tuple[float, Array, Any]:
+        """Time, measurements and state that a law is given at a sample."""
+        return float(self.steps.begin[step]), measured, self.samples[c][s - 1][3] if s else self.started[c]
+
+    def _repeat(self, c: int, s: int) -> None:
+        """Ask a law again for the sample before number `s`, or the first one: what it kept meanwhile shows."""
+        self.repeated.add((c, s))
+        before = max(s - 1, 0)
+        measured, asked, _, after = self.samples[c][before]
+        sample = self._sample(c, before, int(np.argmax(self.taken[c] == before)), measured)
+        self.controllers.refuse_memory(c, *sample, (asked, after))
+
+    def stopped(self, step: int) -> None:
+        """Forget a failure unless it is that of the step where the run ended: another may be of an iterate only."""
+        if self.failure is not None and self.failure[0] != step:
+            self.failure = None
 
     def sampled(self, c: int) -> tuple[Array, ...]:
         """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
@@ -211,9 +255,12 @@ class Held:
             value = self.values[c][i] + by_state[i].dot(moved)
             if k and by_command is not None:
                 value += by_command[i].dot(self.change[k - 1])
-            self.sampling.take(c, s, step, value)
-        self.change[k] = change = self.sampling.held[step] - self.u[k]
-        return self.step[k].dot(change)
+            if not (np.isfinite(value).all() and self.sampling.take(c, s, step, value)):
+                self.change[k] = np.nan  # which ends the window before this step
+                break
+        else:
+            self.change[k] = self.sampling.held[step] - self.u[k]
+        return self.step[k].dot(self.change[k])
 
     def changed(self, shape: tuple[int, ...]) -> Array:
         """Hold the new commands; return the change of the stages' accelerations, to be subtracted from these."""

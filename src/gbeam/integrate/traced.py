@@ -70,6 +70,8 @@ class Samples(NamedTuple):
 class TracedLoop:
     """The samples of controllers at given steps."""
 
+    begun, failure = True, None
+
     def __init__(self, controllers: Any, steps: Steps) -> None:
         plan = Sampling(controllers, None, None, steps)
         self.controllers, self.steps, self.taken = controllers, steps, plan.taken

@@ -85,6 +85,8 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
                     kept = steps.kept[begin : window.first]
                     yield *(ends[kept] for ends in ended), np.ones(np.count_nonzero(kept), dtype=bool)
             if not converged:
+                if window.sampling is not None:
+                    window.sampling.stopped(window.first)
                 yield *np.full((2 + scheme.ends, 1, len(qdd)), np.nan), np.array([False])
                 return
             begin = window.first

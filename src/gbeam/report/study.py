@@ -38,6 +38,7 @@ from gbeam.results.accounting import in_g, metres, seconds
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import RULES
+from gbeam.results.errors import ErrorEstimate
 from gbeam.results.facts import facts_of
 from gbeam.results.response import Response
 from gbeam.results.system import SystemResponse
@@ -80,13 +81,20 @@ def _accuracy(response: Response) -> str:
     else:
         error = f"estimated error {errors_in_words(facts_of(response.errors.displacement))} of the largest displacement"
         if math.isfinite(response.errors.loads.total):
-            error += f", {percent(response.errors.loads.total)} of the largest root load"
+            error += f", {_of_largest(response.errors.loads, 'root load')}"
         if response.solid is not None and math.isfinite(response.errors.stress.total):
-            error += f", {percent(response.errors.stress.total)} of the largest stress"
+            error += f", {_of_largest(response.errors.stress, 'stress')}"
         if response.point_acceleration is not None and response.errors.note:  # no beam, of which all is judged
             link = ", of the time step alone: " if math.isnan(response.errors.displacement.shapes) else "; "
             error += f"{link}{response.errors.note}"
     return f"{response.model}, {response.integrator}, {response.steps_in_words}; {error}"
+
+
+def _of_largest(error: ErrorEstimate, what: str) -> str:
+    """Error of the largest load or stress and, apart, that of an instant, as a share of it."""
+    if math.isnan(error.peak):
+        return f"{percent(error.total)} of the largest {what}"
+    return f"{percent(error.peak)} of the largest {what} and {percent(error.total)} of it at an instant"
 
 
 def _damping(response: Response) -> str:

@@ -103,7 +103,8 @@ def errors_of_system(errors: Facts) -> Blocks:
         yield Sentence(errors["note"], "faint")
     count = len(errors.get("beams", ()))
     rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
-    shares = {"shapes and model": "by_beam:%", "root loads": "loads_by_beam:%", "stress": "stress_by_beam:%"}
+    shares = {"shapes and model": "by_beam:%", "root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
+    shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
     cells = {"body": "beams", **shares, "beam theory": "theory"}
     yield table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])
 

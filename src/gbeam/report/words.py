@@ -13,6 +13,7 @@ import numpy as np
 
 from gbeam.printable import json_printable
 from gbeam.printable import percent as percent_of
+from gbeam.results.errors import WHOLE
 
 if TYPE_CHECKING:
     from gbeam.results.parts import LoadPeaks
@@ -80,7 +81,7 @@ def percent(share: float) -> str:
 
 def errors_in_words(errors: Mapping[str, float | None]) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
-    parts = {name.replace("_", " "): known(size) for name, size in errors.items() if name != "total"}
+    parts = {name.replace("_", " "): known(size) for name, size in errors.items() if name not in WHOLE}
     ranked = sorted(((size, name) for name, size in parts.items() if size > rounding(0.0, 1.0)), reverse=True)
     shares = ", ".join(f"{name} {percent(size).removesuffix(' %')}" for size, name in ranked)
     return f"{percent(known(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"

@@ -15,6 +15,9 @@ from gbeam.results.result import Complex, Floats, Part
 
 PARTS = ("shapes", "model", "beam_theory", "mesh", "total")
 SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
+PEAK = "estimated error of the largest values in all"
+WHENEVER = "of loads and stress over time, whenever they are reached; the others are of the same instants"
+WHOLE = ("total", "peak")  # errors of all causes together
 THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
 FRICTION, SMOOTH = "estimated error of the smooth law of friction", "of systems, by another rate below which it is so"
 MESH, COARSER = "estimated error of a solid's mesh", "by the difference to a coarser one"
@@ -36,11 +39,14 @@ class ErrorEstimate(Part):
     mesh: float = quantity("", MESH, note=COARSER, default=math.nan)
     friction: float = quantity("", FRICTION, note=SMOOTH, default=math.nan)
     total: float = quantity("", TOTAL, note="the largest of all together, maybe less than their sum", default=math.nan)
+    peak: float = quantity("", PEAK, note=WHENEVER, optional=True, default=math.nan)
 
     @property
     def causes(self) -> dict[str, float]:
         """Errors by their causes, in words."""
-        return {each.name.replace("_", " "): getattr(self, each.name) for each in fields(self) if each.name != "total"}
+        return {
+            each.name.replace("_", " "): getattr(self, each.name) for each in fields(self) if each.name not in WHOLE
+        }
 
     @property
     def slender(self) -> float:
@@ -53,7 +59,7 @@ class ErrorEstimate(Part):
         return replace(self, total=self.total + sum(added.values()), **added)
 
     def __repr__(self) -> str:
-        parts = self.causes | {"total": self.total}
+        parts = self.causes | {"total": self.total, "of the peak": self.peak}
         # A static deflection has no steps.
         known = [f"{k} {percent(x)}" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
         return ", ".join(known) or "not known"
@@ -115,7 +121,14 @@ class SystemErrors(Part):
         "judged",
         empty=True,
     )
+    load_peaks_by_beam: Floats = quantity(
+        "", "estimated error of the largest force and moment at the beam's root, the larger of both", "judged",
+        optional=True, empty=True,
+    )  # fmt: skip
     stress_by_beam: Floats = quantity("", "estimated error of the beam's stress, of its largest", "judged", empty=True)
+    stress_peaks_by_beam: Floats = quantity(
+        "", "estimated error of the beam's largest stress", "judged", optional=True, empty=True
+    )
     theory: tuple[str, ...] = quantity(
         "",
         "causes of the error of the beam theory, and what it assumes",
@@ -291,3 +304,4 @@ class StepErrors:
     loads: float = math.nan  # of the root's force and moment, the larger of both
     stress: float = math.nan
     each: tuple[float, ...] = ()  # of force, moment and stress of every beam
+    peaks: tuple[float, ...] = ()  # of the largest values of these

@@ -241,7 +241,9 @@ class SystemResponse(_Placed, Driven, Figured[str]):
 
     name: str = fact("name of the motion of the ground", note="empty where it rests")
     environment: str = fact("kind of the motion of the ground", note="ground where it rests")
-    outcome: str = fact("how it ended", note="done, diverged or not converged")
+    outcome: str = fact(
+        "how it ended", note="done, diverged, not converged, or law failed: a controller's, where the response ends"
+    )
     message: str = fact("what happened and what to try, where the outcome is not done")
     time: Floats = quantity("s", "time", "time", role="coordinate")
     points: tuple[str, ...] = labels("name of the point", "point")

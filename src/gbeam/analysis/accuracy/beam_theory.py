@@ -12,12 +12,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import Departures, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import PLACE, Departures, Posed, Quantity, Reading, State, Within
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
+from gbeam.numerics.peaks import peaks_apart
 from gbeam.structure.beam import assumptions
 
 NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
@@ -30,12 +31,14 @@ Begun = Callable[[Departures, Within, Floats], State | None]
 
 class Lacking(NamedTuple):
     """Largest difference of each quantity between slender and thick beams; by beam, each cause's share of the energy,
-    and the displacements (b,) m of its bodies between the two. Empty where thick beams have no answer.
+    and the displacements (b,) m of its bodies between the two; over time the difference of each quantity's peaks. Empty
+    where thick beams have no answer.
     """
 
     sizes: Mapping[Quantity, float] = {}
     causes: Mapping[str, Mapping[str, float]] = {}
     bodies: Mapping[str, Floats] = {}
+    peaks: Mapping[Quantity, float] = {}
 
 
 def beyond(
@@ -58,7 +61,8 @@ def beyond(
     added = np.zeros((full.of.q.shape[1],) * 2)
     for name, plate in plates.items():
         added[np.ix_(columns[name], columns[name])] = plate
-    by, sizes, bodies = dict[str, Mapping[str, float]](), dict[Quantity, float](), dict[str, Floats]()
+    by, bodies = dict[str, Mapping[str, float]](), dict[str, Floats]()
+    sizes, peaks = dict[Quantity, float](), dict[Quantity, float]()
     try:
         residual = full.residual()
         for name, theory in theories.items():
@@ -79,9 +83,12 @@ def beyond(
                 truth = again(stiff if plate.any() else thick)
             for quantity, values in without.items():
                 sizes[quantity] = max(sizes.get(quantity, 0.0), largest(truth[quantity] - values))
+                if len(of.time) > 1 and quantity != PLACE:
+                    apart = peaks_apart(of.time, values, truth[quantity])
+                    peaks[quantity] = max(peaks.get(quantity, 0.0), apart)
     except (ComputationError, np.linalg.LinAlgError):
         return Lacking()
-    return Lacking(sizes, by, bodies)
+    return Lacking(sizes, by, bodies, peaks)
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:

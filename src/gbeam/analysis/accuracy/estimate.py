@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, Lacking, largest
-from gbeam.analysis.accuracy.correction import Quantity, Reading
+from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.plausibility import of_first_order
 from gbeam.mechanics.structure import Structure
+from gbeam.numerics.peaks import peaks_apart
 from gbeam.printable import percent as percent
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.result import NOT_KNOWN
@@ -90,6 +94,7 @@ def not_known(bend: float, lost: str) -> dict[str, Any]:
 
 NOTHING = 1e-7  # of what another load makes
 UNMOVED = 1e-14  # of the length
+ROUNDING = sys.float_info.epsilon  # of a peak
 FEW_MODES = "too few modes", "raise modes"
 MORE_SHAPES = "raise its model.modes, of a mesh its modes"  # systems have no automatic number of modes
 BENT_FAR = "the bend, in which its stiffness is of first order", "give a strip or a rod as [beam], which is exact"
@@ -121,17 +126,19 @@ def unjudged(structure: Structure) -> str:
 
 class Judgement(NamedTuple):
     """Pairs of readings that differ by too few shapes, by the model and, if known, by the mesh; differences by the beam
-    theory, relative errors of the steps, the sizes that others are relative to, quantities that are rounding, and
-    relative errors of the law of friction.
+    theory, relative errors of the steps, the sizes that others are relative to, and quantities that are rounding. Of a
+    response its times, s, relative errors of peaks by the steps, and those of the law of friction.
     """
 
     shapes: tuple[Reading, Reading]
     model: tuple[Reading, Reading]
-    theory: Mapping[Quantity, float]
+    theory: Lacking
     steps: Mapping[Quantity, float]
     sizes: Mapping[Quantity, float]
     nothing: Collection[Quantity]
     mesh: tuple[Reading, Reading] | None = None
+    time: Floats | None = None
+    peaks_by_step: Mapping[Quantity, float] = MappingProxyType({})
     friction: Mapping[Quantity, float] = MappingProxyType({})
 
     def apart(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
@@ -152,8 +159,23 @@ class Judgement(NamedTuple):
             estimate = estimate.adding(mesh=self.apart(key, self.mesh))
         if key in self.friction:
             estimate = estimate.adding(friction=0.0 if key in self.nothing else self.friction[key])
-        theory, size = self.theory.get(key, math.nan), self.sizes[key]
-        return estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
+        theory, size = self.theory.sizes.get(key, math.nan), self.sizes[key]
+        estimate = estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
+        return estimate if self.time is None or key == PLACE else replace(estimate, peak=self.peak(key, estimate.total))
+
+    def peak(self, key: Quantity, total: float) -> float:
+        """Error of the largest values of a quantity over time, whenever they are reached: the sum of the differences
+        that shapes and model, mesh, theory, steps and friction make, so none hides another; at most the `total`.
+        """
+        if self.time is None or not self.sizes[key] or not math.isfinite(total):
+            return total
+        # From what is computed to the exact model with more shapes; what lies between is no solution.
+        first, last = (self.model, self.shapes) if self.shapes[0] is self.model[1] else (self.shapes, self.model)
+        pairs = [(first[0], last[1]), *([] if self.mesh is None else [self.mesh])]
+        apart = sum(peaks_apart(self.time, less[key], more[key]) for less, more in pairs)
+        by_run = self.peaks_by_step.get(key, 0.0), self.friction.get(key, 0.0)
+        causes = (apart + self.theory.peaks.get(key, 0.0)) / self.sizes[key], *by_run
+        return min(max(float(np.nansum(causes)), ROUNDING), total)
 
     def loads(self, body: str) -> ErrorEstimate:
         """The larger error of the force and the moment at a body's root."""
@@ -161,6 +183,9 @@ class Judgement(NamedTuple):
 
 
 def worst(errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
-    """The estimate with the largest total, of those whose total is known; unknown if there are none."""
-    known = (each for each in errors if not math.isnan(each.total))
-    return max(known, key=lambda each: each.total, default=ErrorEstimate())
+    """The estimate with the largest total, of those whose total is known, and the largest error of a peak; unknown if
+    there are none.
+    """
+    known = [each for each in errors if not math.isnan(each.total)]
+    largest_total = max(known, key=lambda each: each.total, default=ErrorEstimate())
+    return replace(largest_total, peak=max((each.peak for each in known), default=math.nan))

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
 from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.parts import Base, Loads
 from gbeam.structure.section import extreme_stresses
 
@@ -229,12 +230,16 @@ def errors_of(
     steps: Mapping[Quantity, float],
     sizes: Mapping[Quantity, float],
     mesh: tuple[Reading, Reading] | None,
+    time: Floats | None = None,
+    peaks_by_step: Mapping[Quantity, float] = MappingProxyType({}),
 ) -> Errors:
-    """Errors of a structure alone by pairs of readings that differ by shapes, model (of beams) and mesh."""
+    """Errors of a structure alone by pairs of readings that differ by shapes, model (of beams) and mesh; of a response,
+    at times (t,) s, also of peaks.
+    """
     nothing = negligible(sizes, BEAM, structure.length)
     if sizes[PLACE] <= UNMOVED * structure.length:
         nothing.add(PLACE)
-    judgement = Judgement(shapes, model, beyond.sizes, steps, sizes, nothing, mesh)
+    judgement = Judgement(shapes, model, beyond, steps, sizes, nothing, mesh, time, peaks_by_step)
     tip, loads, stress = judgement.error(PLACE), judgement.loads(BEAM), judgement.error(STRESS)
     if structure.source is None and structure.exact:
         tip, loads, stress = (replace(error, model=math.nan) for error in (tip, loads, stress))
@@ -247,7 +252,7 @@ def response_errors(
     of: Trajectory,
     tip: Floats,
     loads: Loads | None,
-    steps: tuple[float, float, float],
+    steps: StepErrors,
     *,
     stride: int = 1,
     begin: Begin | None = None,
@@ -255,11 +260,13 @@ def response_errors(
 ) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of a response, as fractions of the largest tip displacement, load and stress, and warnings.
 
-    `steps` are the errors of the time steps of these three; `tip` (t, 3) and `loads` are the results, one for every
+    `steps` are those of the time steps; `tip` (t, 3) and `loads` are the results, one for every
     `stride` steps of the solution `of`. A solution that does not resolve a mode that rings is judged at more steps.
     """
     if not structure.judged or loads is None or len(tip) < 3:
-        of_steps = [ErrorEstimate(step=step, total=step) for step in steps]
+        force, moment, stress = steps.peaks or (math.nan,) * 3
+        parts = (steps.displacement, math.nan), (steps.loads, max(force, moment)), (steps.stress, stress)
+        of_steps = [ErrorEstimate(step=step, total=step, peak=peak) for step, peak in parts]
         if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
             of_steps[2] = ErrorEstimate()
         return Errors(of_steps[0], of_steps[1], of_steps[2], unjudged(structure)), ()
@@ -270,7 +277,8 @@ def response_errors(
     step, least = float(of.time[1] - of.time[0]), math.ceil(len(of.time) / MOST)
     skipped = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
     stride *= skipped
-    by_step = dict(zip((PLACE, FORCE, MOMENT, STRESS), (steps[0], steps[1], *steps[1:]), strict=True))
+    by_step = {PLACE: steps.displacement, FORCE: steps.loads, MOMENT: steps.loads, STRESS: steps.stress}
+    peaks_by_step = dict(zip((FORCE, MOMENT, STRESS), steps.peaks, strict=False))
     solution = Solution.driven(structure, motion, of.at(slice(None, None, stride)))
     with np.errstate(all="ignore"):
         beyond = solution.theory(begin, straight=straight)
@@ -282,8 +290,10 @@ def response_errors(
             mesh = by_mesh(solution, computed, begin)
         if not np.isfinite(truth[PLACE]).all():
             bounded = structure.source is not None
-            return _bounded(structure, sizes[PLACE], steps[0]) if bounded else Errors(ErrorEstimate(steps[0])), 0.0
-        errors = errors_of(structure, (exact, truth), (computed, exact), beyond, by_step, sizes, mesh)
+            of_steps = steps.displacement
+            return _bounded(structure, sizes[PLACE], of_steps) if bounded else Errors(ErrorEstimate(of_steps)), 0.0
+        apart, time = ((exact, truth), (computed, exact)), solution.of.time
+        errors = errors_of(structure, *apart, beyond, by_step, sizes, mesh, time, peaks_by_step)
         return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
 
     errors, rate = judged(solution, {quantity: values[::skipped] for quantity, values in readings.items()})

@@ -9,13 +9,13 @@ import numpy as np
 from gbeam.analysis.imitation.accounting import History, account_of, gradients, largest_load, largest_pair, points_of
 from gbeam.analysis.imitation.fatigue import fatigue, stress_at_point
 from gbeam.analysis.imitation.specimen import specimen_of
-from gbeam.analysis.response.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of, positive
 from gbeam.guards.kinds import kinds
+from gbeam.numerics.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.response.peaks import turning_points
 from gbeam.arrays.types import Floats
 from gbeam.guards.checks import index_of
 from gbeam.mechanics.tree.system import ROOT
+from gbeam.numerics.peaks import turning_points
 from gbeam.results.measures import Fatigue, StressCycles
 from gbeam.results.parts import Loads
 from gbeam.results.response import Response

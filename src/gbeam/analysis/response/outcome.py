@@ -273,9 +273,12 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         for size, part, cure in sorted(parts, reverse=True)
         if size > settings.tolerance / 10
     ]
+    peaks = [error.peak for error in above.values() if not math.isnan(error.peak)]
+    of_peaks = f" at an instant and {percent(max(peaks))} of peaks of loads and stress" if peaks else ""
     return (
         f"the estimated error of the {', of the '.join(above)}, {percent(worst.total)} of the largest"
-        f"{f' (of the {name})' if len(above) > 1 else ''}, is above the tolerance {percent(settings.tolerance)}: "
+        f"{f' (of the {name})' if len(above) > 1 else ''}{of_peaks}, is above "
+        f"the tolerance {percent(settings.tolerance)}: "
         f"{', '.join(causes)}{f'; {errors.note}' if errors.note else ''}",
     )
 

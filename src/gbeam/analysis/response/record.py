@@ -110,7 +110,7 @@ class StructureRun(Run):
         if settings.estimate:
             settled = not motion.free and (self.up is not None or settings.begin.settled)
             more: Any = {"stride": stride, "begin": None if settled else begin, "tolerance": settings.tolerance}
-            errors, doubts = response_errors(structure, motion, self.trajectory, tip, loads, of_steps, **more)
+            errors, doubts = response_errors(structure, motion, self.trajectory, tip, loads, steps, **more)
         else:
             displacement, root, stress = (ErrorEstimate(step=step) for step in of_steps)
             errors = Errors(displacement, root, stress, settings.not_estimated)

@@ -77,18 +77,19 @@ def simulate(
     -------
     Response or SystemResponse
         Of a structure, with the loads along the beam; of a system with momentum and energy. The outcome is ``done``,
-        ``diverged`` (the displacement left what the model can mean, or the beam lost its stability) or ``not
-        converged`` (Newton's method failed). Where JAX traces the structure or the motion, its arrays are traced: their
-        derivatives are those of the discrete solution; there is no error estimate, a step that fails leaves NaN, and
-        gauss fits no steps to modes that are traced.
+        ``diverged`` (the displacement left what the model can mean, the beam lost its stability, or the efforts of a
+        controller are not finite), ``not converged`` (Newton's method failed) or ``law failed`` (a controller's law
+        raised an error or gave no efforts); what was computed until then is kept. Where JAX traces the
+        structure or the motion, its arrays are traced: their derivatives are those of the discrete solution; there is
+        no error estimate, a step that fails leaves NaN, and gauss fits no steps to modes that are traced.
 
     Raises
     ------
     InputError
         If the integrator cannot run this model, the beam has no damping ratio, settings are given twice, there are too
-        many steps, or a traced run has no step.
+        many steps, a traced run has no step, or a controller's law answers one sample in two ways.
     ComputationError
-        If there is no relative equilibrium to start from.
+        If there is no relative equilibrium to start from, or a controller's law fails at its first sample.
 
     Examples
     --------

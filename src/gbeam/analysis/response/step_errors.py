@@ -17,6 +17,7 @@ import numpy as np
 
 from gbeam.analysis.response.run import Run
 from gbeam.arrays.types import Floats
+from gbeam.numerics.peaks import peaks_apart
 from gbeam.results.errors import StepErrors
 
 # Limits of the observed order of histories: runs that hardly converge differ by less than their error.
@@ -110,13 +111,27 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
     displacement = Estimate.of(runs, order).tip
     if not all(run.whole for run in runs[-2:]):
         return StepErrors(displacement)
-    runs, differences = runs if runs[0].whole else runs[-2:], []
+    runs, differences, of_peaks = runs if runs[0].whole else runs[-2:], [], []
     for coarse, fine in pairwise(runs):
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
-        both = coarse.loads(stride), fine.loads(stride * ratio(coarse, fine))
+        time, both = coarse.trajectory.time[::stride], (coarse.loads(stride), fine.loads(stride * ratio(coarse, fine)))
         differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
+        of_peaks.append([_peaks_apart(time, a, b) for a, b in zip(*both, strict=True)])
     errors = [left(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
     if not errors:
         return StepErrors(displacement)
+    if len(runs) > 2:  # peaks may agree by chance: as much is left as the order says of the runs before
+        times = ratio(*runs[:2]) ** order
+        of_peaks[-1] = [max(now, before / times) for before, now in zip(*of_peaks[-2:], strict=True)]
+    peaks = tuple(left(runs, each, 4 / order) for each in zip(*of_peaks, strict=True))
     # Force, moment and stress of each body in turn.
-    return StepErrors(displacement, max(errors[::3] + errors[1::3]), max(errors[2::3], default=math.nan), tuple(errors))
+    loads, stress = max(errors[::3] + errors[1::3]), max(errors[2::3], default=math.nan)
+    return StepErrors(displacement, loads, stress, tuple(errors), peaks)
+
+
+def _peaks_apart(time: Floats, coarse: Floats, fine: Floats) -> float:
+    """Largest difference of the peaks of histories (t, ..., c) over the largest length."""
+    n, size = min(len(coarse), len(fine)), np.linalg.norm(fine, axis=-1).max()
+    if fine.ndim == 3:  # stress at every section
+        coarse, fine = (np.abs(stress).max(axis=(1, 2)) for stress in (coarse, fine))
+    return peaks_apart(time[:n], coarse[:n], fine[:n]) / float(size) if size > 0 else 0.0

@@ -104,8 +104,10 @@ class SystemRun(Run):
     @classmethod
     def by_steps(cls, posed: PosedSystem, step: float, progress: Progress = None) -> SystemRun:
         """Run the problem by steps of a length, s."""
-        trajectory = posed.integrated(step, corners=posed.felt, progress=progress)
-        return cls(trajectory, step, posed, posed.sampling)
+        trajectory, sampling = posed.integrated(step, corners=posed.felt, progress=progress), posed.sampling
+        if sampling is not None and sampling.failure is not None:
+            trajectory = replace(trajectory, stopped=True)
+        return cls(trajectory, step, posed, sampling)
 
     @classmethod
     def traced(
@@ -133,12 +135,14 @@ class SystemRun(Run):
         if settings.estimate and self.whole:
             tell(progress, say, 0.0)
             by_step = {(body, load): math.nan for body in judged_bodies(posed.system) for load in LOADS}
+            peaks_by_step = dict(zip(by_step, errors.peaks, strict=False))
             by_step |= {PLACE: errors.displacement, **dict(zip(by_step, errors.each, strict=False))}
             starting = partial(unknown_at_start, initial=settings.begin.state)
             rerun = again if posed.system.controllers else None
             rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
             friction = dict(zip((PLACE, *by_step), rubbed, strict=False))
-            stated = system_errors(self.every(self.stride), rerun, by_step, starting=starting, friction=friction)
+            more: Any = {"peaks_by_step": peaks_by_step, "starting": starting, "friction": friction}
+            stated = system_errors(self.every(self.stride), rerun, by_step, **more)
             if not friction and posed.system.rubbing:
                 stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
             if rerun is not None:
@@ -174,13 +178,14 @@ class SystemRun(Run):
         if not beams or not self.posed.settings.estimate:
             return []
         values = self.every(stride).read(beams)
-        return [values[name, load] for name in beams for load in LOADS]
+        # A largest stress (t,) is a column, as a vector is a row.
+        return [values[name, load].reshape(len(values[PLACE]), -1) for name in beams for load in LOADS]
 
     @cached_property
     def loop(self) -> Loop | None:
         """Record of the controllers at the times of the run; None without controllers."""
         controllers = self.posed.controllers
-        if controllers is None or self.sampling is None:
+        if controllers is None or self.sampling is None or not self.sampling.begun:
             return None
         return loop_of(controllers, self.sampling, self.trajectory.time)
 
@@ -388,6 +393,9 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     if not trajectory.whole:
         outcome, end = "not converged", trajectory.time[-1]
         message = f"Newton's method failed at {end:.4g} s: give a smaller step, or look for what breaks there"
+    if run.sampling is not None and run.sampling.failure is not None:
+        _, error = run.sampling.failure
+        outcome, message = error.outcome, str(error)
     if (step := run.without_mass) is not None:
         free = [system.coordinates[k] for k in system.tree.free]
         words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"

@@ -56,14 +56,15 @@ def system_errors(
     again: Again | None,
     steps: Mapping[Quantity, float],
     *,
+    peaks_by_step: Mapping[Quantity, float] = MappingProxyType({}),
     starting: Starting | None = None,
     start: Floats | None = None,
     friction: Mapping[Quantity, float] = MappingProxyType({}),
 ) -> SystemErrors:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
-    of the beams' root loads and stress; `steps` has the errors of the time steps. Richer systems are
-    linearised, beginning as `starting` says, or run by `again` if given (with controllers, at rest). `friction` has
-    the errors of its law.
+    of the beams' root loads and stress; `steps` has the errors of the time steps, and `peaks_by_step` of their peaks.
+    Richer systems are linearised, beginning as `starting` says, or run by `again` if given (with controllers, at
+    rest). `friction` has the errors of its law.
     """
     judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
     step = steps.get(PLACE, math.nan)
@@ -116,7 +117,8 @@ def system_errors(
         lacking = Lacking()
         note = "; ".join(filter(None, (note, BENT_FAR if loop is None else LOOP_LOST)))
     by_mesh = None if mesh is None else (mesh, computed)
-    judgement = Judgement(shapes, model, lacking.sizes, dict(steps), sizes, nothing, by_mesh, friction)
+    time = solution.of.time if count > 1 else None
+    judgement = Judgement(shapes, model, lacking, dict(steps), sizes, nothing, by_mesh, time, peaks_by_step, friction)
     loads, stress = [judgement.loads(name) for name in judged], [judgement.error((name, "stress")) for name in judged]
     return SystemErrors(
         displacement=judgement.error(PLACE),
@@ -125,7 +127,9 @@ def system_errors(
         beams=tuple(judged),
         by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in alone or [truth]]),
         loads_by_beam=np.array([each.total for each in loads]),
+        load_peaks_by_beam=np.array([each.peak for each in loads]),
         stress_by_beam=np.array([each.total for each in stress]),
+        stress_peaks_by_beam=np.array([each.peak for each in stress]),
         theory=tuple(described(judged[name], lacking.causes.get(name, {})) for name in judged),
         note=note,
     )
@@ -143,6 +147,8 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
         if not any(part > tolerance for part in parts):
             continue
         share = percent(np.nanmax([error.total, error.step]))
+        if not math.isnan(error.peak):
+            size += f" at an instant, and in the peak by {percent(error.peak)}"
         if error.step == np.nanmax(parts):
             warnings.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
             continue

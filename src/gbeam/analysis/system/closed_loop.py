@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, cached_property
+from itertools import count
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -24,7 +25,7 @@ from gbeam.analysis.system.linear import default_inputs, default_outputs, linear
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
-from gbeam.mechanics.tree.control import Feedback, Law, signal_names
+from gbeam.mechanics.tree.control import Feedback, Law, naming_controller, refuse_memory, signal_names
 from gbeam.results.state_space import Margin, Signal, StateSpace
 
 SAMPLES = 1000  # of all controllers in their common period, at most
@@ -373,12 +374,15 @@ def linear_law(name: str, controller: Feedback, t: float, measured: Floats, driv
     aims, sign = np.zeros(len(measured)), 1.0
     if controller.reference is not None:
         aims, sign = np.array([float(profile(t)) for profile in controller.reference]), -1.0
-    k, m, n = len(measured), len(drives), state.size
+    k, m, n, later = len(measured), len(drives), state.size, count(t + controller.sample, controller.sample)
 
     def stepped(at: Floats) -> Floats:
         """Efforts and next states, one after the other, from errors and states."""
-        before = at[k:].reshape(state.shape) if controller.stateful else None
-        asked, after = controller.effort(t, aims + sign * at[:k], before)
+        sample = aims + sign * at[:k], at[k:].reshape(state.shape) if controller.stateful else None
+        with naming_controller(name):
+            asked, after = answer = controller.effort(t, *sample)
+            controller.effort(next(later), *sample)  # as time goes on, what a law kept itself shows
+            refuse_memory(controller, t, *sample, answer)
         values = np.concatenate([asked, np.asarray(after, dtype=float).ravel() if controller.stateful else []])
         if len(values) != m + n:
             raise InputError(where, f"hands on a state of {len(values) - m} numbers, and starts with {n}", fix)

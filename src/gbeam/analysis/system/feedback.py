@@ -14,7 +14,14 @@ from gbeam.arrays.namespace import Array, as_array, holds_jax, looks_at_traced, 
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.integrate.sampled import NEAR
-from gbeam.mechanics.tree.control import Feedback, signal_names, within
+from gbeam.mechanics.tree.control import (
+    Feedback,
+    answer_of,
+    naming_controller,
+    refuse_memory,
+    signal_names,
+    within,
+)
 from gbeam.mechanics.tree.signals import carried_of, drives_of, measurable
 from gbeam.mechanics.tree.system import System
 from gbeam.results.system import Loop
@@ -28,7 +35,7 @@ class SystemControllers:
 
     def __init__(self, system: System, tree: Any = None, laws: list[TracedLaw] | None = None) -> None:
         self.system, self.tree, self.traced_laws = system, system.tree if tree is None else tree, laws
-        self.every: list[Feedback] = list(system.controllers.values())
+        self.names, self.every = list[str](system.controllers), list[Feedback](system.controllers.values())
         ends = [0, *accumulate(len(controller.drive) for controller in self.every)]
         self.drives = [slice(*pair) for pair in pairwise(ends)]
         drives = drives_of(system)
@@ -74,8 +81,15 @@ class SystemControllers:
             values = law.function(law.parameters, law.references[k], t, measured, state)
             return tuple(map(np.asarray, values))  # type: ignore[return-value]
         feedback = self.every[controller]
-        asked, state = feedback.effort(t, measured, state)
+        with naming_controller(self.names[controller]):
+            asked, state = feedback.effort(t, measured, state)
         return asked, feedback.limited(asked), state
+
+    def refuse_memory(self, controller: int, t: float, measured: Array, state: Any, answer: Any) -> None:
+        """Raise InputError if a function answers a sample otherwise than it did."""
+        if self.traced_laws is None:
+            with naming_controller(self.names[controller]):
+                refuse_memory(self.every[controller], t, measured, state, answer)
 
     def driven(self, inputs: Any, held: Array) -> Any:
         """Inputs with commands (t, m) added."""
@@ -153,7 +167,8 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
         law, parameters, start = _linear, controller.law, controller.start
     else:
         start, restored = ravel_pytree(controller.state)
-        law, parameters = _of_function(f"controllers.{name}.law", controller, start, restored)
+        with naming_controller(name):
+            law, parameters = _of_function(controller, start, restored)
 
     def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
         parts, limit = parameters
@@ -171,7 +186,7 @@ def _linear(parts: Any, _: Any, error: Array, state: Array) -> tuple[Array, Arra
     return c @ state + d @ error, a @ state + b @ error
 
 
-def _of_function(where: str, controller: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
+def _of_function(controller: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
     """A law that is a function, compiled, with the values that it refers to as first argument; and these values."""
     import jax
     import jax.numpy as jnp
@@ -181,9 +196,9 @@ def _of_function(where: str, controller: Feedback, start: Array, restored: Any) 
 
     def plain(t: Any, error: Array, state: Array) -> tuple[Array, Array]:
         if controller.stateful:
-            efforts, after = controller.law(t, error, restored(state))
+            efforts, after = answer_of(controller, t, error, restored(state))
             return jnp.asarray(efforts, dtype=float).reshape(-1), ravel_pytree(after)[0].astype(float)
-        return jnp.asarray(controller.law(t, error), dtype=float).reshape(-1), state
+        return jnp.asarray(answer_of(controller, t, error, state), dtype=float).reshape(-1), state
 
     example = 0.0, jnp.zeros(len(controller.measure)), start
     try:
@@ -193,9 +208,9 @@ def _of_function(where: str, controller: Feedback, start: Array, restored: Any) 
         if not looks_at_traced(error):
             raise
         fix = "write it with jax.numpy, and jax.numpy.where in place of if"
-        raise InputError(where, "looks at numbers that JAX traces", fix) from error
+        raise InputError("law", "looks at numbers that JAX traces", fix) from error
     if efforts.shape != (count,) or after.shape != start.shape:
         problem = f"gives {efforts.shape[0]} efforts and a state of {after.shape[0]} numbers"
-        raise InputError(where, problem, f"give {count}, and {start.shape[0]}")
+        raise InputError("law", problem, f"give {count}, and {start.shape[0]}")
     compiled = jax.jit(lambda parts, t, error, state: law(t, error, state, *parts))
     return compiled, parts

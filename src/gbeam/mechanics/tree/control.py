@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial, reduce
 from inspect import signature
+from pathlib import Path
+from traceback import extract_tb
 from typing import Any, Literal
 
 import numpy as np
 
-from gbeam.arrays.namespace import holds_tracer, is_traced, namespace
+from gbeam.arrays.namespace import holds_tracer, is_traced, looks_at_traced, namespace
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats
-from gbeam.errors import ComputationError, InputError
+from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, refuse_traced
 from gbeam.guards.kinds import Kinds, kinds
 from gbeam.mechanics.tree.signals import kind_of_drive, kind_of_signal
 from gbeam.motion.profiles.combine import as_profile
+from gbeam.printable import on_one_line, shortened
 
+LAW_FAILED = "law failed"  # an outcome
 Step = Callable[[float, Floats, Any], tuple[Any, Any]]
 
 
@@ -41,8 +46,8 @@ class Feedback(Value):
     ----------
     law : callable, matrices or a python-control system
         A function ``law(t, y)`` of time, s, and measurements (k,), which gives the efforts (m,), or ``law(t, y,
-        state)``, which gives efforts and the state at the next sample; a sample is taken more than once, so that a
-        function must keep nothing itself. Else a linear law with states of its own: (A, B, C, D), a
+        state)``, which gives efforts and the state at the next sample, a new value; a sample is taken more than once,
+        so that a function must keep nothing itself. Else a linear law with states of its own: (A, B, C, D), a
         :class:`StateSpace`, or a StateSpace or TransferFunction of python-control. One in continuous time (matrices
         are) is sampled by Tustin's rule, one in discrete time has the step `sample`.
     measure : sequence of str
@@ -198,33 +203,42 @@ class Feedback(Value):
 
         Raises
         ------
-        InputError
-            If a function gives other than `drive` names.
         ComputationError
-            If an effort is not finite.
+            If a function raises an error, gives other than `drive` names, or an effort that is not finite.
+        InputError
+            If JAX traces what a function gives at some samples only.
         """
         if self.reference is not None:
             measured = np.array([float(each(t)) for each in self.reference]) - measured
         if isinstance(self.law, tuple):
             a, b, c, d = self.law
             return self._finite(t, c @ state + d @ measured), a @ state + b @ measured
+        efforts, after = answer_of(self, t, np.array(measured), state), state
         if self.stateful:
-            efforts, state = self.law(t, measured, state)
-        else:
-            efforts = self.law(t, measured)
+            if not isinstance(efforts, (tuple, list)) or len(efforts) != 2:
+                raise self._failed(f"gives {efforts!r}", t, " and the state at the next sample")
+            efforts, after = efforts
         if holds_tracer(efforts):
             fix = "write jax.numpy.where in place of if"
             raise InputError("law", f"gives what JAX traces at {t:.6g} s, and nothing of it where all is zero", fix)
-        command = np.asarray(efforts).reshape(-1)
-        real = command.dtype.kind in "bifu" and command.shape == (len(self.drive),)
-        if not real:
-            raise InputError("law", f"gives {efforts!r} at {t:.6g} s", f"give {len(self.drive)} finite efforts")
-        return self._finite(t, command.astype(float)), state
+        try:
+            command = np.asarray(efforts).reshape(-1)
+        except ValueError:  # of rows that differ in length
+            command = np.empty(0)
+        if command.dtype.kind not in "bifu" or command.shape != (len(self.drive),):
+            raise self._failed(f"gives {efforts!r}", t)
+        return self._finite(t, command.astype(float)), after
+
+    def _failed(self, problem: str, t: float, more: str = "") -> ComputationError:
+        """Error of a function that gives something else than finite efforts, and `more`."""
+        count = f"{len(self.drive)} finite effort{'s' * (len(self.drive) > 1)}"
+        words = f"{_law_of(self)} {shortened(on_one_line(problem))} at {t:.6g} s: give {count}{more}"
+        return ComputationError(LAW_FAILED, words)
 
     def _finite(self, t: float, efforts: Floats) -> Floats:
         """Return the efforts; ComputationError unless all are finite."""
         if not all(map(math.isfinite, efforts.tolist())):
-            problem = f"the law of the controller of {', '.join(self.drive)} gives {efforts} at {t:.6g} s"
+            problem = f"{_law_of(self)} gives {efforts} at {t:.6g} s"
             fix = "limit it, or look" if self.limit is None else "look"
             raise ComputationError("diverged", f"{problem}: {fix} for what grows there")
         return efforts
@@ -240,9 +254,76 @@ class Feedback(Value):
         return efforts if self.limit is None else np.asarray(within(np, np.asarray(self.limit), efforts))
 
 
+def answer_of(controller: Feedback, t: Any, measured: Any, state: Any) -> Any:
+    """Answer of a law that is a function at a time, s; ComputationError if it raises an error."""
+    try:
+        return controller.law(t, measured, *[state] * controller.stateful)
+    except Exception as error:
+        if looks_at_traced(error):
+            raise
+        when = "where JAX traces it" if is_traced(t) else f"at {t:.6g} s"
+        raise ComputationError(LAW_FAILED, f"{_law_of(controller)} raises {_in_words(error)}, {when}") from error
+
+
+def refuse_memory(controller: Feedback, t: float, measured: Floats, state: Any, answer: tuple[Floats, Any]) -> None:
+    """Raise InputError if a function answers a sample otherwise than it did, as one that keeps something itself."""
+    if not callable(controller.law):
+        return
+    again = controller.effort(t, measured, state)
+    if _alike(again, answer):
+        return
+    shown = [str(each[0]) for each in (answer, again)]
+    if len({*shown}) == 1:
+        shown = [f"{each[0].tolist()} and {each[1]!r}" for each in (answer, again)]
+    before, now = map(shortened, map(on_one_line, shown))
+    problem = f"answers {before}, and called again {now}, to the same measurements at {t:.6g} s"
+    fix = "keep nothing between calls: a sample is taken more than once. "
+    if controller.stateful:
+        fix += "Return the state at the next sample as a new value, and change nothing in place"
+    else:
+        fix += "Write law(t, y, state), which returns the efforts and the state at the next sample, and give state"
+    raise InputError("law", problem, fix)
+
+
+def _law_of(controller: Feedback) -> str:
+    """A law, by what it drives."""
+    return f"the law of {', '.join(controller.drive)}"
+
+
+def _in_words(error: Exception) -> str:
+    """Type and message of what a function of a user raised, and the last line of the function's file that led there."""
+    frames = extract_tb(error.__traceback__)[1:]  # after the line here that called it
+    lines = [frame for frame in frames if frame.filename == frames[0].filename]
+    line = lines[-1].line if lines else ""
+    place = f" ({Path(lines[-1].filename).name}, line {lines[-1].lineno}{f': {line}' if line else ''})" if lines else ""
+    said = shortened(on_one_line(str(error)))
+    return f"{type(error).__name__}{f': {said}' if said else ''}{shortened(on_one_line(place))}"
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """True if two values are equal to the last digit, as far as they are made of numbers, sequences and mappings."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_alike(one[key], other[key]) for key in one)
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        return len(one) == len(other) and all(map(_alike, one, other))
+    values = np.asarray(one), np.asarray(other)
+    numbers = all(value.dtype.kind in "biufc" for value in values)
+    return not numbers or np.array_equal(*values, equal_nan=True)
+
+
 def within(xp: Any, limit: Any, efforts: Any) -> Any:
     """Efforts (..., m) cut at a limit; one of exactly that size keeps its derivative under JAX."""
     return xp.where(abs(efforts) <= limit, efforts, xp.copysign(limit, efforts))
+
+
+@contextmanager
+def naming_controller(name: str) -> Iterator[None]:
+    """Put the name of a controller before errors of its law that are raised inside."""
+    try:
+        with placing_within(f"controllers.{name}"):
+            yield
+    except ComputationError as error:
+        raise ComputationError(error.outcome, f"controllers.{name}: {error}") from error.__cause__
 
 
 def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "measure"]) -> tuple[str, ...]:

@@ -1,0 +1,223 @@
+"""Largest values of histories between their samples.
+
+Between a sample and its neighbours a history is interpolated: by quintic Hermite polynomials where first and second
+derivatives are known, otherwise by the polynomial of sixth degree through the seven nearest samples. Both are evaluated
+next to those samples only that may be the largest. A coordinate that vibrates within its steps is interpolated
+linearly: its derivatives say nothing of the values between samples.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.types import Floats, Indices
+
+FEWEST = 7  # samples that the polynomial without derivatives needs
+_PER_STEP = 8  # subdivisions; the vertex of a parabola through three of them is the peak
+_COUNT = 128  # windows at most per history
+_STRAIGHT = 1e-150  # of a second derivative: less is none
+_SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
+_RESOLVED = 0.5  # share of the squared changes that their difference may have; reached at 2.6 steps a period
+_WIDE = 6  # columns of a history
+_SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
+# Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
+_QUINTIC = np.stack(
+    [
+        1 - _SHARES**3 * (10 - 15 * _SHARES + 6 * _SHARES**2),
+        _SHARES - _SHARES**3 * (6 - 8 * _SHARES + 3 * _SHARES**2),
+        _SHARES**2 * (1 - 3 * _SHARES + 3 * _SHARES**2 - _SHARES**3) / 2,
+        _SHARES**3 * (10 - 15 * _SHARES + 6 * _SHARES**2),
+        -(_SHARES**3) * (4 - 7 * _SHARES + 3 * _SHARES**2),
+        _SHARES**3 * (1 - 2 * _SHARES + _SHARES**2) / 2,
+    ],
+    axis=1,
+)
+
+
+def near_maxima(time: Floats, values: Floats) -> Indices:
+    """Indices (u,) of samples beside which the largest value of a history (t, k) may lie, at local maxima; of runs
+    (b, t, k) they count through all runs. A maximum is left out if its parabola stays well below the highest.
+    """
+    count = len(time)
+    if count < 3:
+        return np.empty(0, dtype=np.intp)
+    values = values.reshape(-1, *values.shape[-2:])
+    peaked = (values[:, 1:-1] > values[:, :-2]) & (values[:, 1:-1] >= values[:, 2:])
+    peaked[:, [0, -1]] = True
+    run, row, column = np.nonzero(peaked)
+    around = row + np.arange(3)[:, None]
+    _, height = _vertex(time[around], values[run, around, column])
+    history = run * values.shape[2] + column
+    gain, highest = np.zeros(len(values) * values.shape[2]), np.full(len(values) * values.shape[2], -np.inf)
+    np.maximum.at(gain, history, height - values[run, row + 1, column])
+    np.maximum.at(highest, history, height)
+    near = height >= highest[history] - 0.5 * gain[history]
+    history, place, height = history[near], (run * count + row + 1)[near], height[near]
+    if len(history) > _COUNT:  # keep the highest of each history
+        order = np.lexsort((-height, history))
+        history, place = history[order], place[order]
+        place = place[np.arange(len(history)) - np.searchsorted(history, np.arange(len(gain)))[history] < _COUNT]
+    chosen = np.zeros(len(values) * count, dtype=bool)
+    chosen[place] = True
+    return np.flatnonzero(chosen)
+
+
+def maxima(
+    time: Floats, values: Floats, t: Floats, between: Floats, at: Indices | None = None
+) -> tuple[Floats, Floats]:
+    """Largest value of each history (t, k), or (b, t, k) of runs, and its time. `between` are values at times t (u, p)
+    beside the samples `at` (u,), which belong to all histories, or to those of a run.
+    """
+    first, columns = values.argmax(axis=-2), np.arange(values.shape[-1])
+    largest, when = np.take_along_axis(values, first[..., None, :], axis=-2)[..., 0, :], time[first]
+    if not len(between):
+        return largest, when
+    starts = np.zeros(1, dtype=np.intp) if at is None else np.searchsorted(at, len(time) * np.arange(len(values)))
+    best = [of_run.reshape(-1, len(columns)).argmax(axis=0) for of_run in np.split(between, starts[1:])]
+    window, place = np.divmod(np.reshape(best, first.shape), between.shape[1])
+    window = window + starts.reshape(-1, *[1] * (values.ndim - 2))
+    around = np.clip(place, 1, between.shape[1] - 2) + np.arange(-1, 2).reshape(-1, *[1] * place.ndim)
+    vertex, value = _vertex(t[window, around], between[window, around, columns])
+    better = value > largest
+    return np.where(better, value, largest), np.where(better, vertex, when)
+
+
+def turning_points(time: Floats, values: Floats) -> Floats:
+    """First value, local extremes between samples and last value (e,) of one history (t,), in order of time."""
+    slope = np.sign(np.diff(values))
+    moving = np.flatnonzero(slope)
+    turns = moving[1:][slope[moving[1:]] != slope[moving[:-1]]]
+    ends = values[[0, -1]]
+    if len(values) < FEWEST or not turns.size:
+        return np.concatenate([ends[:1], values[turns], ends[1:]])
+    sign = -slope[turns]  # +1 at a maximum
+    t, y = seven_point(time, values[:, None], turns)
+    y = y[..., 0] * sign[:, None]
+    rows = np.arange(len(turns))
+    around = np.clip(y.argmax(axis=1), 1, y.shape[1] - 2) + np.arange(-1, 2)[:, None]
+    _, value = _vertex(t[rows, around], y[rows, around])
+    return np.concatenate([ends[:1], sign * np.maximum(value, sign * values[turns]), ends[1:]])
+
+
+def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indices) -> tuple[Floats, Floats]:
+    """Times (u, p) and q (u, p, n) in the two steps beside samples `at` (u,), by values and derivatives (t, n) or, of
+    runs, (b, t, n).
+    """
+    count, sample = int(np.prod(q.shape[:-1])), at % len(time)
+    history = np.stack([q, qd, qdd], axis=-2).reshape(count, 3, q.shape[-1])
+    resolved = np.reshape(_resolved(time, q, qd), (count // len(time), 1, q.shape[-1]))[at // len(time)]
+
+    def step(shift: int) -> Floats:
+        j = sample + shift
+        scale = (time[j + 1] - time[j])[:, None, None] ** np.arange(3)[:, None]
+        before, after = history[at + shift], history[at + shift + 1]
+        straight = before[:, :1] + _SHARES[:, None] * (after - before)[:, :1]
+        return np.where(resolved, _QUINTIC @ np.concatenate([scale * before, scale * after], axis=1), straight)
+
+    return _subdivided(time, sample), np.concatenate([step(-1), step(0)[:, 1:]], axis=1)
+
+
+def _resolved(time: Floats, q: Floats, qd: Floats) -> Any:
+    """Flags (..., n) of coordinates (..., t, n) that the steps resolve: their displacements over two steps change about
+    as their velocities predict.
+    """
+    change = np.diff(q[..., 2:, :] - q[..., :-2, :], axis=-2)
+    predicted = np.diff((time[2:] - time[:-2])[:, None] * qd[..., 1:-1, :], axis=-2)
+    squares = np.einsum("...tn,...tn->...n", change, change) + np.einsum("...tn,...tn->...n", predicted, predicted)
+    # Σ(c − p)² <= r (Σc² + Σp²), with the square multiplied out.
+    return (1 - _RESOLVED) * squares <= 2 * np.einsum("...tn,...tn->...n", change, predicted)
+
+
+def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:
+    """Times (u, p) and values (u, p, c) in the two steps beside samples `at` (u,), from values (t, c) alone. Where the
+    polynomial of sixth degree does not converge, as at a jump, the sample stands for all.
+    """
+    if len(time) < FEWEST:
+        at = at[:0]
+    t, n = _subdivided(time, at), max(len(time), FEWEST)
+    high, low, parabola = (
+        _lagrange(time[k], t) @ values[k]
+        for m in (7, 5, 3)
+        for k in [np.clip(at - m // 2, 0, n - m)[:, None] + np.arange(m)]
+    )
+    sampled = values[at][:, None]
+    change = np.abs(high - low).max(axis=1, keepdims=True)
+    rough = change > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(sampled))
+    return t, np.where(rough, sampled, high)
+
+
+def _subdivided(time: Floats, at: Indices) -> Floats:
+    """Evenly spaced times (u, p) in the two steps beside samples `at` (u,)."""
+    before, centre, after = time[at - 1][:, None], time[at][:, None], time[at + 1][:, None]
+    return np.concatenate([before + _SHARES * (centre - before), centre + _SHARES[1:] * (after - centre)], axis=1)
+
+
+def _lagrange(nodes: Floats, t: Floats) -> Floats:
+    """Values (u, p, m) at times (u, p) of Lagrange's basis polynomials of nodes (u, m)."""
+    m = nodes.shape[1]
+    scale = (nodes[:, -1:] - nodes[:, :1])[..., None]
+    apart = nodes[:, :, None] - nodes[:, None, :] + np.eye(m) * scale  # a factor of 1 on the diagonal
+    away = (t[:, :, None] - nodes[:, None, :]) / scale
+    weight = 1 / np.prod(apart / scale, axis=2)
+    ones = np.ones((*away.shape[:2], 1))
+    # Products of the factors before each node, and of those after it.
+    left = np.concatenate([ones, np.cumprod(away[..., :-1], axis=2)], axis=2)
+    right = np.concatenate([ones, np.cumprod(away[..., :0:-1], axis=2)], axis=2)[..., ::-1]
+    return np.asarray(left * right * weight[:, None, :])
+
+
+def _vertex(t: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Time and value of the vertex of the parabola through three points (3, ...), or of their largest if the vertex is
+    no maximum between them.
+    """
+    before, after = (y[1] - y[0]) / (t[1] - t[0]), (y[2] - y[1]) / (t[2] - t[1])
+    bend = (after - before) / (t[2] - t[0])
+    slope = before + bend * (t[1] - t[0])
+    curved = bend < -_STRAIGHT
+    shift = slope / np.where(curved, -2 * bend, 1.0)
+    inside = curved & (shift > t[0] - t[1]) & (shift < t[2] - t[1])
+    shift = np.where(inside, shift, 0.0)
+    sample = np.where(y[1] >= np.maximum(y[0], y[2]), t[1], np.where(y[0] >= y[2], t[0], t[2]))
+    value = y[1] + shift * (slope + bend * shift)
+    return np.where(inside, t[1] + shift, sample), np.where(inside, value, y.max(axis=0))
+
+
+def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+    """Largest sizes of components and length of a vector (t, 3), (4,), and their times, between samples."""
+    each = sizes(vectors[:, None])
+    t, between = seven_point(time, vectors, near_maxima(time, each))
+    return maxima(time, each, t, sizes(between[:, :, None]))
+
+
+def sizes(vectors: Floats) -> Floats:
+    """Sizes (..., 4 g) of the three components and the length of each of g vectors (..., g, 3)."""
+    length = np.sqrt((vectors**2).sum(axis=-1, keepdims=True))
+    columns = np.concatenate([np.abs(vectors), length], axis=-1)
+    return columns.reshape(*columns.shape[:-2], 4 * vectors.shape[-2])
+
+
+def extremes(time: Floats, values: Floats) -> Floats:
+    """Highest values (k,) between the samples of a history (t,); or the highest and lowest of columns (t, c), and the
+    largest length of a row.
+    """
+    if values.ndim == 1:
+        columns = values[:, None]
+    else:
+        columns = np.concatenate([values, -values, np.sqrt((values**2).sum(axis=1, keepdims=True))], axis=1)
+    highest = []
+    for column in columns.T:
+        one = column[:, None]
+        highest.append(maxima(time, one, *seven_point(time, one, near_maxima(time, one)))[0][0])
+    return np.array(highest)
+
+
+def peaks_apart(time: Floats, values: Floats, others: Floats) -> float:
+    """Largest difference of the highest and lowest values of two histories (t,) or (t, c), whenever each is reached; of
+    more columns than vectors have, those alone that reach half of the largest.
+    """
+    if values.ndim > 1 and values.shape[1] > _WIDE:
+        most = np.abs(values).max(axis=0)
+        values, others = (each[:, most >= most.max() / 2] for each in (values, others))
+    return float(np.abs(extremes(time, values) - extremes(time, others)).max())
