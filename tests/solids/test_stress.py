@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
+from gbeam.cli import main
 from gbeam.report import text
 from gbeam.report.page.document import viewer
 from gbeam.report.page.parts import Numbers
@@ -307,3 +310,50 @@ def test_few_shapes_hold_what_the_surface_does() -> None:
 
 def mesh_tip(model: gb.SolidModel) -> np.ndarray:
     return np.asarray(model.mesh.points[model.mesh.stations["tip"]])
+
+
+UNDECIDED = """\
+[bodies.foot]
+mesh = "fine.inp"
+coarser = "coarse.inp"
+unit = "m"
+clamp = "wall"
+modes = 2
+damping_ratio = 0.02
+material = { density = "7850 kg/m^3", youngs_modulus = "210 GPa", poissons_ratio = 0.3, yield_strength = "300 MPa" }
+
+[motion.flight]
+kind = "flight"
+acceleration = { z = { profile = "constant", level = "2 g" } }
+
+[motion.spin]
+kind = "centrifuge"
+tracks = "flight"
+arm = "3.3 m"
+control_point = "50 mm"
+inverse = "flat"
+gravity = false
+start = "idle"
+idle = "2 g"
+accept = { stress = 0.5, tip = 0.5 }
+
+[response]
+duration = "0.02 s"
+step = "2 ms"
+"""
+
+
+def test_a_run_whose_limit_is_not_decided_ends_with_status_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither accepted nor refused: the limit that is kept is said apart."""
+    for name, kind in {"fine": "hexahedron20", "coarse": "hexahedron"}.items():
+        corner(kind, 1).write(tmp_path / f"{name}.inp")
+    (tmp_path / "s.toml").write_text(UNDECIDED, encoding="utf-8")
+    assert main(["run", str(tmp_path / "s.toml"), "--json"]) == 1
+    answer = capsys.readouterr()
+    assert "motion.spin not decided: stress unknown (limit 50 %)\n" in answer.err
+    facts = json.loads(answer.out)
+    (compared,) = facts["comparisons"]
+    assert (facts["outcome"], facts["state"], compared["accepted"]) == ("done", "not decided", None)
+    assert {each["name"]: each["passed"] for each in compared["criteria"]} == {"stress": None, "tip": True}
