@@ -11,6 +11,7 @@ from gbeam.arrays.namespace import holds_tracer, is_jax, namespace
 from gbeam.arrays.types import Floats
 from gbeam.integrate import linear
 from gbeam.integrate.equations import Demanded, LinearEquations, NonlinearEquations, Trajectory
+from gbeam.integrate.sampled import sampling_of
 from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.windows import windows
@@ -50,13 +51,16 @@ def through(
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
     """Integrate by `steps` as :func:`integrate` does; the result has the start and the ends of the kept ones."""
-    run = _linear if isinstance(equations, LinearEquations) else _nonlinear
     time = np.append(steps.begin[:1], steps.end[steps.kept])
     if not np.size(q):
         return Trajectory(time, *np.zeros((3, len(time), 0)))
+    if isinstance(equations, LinearEquations):
+        run, samples = _linear(equations, scheme, q, qd, steps), None
+    else:
+        run, samples = _nonlinear(equations, scheme, q, qd, steps)
     pieces: list[tuple[Any, ...]] = []
     converged, stopped, done = True, False, 0
-    for *piece, solved in run(equations, scheme, q, qd, steps):  # type: ignore[arg-type]
+    for *piece, solved in run:
         if not is_jax(piece[0]):
             good = solved & np.isfinite(piece[-1]).all(axis=1)
             valid = len(good) if good.all() else int(np.argmin(good))
@@ -73,8 +77,8 @@ def through(
         if stopped or not converged:
             break
     q, qd, *qdd = (namespace(parts[0]).concatenate(parts) for parts in zip(*pieces, strict=True))
-    known = qdd[0] if qdd else Demanded(equations, steps, q, qd)
-    return Trajectory(time[: len(q)], q, qd, known, converged, stopped)
+    known = qdd[0] if qdd else Demanded(equations, steps, q, qd, samples)
+    return Trajectory(time[: len(q)], q, qd, known, converged, stopped, samples)
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
@@ -87,16 +91,17 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
         yield *piece, np.ones(len(piece[0]), dtype=bool)
 
 
-def _nonlinear(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
+def _nonlinear(
+    equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps
+) -> tuple[Iterator[Piece], Any]:
+    """Pieces of a run, and the samples of its controllers, if any, which are taken as it goes on."""
     controlled = equations.controllers is not None and equations.controllers.traced
     if controlled or holds_tracer(equations.residual, q, qd, equations.drive(steps.first[:1])):
-        return _traced(equations, scheme, q, qd, steps)
-    return windows(equations, scheme, np.asarray(q, dtype=float), np.asarray(qd, dtype=float), steps)
+        from gbeam.integrate.traced import traced
 
-
-def _traced(equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
-    from gbeam.integrate.traced import traced
-
-    run = traced(equations, scheme, q, qd, steps)
-    yield *(history[:1] for history in run), np.array([True])
-    yield *(history[1:][steps.kept] for history in run), np.ones(np.count_nonzero(steps.kept), dtype=bool)
+        run, loop = traced(equations, scheme, q, qd, steps)
+        solved = np.ones(1 + np.count_nonzero(steps.kept), dtype=bool)
+        first = (*(history[:1] for history in run), solved[:1])
+        return iter([first, (*(history[1:][steps.kept] for history in run), solved[1:])]), loop
+    samples, (q, qd) = sampling_of(equations, steps), (np.asarray(x, dtype=float) for x in (q, qd))
+    return windows(equations, scheme, q, qd, steps, samples), samples

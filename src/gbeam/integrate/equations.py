@@ -81,7 +81,6 @@ class NonlinearEquations:
     residual: Any
     drive: Drive
     controllers: Any = None
-    samplings: Any = None
     vibrates: bool = False
 
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
@@ -110,7 +109,8 @@ def exact(residual: Any) -> Any:
 @dataclass(frozen=True)
 class Trajectory:
     """Coordinates q, qd (t, n) over time (t,), as far as the integration got before it failed or was stopped; where the
-    scheme has no accelerations at the ends of steps, they are computed when they are asked for.
+    scheme has no accelerations at the ends of steps, they are computed when they are asked for. `samples` are those of
+    the controllers in the loop.
     """
 
     time: Floats
@@ -119,6 +119,7 @@ class Trajectory:
     known: Any  # q̈ (t, n), or a function that computes it at times of indices (k,)
     converged: bool = True
     stopped: bool = False
+    samples: Any = None
 
     @property
     def whole(self) -> bool:
@@ -164,15 +165,15 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
 
 class Demanded:
     """Accelerations (t, n) that equations demand of a run at its start and at the ends of its kept steps, each found
-    when it is first asked for.
+    when it is first asked for, under the commands of `samples` of controllers, if any.
     """
 
-    def __init__(self, equations: Any, steps: Any, q: Any, qd: Any) -> None:
+    def __init__(self, equations: Any, steps: Any, q: Any, qd: Any, samples: Any = None) -> None:
         self.equations, self.q, self.qd = equations, q, qd
         self.time = np.append(steps.first[:1], steps.end[steps.kept])
         self.held = None
-        if isinstance(equations, NonlinearEquations) and equations.controllers is not None:
-            held = equations.samplings[-1].held
+        if samples is not None:
+            held = samples.held
             self.held = np.concatenate([0 * held[:1], held[steps.kept]])
         self.values, self.computed = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
 

@@ -193,12 +193,10 @@ class Sampling:
 
 
 def sampling_of(equations: NonlinearEquations, steps: Steps) -> Sampling | None:
-    """Samples of the controllers of some equations at given steps; None without any."""
+    """Samples, yet to be taken, of the controllers of some equations at given steps; None without any."""
     if equations.controllers is None:
         return None
-    sampling = Sampling(equations.controllers, equations.residual, equations.drive, steps)
-    equations.samplings.append(sampling)
-    return sampling
+    return Sampling(equations.controllers, equations.residual, equations.drive, steps)
 
 
 class Held:

@@ -25,7 +25,7 @@ from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
 from gbeam.integrate.newton import accelerations
-from gbeam.integrate.sampled import Sampling, Uncontrolled
+from gbeam.integrate.sampled import Sampling, Uncontrolled, sampling_of
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.windows import windows
@@ -228,9 +228,11 @@ class _Changes:
         return (after, commands), commands, sampled
 
 
-def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> tuple[Array, ...]:
-    """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps; they and their derivatives are NaN from a step on that
-    fails.
+def traced(
+    equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps
+) -> tuple[tuple[Array, ...], TracedLoop | None]:
+    """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps, and the samples of controllers, if any; they and their
+    derivatives are NaN from a step on that fails.
     """
     ends = [] if scheme.ends else [steps.end]
     loop = TracedLoop(equations.controllers or Uncontrolled(), steps)
@@ -250,14 +252,15 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
 
         untraced, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         if laws := loop.laws_of(inputs):
-            untraced = replace(untraced, controllers=loop.controllers.of(exact(residual), laws), samplings=[])
+            untraced = replace(untraced, controllers=loop.controllers.of(exact(residual), laws))
+        samples = sampling_of(untraced, steps)
         with np.errstate(all="ignore"):  # of what is no number
-            for *piece, _ in windows(untraced, scheme, q, qd, steps):
+            for *piece, _ in windows(untraced, scheme, q, qd, steps, samples):
                 out[: len(piece), done : done + len(piece[0])] = piece
                 done += len(piece[0])
             if not scheme.ends:
-                out[2, :done] = Demanded(untraced, steps, *out[:2])(np.arange(done))
-        return tuple(out), loop.recorded(untraced.samplings[-1], inputs) if laws else []
+                out[2, :done] = Demanded(untraced, steps, out[0], out[1], samples)(np.arange(done))
+        return tuple(out), [] if samples is None else loop.recorded(samples, inputs)
 
     @jax.custom_jvp
     def run(residual: Any, q: Array, qd: Array, driven: Any, inputs: Any) -> Any:
@@ -273,10 +276,8 @@ def traced(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, s
     inputs = jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float), loop.inputs)
     start = jnp.asarray(q, dtype=float), jnp.asarray(qd, dtype=float)
     histories, samples = run(step_residual, *start, equations.drive(times), inputs)
-    if loop.laws:
-        loop.values = samples
-        equations.samplings.append(loop)
-    return tuple(histories)
+    loop.values = samples
+    return tuple(histories), loop if loop.laws else None
 
 
 def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: Array, dqd: Array, in_loop: Any) -> Any:

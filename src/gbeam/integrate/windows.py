@@ -27,7 +27,7 @@ from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import NonlinearEquations, accelerations, exact, slopes, solved
 from gbeam.integrate.linear import recurrence
-from gbeam.integrate.sampled import Held, Sampling, sampling_of
+from gbeam.integrate.sampled import Held, Sampling
 from gbeam.integrate.schemes import Scheme, Tableau, stepped
 from gbeam.integrate.steps import Steps
 
@@ -54,9 +54,11 @@ GROWN = 10.0  # times the rounding of steps that have converged, which is known,
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
 
 
-def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps) -> Iterator[Piece]:
-    """Integrate; yields pieces of kept q, q̇, q̈ (k, n) and flags (k,) of those solved, first the initial state. q̈ is
-    left out unless the scheme's last stage is the end of the step.
+def windows(
+    equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps, samples: Sampling | None = None
+) -> Iterator[Piece]:
+    """Integrate, and take the `samples` of controllers; yields pieces of kept q, q̇, q̈ (k, n) and flags (k,) of those
+    solved, first the initial state. q̈ is left out unless the scheme's last stage is the end of the step.
     """
     if not q.size:  # all motion is prescribed
         empty = np.zeros((1 + np.count_nonzero(steps.kept), 0))
@@ -70,7 +72,7 @@ def windows(equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, 
     with np.errstate(all="ignore"):  # of iterates that diverge
         qdd = demanded(steps.first[0], q, qd)
     yield *(x[None] for x in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
-    window, begin = _Window(residual, drive, scheme, steps, sampling_of(equations, steps)), 0
+    window, begin = _Window(residual, drive, scheme, steps, samples), 0
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
     for end in np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int):
         window.begin(scheme.tableau(steps.length[begin]).first @ np.stack([q, qd, qdd]), qdd)

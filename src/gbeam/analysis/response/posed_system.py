@@ -28,7 +28,6 @@ from gbeam.constants import State
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
-from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.equations import SLIP
 from gbeam.mechanics.tree.linear import is_linear, linear_equations
@@ -65,14 +64,8 @@ class PosedSystem:
         """Equations of the system, with its controllers, if any, in the loop; linear where they are so without."""
         tree, drive = self.system.tree.slipping(self.slip), partial(self.system.inputs, motion=self.motion)
         if self.controllers is not None:
-            return NonlinearEquations(tree, drive, self.controllers, [])
+            return NonlinearEquations(tree, drive, self.controllers)
         return linear_equations(tree, drive) if is_linear(tree) else NonlinearEquations(tree, drive)
-
-    @property
-    def sampling(self) -> Sampling | None:
-        """Samples of the controllers in the last run; None if there were none."""
-        of_runs = self.equations.samplings if isinstance(self.equations, NonlinearEquations) else None
-        return of_runs[-1] if of_runs else None
 
     @cached_property
     def felt(self) -> Corners:

@@ -38,7 +38,6 @@ from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.integrate.equations import Trajectory, slopes
-from gbeam.integrate.sampled import Sampling
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import SLIP, SLIPS, STUCK, Inputs, Link
 from gbeam.mechanics.tree.joints import SLIDES, SPIN, Joint
@@ -67,10 +66,9 @@ Prepared = tuple[Motion | None, ResponseSettings]
 
 @dataclass(frozen=True)
 class SystemRun(Run):
-    """A run of a system, with the samples of its controllers."""
+    """A run of a system."""
 
     posed: PosedSystem
-    sampling: Sampling | None = None
     followed = False
 
     @classmethod
@@ -104,10 +102,10 @@ class SystemRun(Run):
     @classmethod
     def by_steps(cls, posed: PosedSystem, step: float, progress: Progress = None) -> SystemRun:
         """Run the problem by steps of a length, s."""
-        trajectory, sampling = posed.integrated(step, corners=posed.felt, progress=progress), posed.sampling
-        if sampling is not None and sampling.failure is not None:
+        trajectory = posed.integrated(step, corners=posed.felt, progress=progress)
+        if trajectory.samples is not None and trajectory.samples.failure is not None:
             trajectory = replace(trajectory, stopped=True)
-        return cls(trajectory, step, posed, sampling)
+        return cls(trajectory, step, posed)
 
     @classmethod
     def traced(
@@ -118,9 +116,7 @@ class SystemRun(Run):
         start = started_traced(system, motion, ends.start, settings.begin.state)
         refuse_long(system, ends, step)
         posed = PosedSystem(system, motion, ends, settings, start, step)
-        return _described(
-            cls(posed.integrated(step, corners=posed.commands), step, posed, posed.sampling), SystemErrors(), name
-        )
+        return _described(cls(posed.integrated(step, corners=posed.commands), step, posed), SystemErrors(), name)
 
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> SystemResponse:
         """Return the response, with the errors beyond those of the time steps if the settings ask for an estimate."""
@@ -184,10 +180,10 @@ class SystemRun(Run):
     @cached_property
     def loop(self) -> Loop | None:
         """Record of the controllers at the times of the run; None without controllers."""
-        controllers = self.posed.controllers
-        if controllers is None or self.sampling is None or not self.sampling.begun:
+        controllers, samples = self.posed.controllers, self.trajectory.samples
+        if controllers is None or samples is None or not samples.begun:
             return None
-        return loop_of(controllers, self.sampling, self.trajectory.time)
+        return loop_of(controllers, samples, self.trajectory.time)
 
     @cached_property
     def moved(self) -> Floats:
@@ -393,8 +389,8 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     if not trajectory.whole:
         outcome, end = "not converged", trajectory.time[-1]
         message = f"Newton's method failed at {end:.4g} s: give a smaller step, or look for what breaks there"
-    if run.sampling is not None and run.sampling.failure is not None:
-        _, error = run.sampling.failure
+    if trajectory.samples is not None and trajectory.samples.failure is not None:
+        _, error = trajectory.samples.failure
         outcome, message = error.outcome, str(error)
     if (step := run.without_mass) is not None:
         free = [system.coordinates[k] for k in system.tree.free]
