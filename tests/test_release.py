@@ -33,6 +33,12 @@ def test_the_version_is_the_newest_of_the_changes_and_the_one_to_cite() -> None:
     assert "version" in PROJECT["dynamic"]  # read from gbeam.__version__ as the wheel is built
 
 
+def test_the_changelog_has_forty_lines_a_release_at_most() -> None:
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    releases = re.split(r"^## ", changes, flags=re.MULTILINE)[1:]
+    assert max(sum(bool(line.strip()) for line in each.splitlines()[1:]) for each in releases) <= 40
+
+
 def test_every_fragment_of_the_changelog_has_a_kind_and_tells_something() -> None:
     kinds = {each["directory"] for each in TOOLS["towncrier"]["type"]}
     fragments = [path for path in (ROOT / "changes").iterdir() if path.name != "README.md"]
