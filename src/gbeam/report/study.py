@@ -94,7 +94,7 @@ def _of_largest(error: ErrorEstimate, what: str) -> str:
     """Error of the largest load or stress and, apart, that of an instant, as a share of it."""
     if math.isnan(error.peak):
         return f"{percent(error.total)} of the largest {what}"
-    return f"{percent(error.peak)} of the largest {what} and {percent(error.total)} of it at an instant"
+    return f"{percent(error.peak)} of the largest {what} ({percent(error.total)} of it at any one instant)"
 
 
 def _damping(response: Response) -> str:
