@@ -48,8 +48,8 @@ def case(seed: int) -> Former:
     if of_motion == "rest" and structure.size:
         begin = gb.Initial(acceleration=(0.0, 0.1 * size, size)) if random.random() < 0.5 else _drawn(structure, random)
     integrator = INTEGRATORS[int(random.integers(len(INTEGRATORS)))]
-    given = random.random() < 0.85 or of_motion == "centrifuge" or structure.kind in ("fourth-order", "solid")
-    step = period / float(random.uniform(40, 150)) if given else None
+    fixed = random.random() < 0.85 or of_motion == "centrifuge" or structure.kind in ("fourth-order", "solid")
+    step = period / float(random.uniform(40, 150)) if fixed else None
     settings = gb.ResponseSettings(duration, step=step, integrator=integrator, initial=begin)
     # A search for the critical rate of an exact beam takes as long as ten others.
     questions = QUESTIONS[: 2 if "ward hub" not in of_motion else 3 if structure.kind == "exact" else 4]
