@@ -113,7 +113,7 @@ _BY_OWNER: dict[str, dict[str, Declared]] = {
     "Clamped": {"first": "time", "last": "time"},
     "Convolved": {"width": "time"},
     "Feedback": {"delay": "time"},
-    "Flight": {"x": "acceleration", "y": "acceleration", "z": "acceleration"},
+    "Flight": {"x": "acceleration", "y": "acceleration", "z": "acceleration", "scale": "ratio"},
     "Gauge": {"y": "length", "z": "length"},
     "Hub": {"stiffness": "rotational stiffness", "damping": "rotational damping"},
     "ImportedModel": {"nodes": "length", "mass": ""},

@@ -28,10 +28,10 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
         elif isinstance(table, schema.Flight):
             if table.record is not None:
                 record = parts.attempt(where, _record, table.record)
-                built[name] = None if record is None else _recorded(record, table.smoothing)
+                built[name] = None if record is None else _recorded(record, table)
             else:
                 load = components(parts, f"{where}.acceleration", table.acceleration)
-                built[name] = None if load is None else motion.Flight(acceleration=_rounded(load, table.smoothing))
+                built[name] = None if load is None else _flight(load, None, table)
     return {name: base for name, base in built.items() if base is not None}
 
 
@@ -134,11 +134,12 @@ def _record(table: Record) -> FlightRecord:
     )
 
 
-def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:
-    return motion.Flight(
-        acceleration=_rounded(record.acceleration, smoothing),
-        rates=None if record.rates is None else body_rates(record.rates, smoothing),
-    )
+def _recorded(record: FlightRecord, table: schema.Flight) -> motion.Flight:
+    return _flight(record.acceleration, record.rates and body_rates(record.rates, table.smoothing), table)
+
+
+def _flight(load: Profile, rates: Profile | None, table: schema.Flight) -> motion.Flight:
+    return motion.Flight(acceleration=_rounded(load, table.smoothing), rates=rates, scale=table.scale)
 
 
 def _rounded(profile: Profile, width: float) -> Profile:

@@ -53,7 +53,7 @@ class ScenarioTemplate:
     @property
     def title(self) -> str:
         """Title of all cases."""
-        return self.scenario.title
+        return self.scenario.heading
 
     @property
     def of_system(self) -> bool:

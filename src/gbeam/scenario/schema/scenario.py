@@ -22,6 +22,7 @@ from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, S
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
 from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
+from gbeam.results.result import level_words
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -278,6 +279,12 @@ class Environments(Titled):
     sweep: Sweep | None = optional("many cases, for gbeam sweep")
 
     _source: Source | None = PrivateAttr(None)
+
+    @property
+    def heading(self) -> str:
+        """Title, and flights that are not at their own level: ``8 g turn; flight × 1.25``."""
+        flights = {name: each.scale for name, each in self.motion.items() if isinstance(each, Flight)}
+        return "; ".join(filter(None, [self.title, *(level_words(*each) for each in flights.items() if each[1] != 1)]))
 
     @property
     def source(self) -> Source | None:
