@@ -45,6 +45,32 @@ def test_record_keys_are_refused_at_their_place(override: str, path: str, words:
     assert words in text
 
 
+def test_an_instrument_is_described_by_its_turn_and_arm() -> None:
+    turning = ["p=p_rad_s", "q=-q_rad_s", "r=-r_rad_s", "rate_unit=rad/s"]
+    keys = ['turn=["0 deg", "5 deg", 0]', 'arm=["0.3 m", 0, "-0.1 m"]', *turning]
+    description = describe(build(load(F16, [RECORD + each for each in keys])))
+    (record,) = description.records.values()
+    assert record.done == (
+        "the block's axes are turned by 5 deg about (0, 1, 0) in base axes",
+        "at the root, (300, 0, -100) mm from the instrument: turning adds up to 0.09422 g",
+    )
+    assert refused(f'{RECORD}arm=["0.3 m", 0, 0]')[0] == f"{RECORD}arm"
+
+
+@pytest.mark.parametrize(
+    ("level", "path", "words"),
+    [
+        ('["0 s", "1 s"]', "level", "is no stretch at rest: the load spreads by 0.0859 g"),
+        ('["13 s", "35 s"]', "level[1]", "is 35 s, and the record lasts 0 to 15.99 s"),
+        ('["1 s"]', "level", "has 1 entries; give 2"),
+        ('["12:00:00", "12:00:01"]', "level[0]", "give a time of the record's own clock"),
+    ],
+)
+def test_a_level_that_is_none_is_refused_at_its_place(level: str, path: str, words: str) -> None:
+    where, text = refused(f"{RECORD}level={level}")
+    assert where == RECORD + path and words in text
+
+
 def test_a_level_factor_is_said_wherever_the_flight_is() -> None:
     from gbeam.report.description import text
 

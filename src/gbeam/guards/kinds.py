@@ -144,7 +144,7 @@ _BY_OWNER: dict[str, dict[str, Declared]] = {
     "optimise": {"at": "time", "bounds": WRITTEN, "options": WRITTEN},
     "plan": {"envelope": "length"},
     "read": {"mass": "", "element_size": "length", "origin": "length", "turn": "angle", "point_masses": "mass"},
-    "read_record": {"time": "", "x": ""},
+    "read_record": {"time": "", "x": "", "turn": "angle", "level": "time"},
     "reduced": {"total_mass": "mass", "centre": "length"},
     "sensitivity": {"at": "time", "options": WRITTEN},
     "shape_command": {"distance": "length"},

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam import motion
 from gbeam.motion import Profile
 from gbeam.motion.flight import body_rates
+from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
 from gbeam.scenario.schema.profile import Record
@@ -127,10 +128,18 @@ def _record(table: Record) -> FlightRecord:
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
     conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "bridge", "skip_checks")}
-    columns = values_of(table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to")
+    columns = values_of(
+        table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to", "turn", "level", "arm"
+    )
     span = table.begin, table.to
     return read_flight(
-        table.file, table.time, **columns, rates=rates, conditioning=Conditioning(**conditions), span=span
+        table.file,
+        table.time,
+        **columns,
+        rates=rates,
+        conditioning=Conditioning(**conditions),
+        span=span,
+        instrument=Instrument(table.turn, table.level, table.arm),
     )
 
 
