@@ -83,6 +83,8 @@ def test_a_level_factor_is_said_wherever_the_flight_is() -> None:
     lines = text(description)
     assert "motions   flight × 1.25\n" in lines and "accelerations × 1.25\n" in lines
     assert "8.109 g (x 0.854, y 0.273, z 8.06) at 4.92 s  10.14 g (x 1.07, y 0.341, z 10.1) at 4.92 s" in lines
+    scenario = load(F16, ["motion.flight.scale=1.25"])
+    assert scenario.heading(["motion.flight.scale"]) == scenario.title  # a sweep over it has no such level
     assert build(load(F16)).title == "F-16 8 g turn on a 3.3 m arm"
 
 

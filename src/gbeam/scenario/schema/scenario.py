@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
@@ -280,11 +280,16 @@ class Environments(Titled):
 
     _source: Source | None = PrivateAttr(None)
 
-    @property
-    def heading(self) -> str:
-        """Title, and flights that are not at their own level: ``8 g turn; flight × 1.25``."""
-        flights = {name: each.scale for name, each in self.motion.items() if isinstance(each, Flight)}
-        return "; ".join(filter(None, [self.title, *(level_words(*each) for each in flights.items() if each[1] != 1)]))
+    def heading(self, varied: Collection[str] = ()) -> str:
+        """Title, and flights at another level than their own: ``8 g turn; flight × 1.25``; none of those at paths that
+        are `varied`.
+        """
+        levels = [
+            level_words(name, each.scale)
+            for name, each in self.motion.items()
+            if isinstance(each, Flight) and each.scale != 1 and f"motion.{name}.scale" not in varied
+        ]
+        return "; ".join(filter(None, [self.title, *levels]))
 
     @property
     def source(self) -> Source | None:
