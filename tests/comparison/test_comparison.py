@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from gbeam import Comparison, InputError, compare, simulate
+from gbeam import Comparison, Flight, InputError, compare, simulate, tabulated
 from gbeam.numerics.samples import displacement, largest_riding_acceleration, low_pass, riding_acceleration
 from gbeam.report.study import comparison_lines as lines
 
@@ -116,6 +116,22 @@ def test_a_response_without_a_name_goes_by_its_environment(pair: tuple[Any, Any]
     assert str(compared).startswith("0.5 to 2 of 2 s; largest load anywhere on the specimen: flight 10 g at 1.2")
     assert "; tip: flight's peak 2.88" in str(compared) and " mm on centrifuge (+" in str(compared)
     assert compare(flight, flight).centrifuge == "the second flight"
+
+
+def test_a_flight_at_another_level_is_the_flight_of_so_many_times_the_load(
+    structure: Any, flight: Any, settings: Any, pair: tuple[Any, Any]
+) -> None:
+    table = flight.acceleration.parts[2]
+    larger = Flight(z=tabulated(table.times, 1.25 * table.values))
+    scaled, other = (
+        simulate(structure, each, settings, name="flight")
+        for each in (Flight(acceleration=flight.acceleration, scale=1.25), larger)
+    )
+    np.testing.assert_allclose(scaled.tip, other.tip, rtol=1e-9, atol=1e-12)
+    assert (scaled.scale, other.scale, pair[0].scale) == (1.25, None, None)
+    verdict = compare(scaled, pair[1]).verdict
+    assert "flight × 1.25: 12.5 g at " in verdict and "tip: flight × 1.25's peak " in verdict
+    assert "flight 10 g at " in compare(*pair).verdict
 
 
 def test_what_does_not_agree_says_so(pair: tuple[Any, Any]) -> None:

@@ -30,7 +30,7 @@ from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import gauss
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base, Profile
-from gbeam.motion.centrifuge.kinematics import moved
+from gbeam.motion.rigid import moved
 from validation.published.specimens import strip_beam
 from validation.published.zhang2020 import COUNTS, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 

@@ -10,8 +10,9 @@ import pytest
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion import Centrifuge, Flight, machines, trapezoid
-from gbeam.motion.centrifuge.kinematics import axis_angles, moved
+from gbeam.motion.centrifuge.kinematics import axis_angles
 from gbeam.motion.records.record import read_record
+from gbeam.motion.rigid import moved
 
 G, R, XC = STANDARD_GRAVITY, 3.3, 0.15
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

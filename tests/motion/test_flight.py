@@ -26,6 +26,30 @@ def test_a_flight_with_rates_turns_as_its_rates_and_their_derivatives_say() -> N
     np.testing.assert_allclose(base.alpha_WB_B, [[0, 0, 0], [0, 4.0, 0], [0, 0, 0]])
 
 
+def test_a_level_factor_scales_accelerations_and_no_rates() -> None:
+    ramp = trapezoid(98.0, jerk=40.0, start=1.0, hold=4.0)
+    plain = Flight(x=-2.0, z=ramp, rates=vector(y=trapezoid(2.0, jerk=4.0, start=1.0, hold=4.0)))
+    scaled = Flight(x=-2.0, z=ramp, rates=plain.rates, scale="125 %")
+    t = np.linspace(0.0, 8.0, 33)
+    one, other = plain.base(t), scaled.base(t)
+    np.testing.assert_allclose(other.a_WO_B, 1.25 * one.a_WO_B, rtol=1e-15)
+    np.testing.assert_array_equal(other.w_WB_B, one.w_WB_B)
+    np.testing.assert_array_equal(other.alpha_WB_B, one.alpha_WB_B)
+    np.testing.assert_array_equal(scaled.corners(0.1), plain.corners(0.1))
+    rounded = scaled.acceleration.smoothed(0.5).derivatives(t)
+    for value, before in zip(rounded, plain.acceleration.smoothed(0.5).derivatives(t), strict=True):
+        np.testing.assert_allclose(value, 1.25 * before, rtol=1e-14)
+    assert scaled.level_factor == 1.25 and plain.level_factor is None
+    assert Flight(**scaled.arguments) == scaled != plain  # the factor once, and not twice
+
+
+def test_a_level_factor_can_be_differentiated() -> None:
+    import jax
+
+    load = jax.grad(lambda scale: Flight(z=9.8, scale=scale).base(0.0).a_WO_B[2])(1.0)
+    assert float(load) == pytest.approx(9.8)
+
+
 def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
     ramp = trapezoid(98.0, jerk=40.0, start=1.0, hold=4.0)
     flight = Flight(z=ramp, x=-2.0)
@@ -45,6 +69,7 @@ def test_components_are_profiles_or_numbers_and_vectors_go_by_name() -> None:
         ({"acceleration": 9.8}, "acceleration", "give x, y and z"),
         ({"z": "fast"}, "z", "give numbers"),
         ({"z": np.nan}, "z", "finite"),
+        ({"z": 1.0, "scale": 0.0}, "scale", "positive"),
     ],
 )
 def test_what_is_no_flight_is_refused(arguments: dict[str, Any], where: str, words: str) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.motion.centrifuge.kinematics import Axes, forward, moved
+from gbeam.motion.centrifuge.kinematics import Axes, forward
+from gbeam.motion.rigid import moved
 
 
 def turn(angle: jax.Array, axis: int) -> jax.Array:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion.centrifuge.kinematics import moved
+from gbeam.motion.rigid import moved
 from gbeam.results.parts import Base
 
 LOAD = gb.Sum((gb.constant(20.0), gb.trapezoid(30.0, jerk=25.0, start=1.0, hold=2.0)))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from gbeam import describe
 from gbeam.scenario import ScenarioError, build, load
 
 F16 = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
@@ -42,6 +43,56 @@ def test_record_keys_are_refused_at_their_place(override: str, path: str, words:
     where, text = refused(RECORD + override)
     assert where == RECORD + path
     assert words in text
+
+
+def test_an_instrument_is_described_by_its_turn_and_arm() -> None:
+    turning = ["p=p_rad_s", "q=-q_rad_s", "r=-r_rad_s", "rate_unit=rad/s"]
+    keys = ['turn=["0 deg", "5 deg", 0]', 'arm=["0.3 m", 0, "-0.1 m"]', *turning]
+    description = describe(build(load(F16, [RECORD + each for each in keys])))
+    (record,) = description.records.values()
+    assert record.done == (
+        "the block's axes are turned by 5 deg about (0, 1, 0) in base axes",
+        "at the root, (300, 0, -100) mm from the instrument: turning adds up to 0.09422 g",
+    )
+    assert refused(f'{RECORD}arm=["0.3 m", 0, 0]')[0] == f"{RECORD}arm"
+
+
+@pytest.mark.parametrize(
+    ("level", "path", "words"),
+    [
+        ('["0 s", "1 s"]', "level", "is no stretch at rest: the load spreads by 0.0859 g"),
+        ('["13 s", "35 s"]', "level[1]", "is 35 s, and the record lasts 0 to 15.99 s"),
+        ('["1 s"]', "level", "has 1 entries; give 2"),
+        ('["12:00:00", "12:00:01"]', "level[0]", "give a time of the record's own clock"),
+    ],
+)
+def test_a_level_that_is_none_is_refused_at_its_place(level: str, path: str, words: str) -> None:
+    where, text = refused(f"{RECORD}level={level}")
+    assert where == RECORD + path and words in text
+
+
+def test_a_level_factor_is_said_wherever_the_flight_is() -> None:
+    from gbeam.report.description import text
+
+    case = build(load(F16, ["motion.flight.scale=1.25"]))
+    assert case.title == "F-16 8 g turn on a 3.3 m arm; flight × 1.25"
+    description = describe(case)
+    (record,) = description.records.values()
+    assert record.flown.largest == pytest.approx([1.25 * each for each in record.read.largest])
+    assert record.flown.peak == pytest.approx([1.25 * each for each in record.read.peak])
+    lines = text(description)
+    assert "motions   flight × 1.25\n" in lines and "accelerations × 1.25\n" in lines
+    assert "8.109 g (x 0.854, y 0.273, z 8.06) at 4.92 s  10.14 g (x 1.07, y 0.341, z 10.1) at 4.92 s" in lines
+    scenario = load(F16, ["motion.flight.scale=1.25"])
+    assert scenario.heading(["motion.flight.scale"]) == scenario.title  # a sweep over it has no such level
+    assert build(load(F16)).title == "F-16 8 g turn on a 3.3 m arm"
+
+
+def test_rates_beside_a_level_factor_are_warned_of() -> None:
+    turning = ["p=p_rad_s", "q=-q_rad_s", "r=-r_rad_s", "rate_unit=rad/s"]
+    case = build(load(F16, [*(RECORD + each for each in turning), "motion.flight.scale=1.25"]))
+    (warning,) = (each for each in describe(case).warnings if "scale" in each)
+    assert "motion.flight.scale: accelerations are flown × 1.25, the body's rates as they are given" in warning
 
 
 def test_acceleration_cannot_be_the_target_of_a_machine_with_gravity() -> None:

@@ -493,6 +493,11 @@ def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]
         title=case.title,
         motions={name: motion.kind for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
+        scales={
+            name: motion.level_factor
+            for name, motion in case.motions.items()
+            if isinstance(motion, Flight) and motion.level_factor is not None
+        },
         records={
             name: motion.record
             for name, motion in case.motions.items()

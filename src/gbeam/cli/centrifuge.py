@@ -69,7 +69,7 @@ def plan(
         plans = tuple(
             replace(
                 analysis.plan(
-                    name, machines[name], table.tracks, **extent, title=environments.title, progress=watch,
+                    name, machines[name], table.tracks, **extent, title=environments.heading(), progress=watch,
                     **judging(table.limits_of_acceptance, response=False),
                 ),
                 provenance=origin,
@@ -86,7 +86,7 @@ def plan(
             write_commands(each, analysis.axis_commands(machines[each.name], time), hidden)
 
     deliver(
-        plans, "plan", folder, output, origin=origin, title=environments.title, suffix="",
+        plans, "plan", folder, output, origin=origin, title=environments.heading(), suffix="",
         more=commands,
     )  # fmt: skip
     broken = [each for each in plans if each.outcome != "done"]

@@ -11,7 +11,8 @@ from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.motion.profiles.combine import as_profile, merged_extent, vector
+from gbeam.guards.checks import positive
+from gbeam.motion.profiles.combine import Turned, as_profile, merged_extent, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, smoothed
 from gbeam.results.parts import Base
@@ -36,11 +37,14 @@ class Flight:
     rates : Profile, optional
         Vector profile: angular velocity in base axes, rad/s, without corners; α is its derivative, since the rate of a
         vector ω is the same seen from its own axes.
+    scale : float
+        Level factor of a test: the acceleration is so many times the given one, gravity in a specific force included.
+        Rates are flown as they are given, and a result says so.
 
     Raises
     ------
     InputError
-        If components and vector are given, or neither, or one has the other's shape.
+        If components and vector are given, or neither, or one has the other's shape, or the scale is not positive.
 
     Examples
     --------
@@ -50,8 +54,9 @@ class Flight:
     """
 
     kind: ClassVar[str] = "flight"
-    acceleration: Profile
+    unscaled: Profile  # acceleration before the level factor
     rates: Profile | None
+    scale: Any
 
     def __init__(
         self,
@@ -61,6 +66,7 @@ class Flight:
         *,
         acceleration: Profile | Any | None = None,
         rates: Profile | Any | None = None,
+        scale: Any = 1.0,
     ) -> None:
         components = [name for name, value in (("x", x), ("y", y), ("z", z)) if value is not None]
         if acceleration is None and not components:
@@ -72,19 +78,33 @@ class Flight:
         load = vector(x, y, z) if acceleration is None else as_profile("acceleration", acceleration, 3)
         assign(
             self,
-            acceleration=load,
+            unscaled=load,
             rates=None if rates is None else as_profile("rates", rates, 3),
+            scale=positive("scale", scale, "times the given acceleration"),
         )
+
+    @property
+    def acceleration(self) -> Profile:
+        """Acceleration that is flown, base axes, m/s²: the given one times the level factor."""
+        if self.level_factor is None and not holds_jax(self.scale):
+            return self.unscaled
+        return Turned(self.unscaled, self.scale * np.eye(3))
+
+    @property
+    def level_factor(self) -> float | None:
+        """Level factor, as results state it; None of a flight at its own level, or where JAX traces it."""
+        return None if holds_jax(self.scale) or self.scale == 1 else float(self.scale)
 
     @property
     def arguments(self) -> dict[str, Any]:
         """Arguments of the constructor by their names, with which the flight is made again."""
-        return {"acceleration": self.acceleration, "rates": self.rates}
+        return {"acceleration": self.unscaled, "rates": self.rates, "scale": self.scale}
 
     @property
     def record(self) -> RecordSummary | None:
         """The record that is flown; None of a flight that is prescribed."""
-        return self.acceleration.record
+        record, level = self.unscaled.record, self.level_factor
+        return record if record is None or level is None else record.scaled(level)
 
     @property
     def free(self) -> bool:

@@ -47,6 +47,12 @@ class Motion(Protocol):
         ...
 
 
+def level_factor(motion: Any) -> float | None:
+    """Level factor of a flight, or of that which a centrifuge tracks; None of 1, and of other motions."""
+    flown = motion.flight if motion is not None and motion.kind == "centrifuge" else motion
+    return flown.level_factor if isinstance(flown, Flight) else None
+
+
 SAMPLES = 501
 
 
@@ -89,6 +95,11 @@ def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterato
     """Oddities of a flight's record, and that only a part of it is flown."""
     if flight.record is not None:
         yield from (f"{where}.record: {note}" for note in flight.record.notes)
+    if flight.level_factor is not None and flight.rates is not None:
+        yield (
+            f"{where}.scale: accelerations are flown × {flight.level_factor:.4g}, the body's rates as they are given: "
+            "what turning adds off the root is not scaled; leave the rates out if only the load at the root counts"
+        )
     whole = flight.part_of(*span) if span[1] > span[0] else None
     if whole is not None:
         yield f"{where}: {part_words(span, whole)} are flown, and the rest is left out"

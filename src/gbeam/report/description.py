@@ -17,7 +17,7 @@ from gbeam.results.description import (
     SystemDescription,
     Vector,
 )
-from gbeam.results.result import part_words
+from gbeam.results.result import level_words, part_words
 
 
 def text(case: Described) -> str:
@@ -26,7 +26,7 @@ def text(case: Described) -> str:
     motions = []
     for name, kind in case.motions.items():
         described = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
-        motions.append(name + (f": {described}" if described != name else ""))
+        motions.append(level_words(name, case.scales.get(name)) + (f": {described}" if described != name else ""))
     lines += _listed("motions", motions)
     for name, record in case.records.items():
         first, *more_lines = _lines(record)

@@ -29,7 +29,7 @@ from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, change, i
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
 from gbeam.results.machine import AxesResult, Driven, Shortfall
-from gbeam.results.result import Floats
+from gbeam.results.result import Floats, level_words
 
 _EXACT = 1e-9  # of the load: a smaller error is rounding
 
@@ -156,7 +156,7 @@ def machine_plan(facts: Facts) -> Blocks:
         tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
         title = f"{name} ({plan['arm']:g} m{tracks}): {state}"
         yield Section(title, tuple(_planned(plan)), titled=True, tone="good" if state in GOOD else "bad")
-        yield from verdict(plan, (plan["tracks"] or "flight", name))
+        yield from verdict(plan, (level_words(plan["tracks"] or "flight", plan.get("scale")), name))
         yield said(plan)
     yield Section("Histories", (FIGURES,))
 
@@ -201,7 +201,7 @@ def held(machine: Facts) -> Block:
 
 def comparison(facts: Facts) -> Blocks:
     """Verdict on the imitation of a flight, the sentences that it rests on, and the figures."""
-    yield from verdict(facts, (facts["flight"], facts["centrifuge"]))
+    yield from verdict(facts, (level_words(facts["flight"], facts.get("scale")), facts["centrifuge"]))
     yield said(facts)
     yield Section("Histories", (FIGURES,))
 

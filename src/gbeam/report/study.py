@@ -41,6 +41,7 @@ from gbeam.results.criteria import RULES
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.facts import facts_of
 from gbeam.results.response import Response
+from gbeam.results.result import level_words
 from gbeam.results.system import SystemResponse
 from gbeam.results.system import named as named_histories
 
@@ -230,14 +231,15 @@ def verdicts(facts: Facts) -> Blocks:
     lines = tuple(Sentence(f"motion {name} {each['outcome']}: {each['message']}", "bad") for name, each in wrong)
     yield Section("Outcome", lines, detail=True)
     for compared in facts["comparisons"]:
-        yield from verdict(compared, (compared["flight"], compared["centrifuge"]))
+        yield from verdict(compared, (level_words(compared["flight"], compared.get("scale")), compared["centrifuge"]))
 
 
 def in_words_of(facts: Facts) -> Blocks:
     """Outcome and sentences of every run, and every verdict with the figures that it rests on."""
     for name, run in facts["motions"].items():
         kind = run.get("environment", name)
-        title = f"{name}{'' if kind == name else f' ({kind})'}: {run['outcome']}"
+        named = level_words(name, run.get("scale")) if kind == "flight" else name
+        title = f"{named}{'' if kind == name else f' ({kind})'}: {run['outcome']}"
         folded, tone = (title, "good") if run["outcome"] == "done" else ("", "bad")
         message = (Sentence(sentence(run["message"]), "bad"),) if run.get("message") else ()
         limits_used = (limits(run),) if "limits" in run else ()

@@ -224,7 +224,7 @@ def verdict(
 def _largest(flight: str, machine: str, load: PeakPair) -> str:
     """Clause on the largest load anywhere on the specimen, in flight and on the machine."""
     extremes = (
-        f"{name} {in_g(size)}{f' at {place}' if place else ''} at {time:.2f} s"
+        f"{name}{':' if ' ' in name else ''} {in_g(size)}{f' at {place}' if place else ''} at {time:.2f} s"
         for name, size, place, time in (
             (flight, load.flight, load.place_flight, load.time_flight),
             (machine, load.machine, load.place_machine, load.time_machine),

@@ -15,7 +15,7 @@ from gbeam.results.declared import INSIDE, declared, fact, internal, part, quant
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
 from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
-from gbeam.results.result import Figured, Flags, Floats
+from gbeam.results.result import Figured, Flags, Floats, level_words
 
 # The main axis has no letter.
 ComparisonFigure = Literal["parts", "parts x", "parts y", "parts z", "shock"]
@@ -101,6 +101,7 @@ class Comparison(Judged, Figured[ComparisonFigure]):
     point: str = fact(
         "point whose displacement is that of the tip", name=None, note="empty where it is the tip", default=""
     )
+    scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
 
     @declared("", "share of the times that are compared", role="fact", name=None, key="covered")
     def covered_share(self) -> float:
@@ -123,8 +124,8 @@ class Comparison(Judged, Figured[ComparisonFigure]):
         tip = self.accept.get("tip")
         within = tip if isinstance(tip, float) else None
         return verdict(
-            self.flight, self.centrifuge, self.peaks, self.accounting, within, self.margins, self.whole,
-            self.point or "tip",
+            level_words(self.flight, self.scale), self.centrifuge, self.peaks, self.accounting, within, self.margins,
+            self.whole, self.point or "tip",
         )  # fmt: skip
 
     @declared("", "least margin on yield in flight and on the machine", role="fact", name=None, key="margin")
@@ -183,14 +184,16 @@ class MachinePlan(Judged, Driven, Figured[AxesFigure]):
     whole: tuple[float, float] | None = internal(
         "s", "first and last time of the whole flight, where only a part of it is imitated", default=None
     )
+    scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
     with_response = False
 
     @property
     def verdict(self) -> str:
         """One sentence about the load over the whole flight."""
         return verdict(
-            self.tracks or "flight", self.name or "centrifuge", self.peaks, self.accounting, whole=self.whole
-        )
+            level_words(self.tracks or "flight", self.scale), self.name or "centrifuge", self.peaks, self.accounting,
+            whole=self.whole,
+        )  # fmt: skip
 
     @declared("", "the outcome, with what limits make of it", role="fact", name=None)
     def state(self) -> str:

@@ -5,7 +5,7 @@ and settings before any run.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from gbeam.results.declared import declared, fact, part, rows
@@ -79,6 +79,15 @@ class RecordSummary(Part):
     done: tuple[str, ...] = fact("what was done to it, as asked", default=())
     notes: tuple[str, ...] = fact("what looks odd", default=())
 
+    def scaled(self, scale: float) -> RecordSummary:
+        """The record, flown with accelerations times a level factor."""
+        low, high, peak = (
+            (scale * x, scale * y, scale * z) for x, y, z in (self.flown.smallest, self.flown.largest, self.flown.peak)
+        )
+        rates = "" if self.rate_columns is None else ", rates as they are recorded"
+        flown = replace(self.flown, smallest=low, largest=high, peak=peak)
+        return replace(self, flown=flown, done=(*self.done, f"accelerations × {scale:.6g}{rates}"))
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Body(Part):
@@ -94,6 +103,7 @@ class Kind(Part):
 
     kind: str = fact("kind of the motion")
     tracks: str = fact("name of the flight that it tracks", optional=True)
+    scale: float | None = fact("level factor of its loads; None of 1", optional=True, default=None)
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
@@ -109,6 +119,7 @@ class Described(Part):
     step: float | None = fact("time step; None for an automatic one", "s", key=None, default=None)
     integrator: str | None = fact("integrator", key="response.integrator", optional=True, default=None)
     tracks: Mapping[str, str] = fact("name of the flight that each centrifuge tracks", key=None, default_factory=dict)
+    scales: Mapping[str, float] = fact("level factors of flights but 1, by name", key=None, default_factory=dict)
     records: Mapping[str, RecordSummary] = rows("records of flights, by name", "motion", default_factory=dict)
     warnings: tuple[str, ...] = fact("what is implausible", default=())
     notes: tuple[str, ...] = fact("what may be meant so, and is easily overlooked", optional=True, default=())
@@ -116,7 +127,9 @@ class Described(Part):
 
     @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")
     def kinds(self) -> Mapping[str, Kind]:
-        return {name: Kind(kind, self.tracks.get(name, "")) for name, kind in self.motions.items()}
+        return {
+            name: Kind(kind, self.tracks.get(name, ""), self.scales.get(name)) for name, kind in self.motions.items()
+        }
 
     @declared("s", "time step, or auto", role="fact", key="response.step", optional=True)
     def step_or_auto(self) -> float | str | None:

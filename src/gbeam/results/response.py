@@ -285,6 +285,7 @@ class Response(Driven, Figured[ResponseFigure]):
         "loads of a rigid specimen", name="specimen_", key="specimen", optional=True, default=None
     )
     readings: Readings | None = part("of accelerometers", name="sensor_", key="sensors", optional=True, default=None)
+    scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
 
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:

@@ -313,6 +313,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         "largest values between all steps", key=INSIDE, name=INSIDE, optional=True, note="None where a run is traced",
         default=None,
     )  # fmt: skip
+    scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
 
     @declared("m", "length of the vector of half peak-to-peak from residual_from on", "point", optional=True, name=None)
     def residual_size(self) -> Floats | None:

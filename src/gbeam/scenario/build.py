@@ -87,7 +87,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
     case = parts.attempt(
         "",
         make,
-        title=scenario.title,
+        title=scenario.heading(),
         motions={name: motions[name] for name in scenario.motion},
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam import motion
 from gbeam.motion import Profile
 from gbeam.motion.flight import body_rates
+from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 from gbeam.scenario import schema
 from gbeam.scenario.schema.profile import Record
@@ -28,10 +29,10 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
         elif isinstance(table, schema.Flight):
             if table.record is not None:
                 record = parts.attempt(where, _record, table.record)
-                built[name] = None if record is None else _recorded(record, table.smoothing)
+                built[name] = None if record is None else _recorded(record, table)
             else:
                 load = components(parts, f"{where}.acceleration", table.acceleration)
-                built[name] = None if load is None else motion.Flight(acceleration=_rounded(load, table.smoothing))
+                built[name] = None if load is None else _flight(load, None, table)
     return {name: base for name, base in built.items() if base is not None}
 
 
@@ -127,18 +128,27 @@ def _record(table: Record) -> FlightRecord:
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
     conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "bridge", "skip_checks")}
-    columns = values_of(table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to")
+    columns = values_of(
+        table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to", "turn", "level", "arm"
+    )
     span = table.begin, table.to
     return read_flight(
-        table.file, table.time, **columns, rates=rates, conditioning=Conditioning(**conditions), span=span
+        table.file,
+        table.time,
+        **columns,
+        rates=rates,
+        conditioning=Conditioning(**conditions),
+        span=span,
+        instrument=Instrument(table.turn, table.level, table.arm),
     )
 
 
-def _recorded(record: FlightRecord, smoothing: float) -> motion.Flight:
-    return motion.Flight(
-        acceleration=_rounded(record.acceleration, smoothing),
-        rates=None if record.rates is None else body_rates(record.rates, smoothing),
-    )
+def _recorded(record: FlightRecord, table: schema.Flight) -> motion.Flight:
+    return _flight(record.acceleration, record.rates and body_rates(record.rates, table.smoothing), table)
+
+
+def _flight(load: Profile, rates: Profile | None, table: schema.Flight) -> motion.Flight:
+    return motion.Flight(acceleration=_rounded(load, table.smoothing), rates=rates, scale=table.scale)
 
 
 def _rounded(profile: Profile, width: float) -> Profile:

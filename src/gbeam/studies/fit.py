@@ -128,8 +128,8 @@ def fit(
     described = _described(model, measurement, parameters, limits, solution)
     agreed = agreeing([each.values for each in solutions], solution.values, limits)
     return replace(
-        described, title=template.title, starts=starts, agreed=agreed, notes=template.notes,
-        provenance=template.provenance,
+        described, title=template.title([each.path for each in parameters]), starts=starts, agreed=agreed,
+        notes=template.notes, provenance=template.provenance,
     )  # fmt: skip
 
 

@@ -128,7 +128,7 @@ def optimise(
     broken = [each.name for each in requirements if not each.kept]
     paths = tuple(each.path for each in parameters)
     return Optimum(
-        title=template.title,
+        title=template.title(paths),
         minimise=minimise,
         unit=goal.unit,
         parameters=paths,

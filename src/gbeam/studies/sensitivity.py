@@ -116,7 +116,7 @@ def sensitivity(
         for j in np.flatnonzero(kinks[k])
     ]
     return Sensitivity(
-        title=template.title,
+        title=template.title(),
         verb=verb,
         measures=tuple(of),
         units=units,

@@ -184,7 +184,7 @@ def sweep(
             with journal.writing(resume=resume):
                 journal.add(begun.rows)
                 rows += _collected(computed, rows, len(cases), progress, journal)
-    answer = assembled(template.title, cases, names, begun, rows, seed)
+    answer = assembled(template.title([each.path for each in cases.variations]), cases, names, begun, rows, seed)
     said = () if journal is None else journal.warnings
     return replace(answer, warnings=said, notes=template.notes, provenance=template.provenance)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -50,10 +50,9 @@ class ScenarioTemplate:
 
     scenario: AnyScenario
 
-    @property
-    def title(self) -> str:
-        """Title of all cases."""
-        return self.scenario.title
+    def title(self, varied: Collection[str] = ()) -> str:
+        """Title of all cases, between which the values at some paths are `varied`."""
+        return self.scenario.heading(varied)
 
     @property
     def of_system(self) -> bool:
@@ -159,8 +158,7 @@ class CaseTemplate:
     def of_system(self) -> bool:
         return isinstance(self.case, SystemCase)
 
-    @property
-    def title(self) -> str:
+    def title(self, varied: Collection[str] = ()) -> str:
         return self.case.title
 
     @property

@@ -12,7 +12,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
-from gbeam.motion.centrifuge.kinematics import moved
+from gbeam.motion.rigid import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
 from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
 from gbeam.results.machine import AxesResult, used_up

@@ -267,6 +267,7 @@ def compare(
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
         margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,
+        scale=flight.scale,
         kept_every=centrifuge.kept_every,
         point=chosen,
     )  # fmt: skip

@@ -22,9 +22,10 @@ from gbeam.guards.checks import choice
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
-from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge, rotation_of
+from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.protocol import SAMPLES
+from gbeam.motion.rigid import rotation_of
 from gbeam.numerics.minimise import coarse
 from gbeam.numerics.samples import displacement
 

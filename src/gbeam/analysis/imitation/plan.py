@@ -129,6 +129,7 @@ def plan(
         accept=limits,
         title=title,
         whole=motion.flight.part_of(*span),
+        scale=motion.flight.level_factor,
         warnings=(*warnings, *axes.warnings),
     )
 

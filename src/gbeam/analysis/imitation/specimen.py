@@ -69,6 +69,7 @@ def specimen_of(response: SystemResponse) -> Response:
         environment=response.environment,
         model="system",
         outcome=response.outcome,
+        scale=response.scale,
         message=response.message,
         time=response.time,
         stations=np.arange(float(len(response.points))),

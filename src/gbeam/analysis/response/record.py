@@ -38,7 +38,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
-from gbeam.motion.protocol import Motion, notes_on
+from gbeam.motion.protocol import Motion, level_factor, notes_on
 from gbeam.progress import Progress
 from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
 from gbeam.results.machine import AxesResult
@@ -294,6 +294,7 @@ def response_of(
         outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
         bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
         whole=whole,
+        scale=level_factor(motion),
         point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
         felt_at_steps=felt_at_steps,

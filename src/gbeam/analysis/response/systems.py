@@ -46,7 +46,7 @@ from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
-from gbeam.motion.protocol import Motion, notes_on
+from gbeam.motion.protocol import Motion, level_factor, notes_on
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
@@ -439,5 +439,6 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
         initial=begun_in_words(system, settings.begin.state),
         warnings=warnings,
         notes=notes_on({name: motion}),
+        scale=level_factor(motion),
         **over_time,
     )

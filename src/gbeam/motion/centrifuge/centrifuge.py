@@ -17,13 +17,14 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, possible, vector
 from gbeam.motion.centrifuge.course import INVERSES, LESS, Course, Planned, less_eased, prepare
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
-from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward, moved
+from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward
 from gbeam.motion.centrifuge.limits import Ends, Limits, Machine, MachineLimits, usage
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.flight import Flight
 from gbeam.motion.profiles.combine import Turned
 from gbeam.motion.profiles.profile import Profile, sampled
+from gbeam.motion.rigid import moved, rotation_of
 from gbeam.results.machine import LimitUse, Shortfall
 from gbeam.results.parts import Base
 
@@ -372,10 +373,3 @@ def _turn(turn: Any) -> tuple[float, float, float]:
         raise InputError("turn", "is traced by JAX", "give three numbers")
     x, y, z = map(float, vector("turn", turn))
     return x, y, z
-
-
-def rotation_of(turn: tuple[float, float, float]) -> Floats:
-    """Rotation matrix of a rotation vector, rad."""
-    from scipy.spatial.transform import Rotation  # 0.2 s to import, which few machines need
-
-    return np.asarray(Rotation.from_rotvec(turn).as_matrix())

@@ -84,14 +84,6 @@ def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
     return xp.stack([along, across * cos3 + gravity * sin3, -across * sin3 + gravity * cos3], axis=-1)
 
 
-def moved(base: Base, offset: Any) -> Base:
-    """Return the motion at another point (3,) m of the same rigid base: a + α × r + ω × (ω × r)."""
-    xp = namespace(base.a_WO_B, base.w_WB_B, offset)
-    r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)
-    turning = xp.cross(base.alpha_WB_B, r) + xp.cross(base.w_WB_B, xp.cross(base.w_WB_B, r))
-    return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)
-
-
 def axis_angles(axes: Axes, times: Any) -> Floats:
     """Angles of the three axes at `times` (n,), (n, 3) rad: that of axis 1 from zero, all without jumps."""
     time = np.asarray(times, dtype=float)

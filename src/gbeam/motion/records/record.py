@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.arrays.types import Floats, Indices
+from gbeam.arrays.types import Floats, Indices, Numbers
 from gbeam.constants import Check, RecordQuantity, Vehicle
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -26,6 +26,7 @@ from gbeam.motion.records.columns import (
     upended,
 )
 from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
+from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unsound
 from gbeam.motion.records.text import read_text
 from gbeam.motion.records.times import Span, Timeline, Times, check_interval
@@ -134,6 +135,8 @@ def read_record(
     sample_rate: float | None = None,
     quantity: RecordQuantity = "specific-force",
     vehicle: Vehicle = "aircraft",
+    turn: Numbers = (0.0, 0.0, 0.0),
+    level: Span | None = None,
     span: Span = (None, None),
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
@@ -163,6 +166,11 @@ def read_record(
     vehicle : str
         ``aircraft``, which flies level somewhere, 1 g upwards along z; ``rocket``, whose axes say nothing of up; or
         ``other``, of which nothing is asked but a possible size.
+    turn : (3,)
+        Rotation vector, rad, of the axes of the columns in base axes, where the instrument's block sits askew.
+    level : tuple, optional
+        First and last time of a stretch at rest, on the record's own clock: the block is turned on by the shortest
+        way, so that the mean specific force there points along z.
     span : tuple
         First and last time of the part that is flown, s on the record's own clock, or a time of day where it has these;
         None is the record's end. What is outside is not checked, but for level flight.
@@ -188,7 +196,7 @@ def read_record(
     """
     return read_flight(
         path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, sample_rate=sample_rate,
-        quantity=quantity, vehicle=vehicle, span=span,
+        quantity=quantity, vehicle=vehicle, instrument=Instrument(turn, level), span=span,
     ).acceleration  # fmt: skip
 
 
@@ -207,6 +215,7 @@ def read_flight(
     sample_rate: float | None = None,
     quantity: RecordQuantity = "specific-force",
     vehicle: Vehicle = "aircraft",
+    instrument: Instrument = Instrument(),
     span: Span = (None, None),
 ) -> FlightRecord:
     """Read a record with the body's rates, and say what was done to it; see :func:`read_record`."""
@@ -216,6 +225,9 @@ def read_flight(
     turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
     if {*names.values()} == {NO_COLUMN}:
         raise InputError("record", 'takes nothing of the file: x, y and z are "0"', "name a column for one of them")
+    if any(instrument.arm) and rates is None:
+        fix = 'name the columns of the body\'s rates, p, q and r ("0" for none), and rate_unit'
+        raise InputError("record.arm", "is given without the rates that the body turns at", fix)
     columns = [*names.values(), *turns.values()]
     table = read_table(path, columns if time is None else [time, *columns])
     if "columns" not in skip:
@@ -235,6 +247,8 @@ def read_flight(
     load = load_unit.size * table.vector(names, len(clock), part)
     turning = rate_unit.size * table.vector(turns, len(clock), part) if turns else np.empty((len(clock), 0))
 
+    axes, mounted = instrument.axes(times, load, turning, table.counted, specific=quantity == "specific-force")
+
     def judge(time: Floats) -> None:
         if "sampling" not in skip:
             check_interval(time, times, stated, brief=vehicle == "other")
@@ -245,7 +259,8 @@ def read_flight(
     def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
         turned = upended(table, names)
         specific = quantity == "specific-force"
-        return Samples(time, load, names, load_unit, specific, vehicle, turned, lambda i: table.place(int(rows[i])))
+        place = lambda i: table.place(int(rows[i]))  # noqa: E731
+        return Samples(time, load, names, load_unit, specific, vehicle, turned, place, axes)
 
     flown = samples(line.time, line.values[:, :3], line.rows)
     known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
@@ -256,7 +271,8 @@ def read_flight(
         notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
     notes += oddities(flown)
     calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
-    new, both = filtered(line.time, calm, conditioning.cutoff, conditioning.resample)
+    turned = np.concatenate([calm[:, k : k + 3] @ axes.T for k in range(0, calm.shape[1], 3)], axis=1)
+    new, both = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
     done = [f"time in {times.unit.text}, as the file says"] if time_unit is None and times.unit.size != 1 else []
     done += line.done
     (done if conditioning.despike else notes).extend(spiked)
@@ -264,6 +280,8 @@ def read_flight(
         done.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
     if conditioning.resample is not None:
         done.append(f"resampled at {conditioning.resample:g} Hz")
+    at_root, carried = instrument.carried(new, both[:, :3], both[:, 3:])
+    done += [*mounted, *carried]
     as_read = line.values[line.read]
     facts = RecordSummary(
         file=os.fspath(path),
@@ -273,7 +291,7 @@ def read_flight(
         span=(float(line.time[0]), float(line.time[-1])),
         whole=times.ends,
         read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
-        flown=curves(new, both[:, :3], both[:, 3:]),
+        flown=curves(new, at_root, both[:, 3:]),
         level=level(flown),
         rate_columns=None if rates is None else (rates.p, rates.q, rates.r),
         gaps=line.gaps,
@@ -282,7 +300,7 @@ def read_flight(
         notes=tuple(notes),
     )
     flown_rates = None if rates is None else PiecewiseLinear(new, both[:, 3:])
-    return FlightRecord(PiecewiseLinear(new, both[:, :3], record=facts), flown_rates)
+    return FlightRecord(PiecewiseLinear(new, at_root, record=facts), flown_rates)
 
 
 def _unit(table: Table, key: str, kind: str, declared: str | None, columns: dict[str, str], *, trust: bool) -> Unit:

@@ -40,13 +40,14 @@ class Samples:
     """Subject of the checks."""
 
     time: Floats  # (t,) s
-    load: Floats  # (t, 3) m/s², base axes
+    load: Floats  # (t, 3) m/s², axes of the columns
     names: dict[str, str]  # columns of x, y and z, with their signs
     unit: Unit  # that the load was read in
     specific: bool  # whether it is specific force, 1 g upwards in level flight
     vehicle: Vehicle
     upended: dict[str, str]  # columns by axis that turn z over
     place: Callable[[int], str]  # where a sample is in its file, in words
+    axes: Floats  # (3, 3) rotation from those of the columns to base axes
 
     def said(self, value: float) -> str:
         """A load, m/s², in the record's unit; in g where that is a count."""
@@ -70,7 +71,7 @@ def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> No
         if "unit" not in skip:
             _check_level(whole, size)
         if "sign" not in skip and whole.vehicle == "aircraft":
-            _check_sign(whole, calm[:, 2], size)
+            _check_sign(whole, calm @ whole.axes[2], size)
     if "dropouts" not in skip:
         _check_dropouts(record)
 
@@ -264,7 +265,7 @@ def oddities(record: Samples) -> Iterator[str]:
             )
     size = np.linalg.norm(record.load, axis=1)
     top = int(size.argmax())
-    along = record.load[top, 0]
+    along = record.load[top] @ record.axes[0]
     if abs(along) > _ALONG * size[top]:
         yield (
             f"the largest load, {record.said(size[top])} at {record.time[top]:g} s, lies along the beam (x is "
@@ -284,7 +285,7 @@ def level(record: Samples) -> Level | None:
     ends = float(record.time[longest.start]), float(record.time[longest.stop - 1])
     if ends[1] - ends[0] < _LASTS:
         return None
-    return Level(*ends, _vector(record.load[longest].mean(axis=0)))
+    return Level(*ends, _vector(record.axes @ record.load[longest].mean(axis=0)))
 
 
 def _vector(values: Floats) -> Vector:

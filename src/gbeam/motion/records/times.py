@@ -54,8 +54,8 @@ class Times:
         """First and last time, s."""
         return float(self.values.min()), float(self.values.max())
 
-    def part(self, span: Span, counted: Callable[[int], str]) -> slice:
-        """Return the samples within a span of the record's own clock."""
+    def part(self, span: Span, counted: Callable[[int], str], keys: tuple[str, str] = ("from", "to")) -> slice:
+        """Return the samples within a span of the record's own clock, which the scenario gives at `keys`."""
         if span == (None, None):
             return slice(0, len(self.values))
         first, last = self.ends
@@ -73,13 +73,13 @@ class Times:
                 raise InputError(f"record.{key}", f"is {what}, and the record lasts {shown}", "give a time of it")
             return float(number)
 
-        begin, end = read("from", span[0], first), read("to", span[1], last)
+        begin, end = read(keys[0], span[0], first), read(keys[1], span[1], last)
         slack = 1e-6 * interval
         inside = np.flatnonzero((self.values >= begin - slack) & (self.values <= end + slack))
         if inside.size < FEWEST:
             problem = f"leaves {counted(inside.size)} from {begin:g} to {end:g} s"
             fix = f"give more of {shown}: {FEWEST} samples at least"
-            raise InputError(f"record.{'from' if span[1] is None else 'to'}", problem, fix)
+            raise InputError(f"record.{keys[span[1] is not None]}", problem, fix)
         return slice(int(inside[0]), int(inside[-1]) + 1)
 
 

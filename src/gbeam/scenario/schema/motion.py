@@ -114,6 +114,11 @@ class Flight(Table):
     record: Record | None = optional("a measured record: { file, time, x, y, z, unit }; or acceleration")
     acceleration: Components | None = optional("profiles: { x, y, z }, those left out zero; or record")
     smoothing: Time = Field(default=0.0, description="width of the kernel that rounds the corners; 0 leaves them sharp")
+    scale: Ratio = Field(
+        default=1.0,
+        description="level factor of a test, such as 1.25: accelerations are flown so many times as large, gravity in "
+        "a specific force included, and limits hold for these; body rates are flown as they are recorded",
+    )
 
     @model_validator(mode="after")
     def _one_source(self) -> Flight:

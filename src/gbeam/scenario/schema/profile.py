@@ -33,12 +33,14 @@ from gbeam.scenario.schema.fields import (
     Growth,
     Jerk,
     Moment,
+    Place3,
     Quantity,
     Speed,
     Table,
     Time,
     Torque,
     TorqueRate,
+    Turn3,
     optional,
     refuse,
     wrong,
@@ -237,6 +239,19 @@ class Record(Table):
     q: str | None = optional('column of the body rate about y; "-" and "0" as for x, y and z')
     r: str | None = optional('column of the body rate about z; "-" and "0" likewise')
     rate_unit: _RateUnit | None = optional("unit of p, q and r")
+    turn: Turn3 = Field(
+        default=(0.0, 0.0, 0.0),
+        description="rotation vector of the axes that x, y and z name in base axes, where the instrument's block sits "
+        "askew",
+    )
+    level: tuple[Moment, Moment] | None = optional(
+        "first and last time of a stretch at rest and level, on the record's own clock: the block is turned on by the "
+        "shortest way, so that the specific force there points along z"
+    )
+    arm: Place3 = Field(
+        default=(0.0, 0.0, 0.0),
+        description="from the instrument to the specimen's root, base axes: by p, q and r it adds α × r + ω × (ω × r)",
+    )
     begin: Moment | None = optional(
         "first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
         "its times are times of day; the record's first if left out",

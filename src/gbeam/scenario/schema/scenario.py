@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
@@ -22,6 +22,7 @@ from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, S
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
 from gbeam.printable import advise, shortened, unprintable
 from gbeam.questions import QUESTIONS
+from gbeam.results.result import level_words
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -278,6 +279,17 @@ class Environments(Titled):
     sweep: Sweep | None = optional("many cases, for gbeam sweep")
 
     _source: Source | None = PrivateAttr(None)
+
+    def heading(self, varied: Collection[str] = ()) -> str:
+        """Title, and flights at another level than their own: ``8 g turn; flight × 1.25``; none of those at paths that
+        are `varied`.
+        """
+        levels = [
+            level_words(name, each.scale)
+            for name, each in self.motion.items()
+            if isinstance(each, Flight) and each.scale != 1 and f"motion.{name}.scale" not in varied
+        ]
+        return "; ".join(filter(None, [self.title, *levels]))
 
     @property
     def source(self) -> Source | None:

@@ -1,0 +1,118 @@
+"""Instrument of a record: how its block is turned, given or found at rest, and the way from it to the root."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gbeam.arrays.types import Floats, Numbers
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.errors import InputError
+from gbeam.guards.checks import vector
+from gbeam.motion.flight import body_rates
+from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion.records.times import Span, Times
+from gbeam.motion.rigid import moved, rotation_of
+from gbeam.results.parts import Base
+
+_SPREAD, _DRIFT = 0.05, 0.02  # g: of the load at rest about its mean, and between the means of both halves
+_TURNING = math.radians(2)  # rad/s, of a gyro's offset at most
+_SIZE = 0.03  # of 1 g: scale error of an accelerometer at most
+_TILT = math.radians(45)  # beyond that the shortest way is not the block's
+_REST = "give first and last time of a stretch in which all stands still and level"
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """Accelerometers and gyros of a record on one block.
+
+    Parameters
+    ----------
+    turn : (3,)
+        Rotation vector of the block's axes in base axes, rad.
+    level : tuple or None
+        First and last time of a stretch at rest, as of a record's span. The block is turned by the shortest way on, so
+        that the mean specific force there points along z. A turn about the vertical is not found.
+    arm : (3,)
+        From the block to the specimen's root, base axes, m.
+    """
+
+    turn: Numbers = (0.0, 0.0, 0.0)
+    level: Span | None = None
+    arm: Numbers = (0.0, 0.0, 0.0)
+
+    def axes(
+        self, times: Times, load: Floats, rates: Floats, counted: Callable[[int], str], *, specific: bool
+    ) -> tuple[Floats, list[str]]:
+        """Return the rotation matrix from the block's to base axes, and what is done in words.
+
+        Loads (t, 3), m/s², and rates (t, 3) or (t, 0), rad/s, are in axes of the block.
+        """
+        matrix, done = np.eye(3), list[str]()
+        if np.any(turn := vector("record.turn", self.turn)):
+            matrix = rotation_of(turn)
+            done.append(f"the block's axes are turned by {_words(turn)} in base axes")
+        if self.level is not None:
+            if not specific:
+                problem = "is given, and the record holds acceleration, which is none at rest"
+                raise InputError("record.level", problem, "give the block's turn in its place")
+            stretch = times.part(self.level, counted, ("level[0]", "level[1]"))
+            begin, end = times.values[stretch][[0, -1]]
+            span = f"from {begin:.6g} to {end:.6g} s"
+            tilt = _tilt(load[stretch] @ matrix.T, rates[stretch], span)
+            matrix = rotation_of(tilt) @ matrix
+            done.append(f"levelled by the rest {span}: turned by {_words(tilt)} in base axes")
+        return matrix, done
+
+    def carried(self, time: Floats, load: Floats, rates: Floats) -> tuple[Floats, list[str]]:
+        """Return the load (t, 3), m/s², at the root, and what is done in words; rates (t, 3), rad/s, in base axes.
+
+        Angular accelerations are those that the flight turns with: derivatives of the rates without their corners.
+        """
+        if not any(self.arm):
+            return load, []
+        turning = body_rates(PiecewiseLinear(time, rates))
+        root = moved(Base(load, *turning.derivatives(time)), np.array(self.arm)).a_WO_B
+        most = np.linalg.norm(root - load, axis=1).max() / STANDARD_GRAVITY
+        arm = ", ".join(f"{1e3 * each:.4g}" for each in self.arm)
+        return root, [f"at the root, ({arm}) mm from the instrument: turning adds up to {most:.4g} g"]
+
+
+def _tilt(load: Floats, rates: Floats, span: str) -> Floats:
+    """Rotation vector that makes the mean of a load (t, 3) point along z; InputError unless it is one at rest."""
+    if not np.isfinite(load).all():
+        raise InputError("record.level", f"has cells {span} that hold no number", _REST)
+    in_g, middle = load / STANDARD_GRAVITY, len(load) // 2
+    mean = in_g.mean(axis=0)
+    size, spread = float(np.linalg.norm(mean)), float(np.linalg.norm(in_g.std(axis=0)))
+    drift = float(np.linalg.norm(in_g[:middle].mean(axis=0) - in_g[middle:].mean(axis=0)))
+    rate = float(np.linalg.norm(rates.mean(axis=0))) if rates.size else 0.0
+    if spread > _SPREAD or drift > _DRIFT:
+        moves = f"spreads by {spread:.3g} g about its mean" if spread > _SPREAD else f"drifts by {drift:.3g} g"
+        raise InputError("record.level", f"is no stretch at rest: the load {moves} {span}", _REST)
+    if rate > _TURNING:
+        problem = f"is no stretch at rest: the body turns at {math.degrees(rate):.3g} deg/s {span}"
+        raise InputError("record.level", problem, _REST)
+    if abs(size - 1) > _SIZE:
+        problem = f"is no stretch at rest: the load is {size:.4g} g {span}, and at rest 1 g"
+        raise InputError("record.level", problem, f"{_REST}; or mend the unit")
+    axis, angle = np.cross(mean, [0.0, 0.0, 1.0]), float(np.arctan2(np.hypot(*mean[:2]), mean[2]))
+    if angle > _TILT:
+        problem = f"turns the block by {math.degrees(angle):.4g} deg: the load {span} is {_listed(mean)} g"
+        fix = "say by the columns of x, y and z, or by turn, how the block sits: level finds what is left, below 45 deg"
+        raise InputError("record.level", problem, fix)
+    sine = float(np.linalg.norm(axis))
+    return axis * (angle / sine) if sine else axis
+
+
+def _words(turn: Floats) -> str:
+    """Rotation vector as an angle about an axis."""
+    angle = float(np.linalg.norm(turn))
+    return f"{math.degrees(angle):.4g} deg" + (f" about {_listed(turn / angle)}" if angle else "")
+
+
+def _listed(values: Floats) -> str:
+    return f"({', '.join(f'{each:.3g}' for each in values)})"

@@ -1,0 +1,26 @@
+"""Rigid bases: rotations, and the motion at another point."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.types import Floats
+from gbeam.results.parts import Base
+
+
+def moved(base: Base, offset: Any) -> Base:
+    """Return the motion at another point (3,) m of the same rigid base: a + α × r + ω × (ω × r)."""
+    xp = namespace(base.a_WO_B, base.w_WB_B, offset)
+    r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)
+    turning = xp.cross(base.alpha_WB_B, r) + xp.cross(base.w_WB_B, xp.cross(base.w_WB_B, r))
+    return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)
+
+
+def rotation_of(turn: Any) -> Floats:
+    """Rotation matrix of a rotation vector, rad."""
+    from scipy.spatial.transform import Rotation  # 0.2 s to import, which few motions need
+
+    return np.asarray(Rotation.from_rotvec(turn).as_matrix())
