@@ -81,7 +81,11 @@ def test_system_is_done_within_its_tolerance(name: str) -> None:
     assert not gbeam.describe(case).warnings
     answer = run(name)
     (response,) = answer.responses.values()
-    assert response.outcome == "done" and response.error_estimate <= case.response.tolerance
+    assert response.outcome == "done" and response.errors.place.total <= case.response.tolerance
+    # Of deflections what plate action would change, if clamps hold the strips flat, is above it and warned of.
+    assert response.errors.displacement.step <= case.response.tolerance / 3
+    if response.error_estimate > case.response.tolerance:
+        assert any(warning.startswith("deflections are wrong") for warning in response.warnings)
     assert_all_known(answer)
 
 

@@ -219,12 +219,12 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
         prepared = poses = by_steps = traced = described = None
 
         @property
-        def moved(self) -> np.ndarray:
-            return vector(self.trajectory.q)
+        def moved(self) -> list[np.ndarray]:
+            return [vector(self.trajectory.q)]
 
         @property
         def peaks(self) -> list[np.ndarray]:
-            return [peaks_of_coordinates(self.trajectory, self.moved, vector)] * 2
+            return [peaks_of_coordinates(self.trajectory, self.moved[0], vector)] * 2
 
         def loads(self, stride: int) -> list[np.ndarray]:
             return []

@@ -165,7 +165,7 @@ def test_a_coarser_mesh_under_a_body_answers_as_its_own_system() -> None:
         gb.simulate(with_body(each, "seat"), shock, duration=0.03, step=1e-4) for each in (fine, coarse.structure)
     )
     sizes = [np.linalg.norm(each, axis=-1).max() for each in (ran.place - rough.place, ran.place - ran.place[0])]
-    assert ran.errors.displacement.mesh == pytest.approx(sizes[0] / sizes[1], rel=0.02)
+    assert ran.errors.place.mesh == pytest.approx(sizes[0] / sizes[1], rel=0.02)
     force = [np.linalg.norm(each, axis=-1).max() for each in (ran.ground_force - rough.ground_force, ran.ground_force)]
     assert 0.5 < ran.errors.loads.mesh * force[1] / force[0] < 3
     assert any("the mesh, most of strip; mesh it finer" in each for each in ran.warnings)
@@ -227,9 +227,9 @@ def test_errors_of_a_system_are_those_of_more_modes() -> None:
         np.linalg.norm(a - b, axis=-1).max() / np.linalg.norm(b, axis=-1).max()
         for a, b in ((few.ground_force, many.ground_force), (few.ground_moment, many.ground_moment))
     )
-    assert place > 1e-4 and place / 2 < few.errors.displacement.shapes < 2 * place
+    assert place > 1e-4 and place / 2 < few.errors.place.shapes < 2 * place
     assert force > 0.01 and max(force, moment) / 2 < few.errors.loads.shapes < 2 * max(force, moment)
     stress = [np.abs(each.solids["strip"].von_mises).max() for each in runs]
     assert few.errors.stress.shapes > abs(stress[0] / stress[1] - 1) / 2
-    assert many.errors.displacement.shapes < place / 10
+    assert many.errors.place.shapes < place / 10
     assert few.errors.beams == ("strip",) and "the mesh of strip is not judged" in few.errors.note

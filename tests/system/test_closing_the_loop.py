@@ -15,4 +15,4 @@ def test_the_regulator_holds_on_the_exact_model() -> None:
     angle, loop = response.coordinate("axis.angle"), response.loop
     assert abs(angle[len(angle) // 2]) < 5e-3 and abs(angle[-1]) < 1e-5
     assert np.abs(loop.applied).max() == 20.0 and 0.2 < loop.saturated[0] < 0.4
-    assert response.errors.displacement.slender < 1e-4
+    assert response.errors.place.slender < 1e-4

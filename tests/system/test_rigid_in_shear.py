@@ -30,7 +30,7 @@ def test_places_at_rest_state_what_twist_and_shear_add(material: gb.Material) ->
     moved = np.linalg.norm(thick.displacement - rigid.displacement, axis=-1).max()
     true = moved / np.linalg.norm(rigid.displacement, axis=-1).max()
     assert true > 1  # the arm goes down more by the foot's twist than by bending
-    assert rigid.errors.displacement.beam_theory == pytest.approx(true, rel=1e-5)
+    assert rigid.errors.place.beam_theory == pytest.approx(true, rel=1e-5)
     assert rigid.errors.theory[0].startswith("twist") and ("assumed" in rigid.errors.theory[0]) == (material is UNKNOWN)
 
 

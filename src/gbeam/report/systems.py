@@ -95,15 +95,19 @@ def _others(facts: Facts, *told: str) -> Block:
 
 
 def errors_of_system(errors: Facts) -> Blocks:
-    """Errors of the points' places, and those that every body brings."""
-    displacement = errors["displacement"]
-    if any(known(each) > 0 for each in displacement.values()):
-        yield Sentence(f"estimated error {errors_in_words(displacement)} of the largest displacement")
+    """Errors of deflections and of the points' places, and those that every body brings."""
+    deflection, place = errors["displacement"], errors["place"]
+    if deflection != place and any(known(each) > 0 for each in deflection.values()):
+        yield Sentence(f"estimated error {errors_in_words(deflection)} of a body's largest deflection")
+    if any(known(each) > 0 for each in place.values()):
+        of_places = "" if deflection == place else "of places "
+        yield Sentence(f"estimated error {of_places}{errors_in_words(place)} of the largest displacement")
     if errors.get("note"):
         yield Sentence(errors["note"], "faint")
     count = len(errors.get("beams", ()))
     rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
-    shares = {"shapes and model": "by_beam:%", "root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
+    shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
+    shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
     cells = {"body": "beams", **shares, "beam theory": "theory"}
     yield table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])

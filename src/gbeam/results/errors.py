@@ -99,7 +99,14 @@ class Errors(Part):
 class SystemErrors(Part):
     """Estimated errors of a system's answer, in all and as each of its beams brings them."""
 
-    displacement: ErrorEstimate = part("of the points' places", default_factory=ErrorEstimate)
+    displacement: ErrorEstimate = part(
+        "of the displacement of a body's points relative to its root, over its largest, the largest of all bodies; of "
+        "places where no body deforms",
+        default_factory=ErrorEstimate,
+    )
+    place: ErrorEstimate = part(
+        "of the points' places in axes of the ground, over the largest displacement", default_factory=ErrorEstimate
+    )
     loads: ErrorEstimate = part(
         "of the force and moment at the root of a beam, the largest of all", default_factory=ErrorEstimate
     )
@@ -110,11 +117,15 @@ class SystemErrors(Part):
     beams: tuple[str, ...] = labels("beam that is judged", "judged", key="", default=())
     by_beam: Floats = quantity(
         "",
-        "estimated error that the beam's shapes and model bring",
+        "estimated error of places that the beam's shapes and model bring",
         "judged",
         note="alone; together they may be more or less",
         empty=True,
     )
+    displacement_by_beam: Floats = quantity(
+        "", "estimated error of the displacement of the beam's points relative to its root, of its largest", "judged",
+        empty=True,
+    )  # fmt: skip
     loads_by_beam: Floats = quantity(
         "",
         "estimated error of the force and moment at the beam's root, the larger of both, of the largest there",
@@ -141,9 +152,9 @@ class SystemErrors(Part):
     def __repr__(self) -> str:
         errors = zip(self.beams, self.by_beam, strict=True)
         by_beam = (f"{name} {percent(error)}" for name, error in errors if not math.isnan(error))
-        named = ("displacement", "loads", "stress") if self.beams else ("displacement",)
+        named = ("displacement", "place", "loads", "stress") if self.beams else ("displacement",)
         lines = [f"{error}: {getattr(self, error)}" for error in named]
-        lines.insert(1, ", ".join(by_beam))
+        lines.insert(2, ", ".join(by_beam))
         theories = zip(self.beams, self.theory, strict=True)
         lines += [f"beam theory of {name}: {words}" for name, words in theories if words]
         lines.append(self.note)
@@ -300,8 +311,9 @@ class Oscillating(Noted):
 class StepErrors:
     """Estimated errors of the time steps as fractions of the largest size; NaN where there is no estimate."""
 
-    displacement: float = math.nan  # of the tip
+    displacement: float = math.nan  # of the tip, or the largest of `moved`
     loads: float = math.nan  # of the root's force and moment, the larger of both
     stress: float = math.nan
     each: tuple[float, ...] = ()  # of force, moment and stress of every beam
     peaks: tuple[float, ...] = ()  # of the largest values of these
+    moved: tuple[float, ...] = ()  # of the histories of displacements of a run

@@ -299,8 +299,9 @@ class SystemResponse(_Placed, Driven, Figured[str]):
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
     errors: SystemErrors = part(
-        "of places, root loads and stress, as fractions of the largest", name="error_", default_factory=SystemErrors
-    )
+        "of deflections, places, root loads and stress, as fractions of the largest", name="error_",
+        default_factory=SystemErrors,
+    )  # fmt: skip
     residual_from: float = fact(
         "start of the residual", "s", optional=True, note="NaN where not given", default=math.nan
     )
@@ -320,9 +321,14 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         """Length of the vector of half peak-to-peak of every point, (p,) m; None where there is no residual."""
         return None if self.residual_amplitude is None else np.linalg.norm(self.residual_amplitude, axis=-1)
 
-    @declared("", "estimated error in all, as a fraction of the largest displacement", role="fact")
+    @declared(
+        "", "estimated error in all of a body's displacement relative to its root, as a fraction of its largest, the "
+        "largest of all bodies; of places where no body deforms", role="fact",
+    )  # fmt: skip
     def error_estimate(self) -> float:
-        """Estimated error in all; that of the steps alone where no more is known, NaN where there is none."""
+        """Estimated error in all of deflections, or of places where no body deforms; that of the steps alone where no
+        more is known, NaN where there is none.
+        """
         total, step = self.errors.displacement.total, self.errors.displacement.step
         return step if math.isnan(total) else total
 
@@ -471,8 +477,9 @@ class SystemRest(_Placed, Decided, Figured[str]):
 
     accelerated: tuple[Accelerated, ...] = accelerated()
     errors: SystemErrors = part(
-        "of places, root loads and stress, as fractions of the largest", name=None, default_factory=SystemErrors
-    )
+        "of deflections, places, root loads and stress, as fractions of the largest", name=None,
+        default_factory=SystemErrors,
+    )  # fmt: skip
     assembly: Assembly | None = part(
         "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
     )

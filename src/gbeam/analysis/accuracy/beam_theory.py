@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import PLACE, Departures, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import MOVED, Departures, Posed, Quantity, Reading, State, Within
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
@@ -83,7 +83,7 @@ def beyond(
                 truth = again(stiff if plate.any() else thick)
             for quantity, values in without.items():
                 sizes[quantity] = max(sizes.get(quantity, 0.0), largest(truth[quantity] - values))
-                if len(of.time) > 1 and quantity != PLACE:
+                if len(of.time) > 1 and quantity[1] not in MOVED:
                     apart = peaks_apart(of.time, values, truth[quantity])
                     peaks[quantity] = max(peaks.get(quantity, 0.0), apart)
     except (ComputationError, np.linalg.LinAlgError):

@@ -21,10 +21,12 @@ from gbeam.numerics.balance import balanced, loose
 from gbeam.numerics.eigen import UNSYMMETRIC, symmetric, symmetric_modes
 
 IntArray = NDArray[np.int_]
-Quantity = tuple[str, str]  # a body or "", and the name of what is read: force, moment, stress, place
+Quantity = tuple[str, str]  # a body or "", and the name of what is read: deflection, force, moment, stress, place
 Reading = Mapping[Quantity, Floats]  # over time, (t, ...)
 State = tuple[Floats, Floats]  # coordinates and rates, (n,) each
 PLACE: Quantity = ("", "place")
+DEFLECTION = "deflection"  # of a body, relative to its root
+MOVED = PLACE[1], DEFLECTION  # whose peaks are not judged apart
 LOOKED = 61  # times at which M, C and K are found; between them they are straight lines
 RESOLVED = 2.5  # rad between two samples: a mode that turns faster follows statically
 PARAMETERS = tuple(f".e{k}" for k in range(4))  # ends of the names of a ball's unknowns

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, Lacking, largest
-from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading
+from gbeam.analysis.accuracy.correction import DEFLECTION, MOVED, Quantity, Reading
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.plausibility import of_first_order
@@ -105,14 +105,16 @@ UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor mat
 
 def negligible(sizes: Mapping[Quantity, float], body: str, length: float, inertia: float = 0.0) -> set[Quantity]:
     """Quantities of a body that are rounding: root force and moment compared with one another (by `length`, m) and
-    with the body's inertia force `inertia`, N; normal stress compared with the shear stress.
+    with the body's inertia force `inertia`, N; normal stress with the shear stress; deflection with the length.
     """
     references = {
         "force": max(sizes[body, "moment"] / length, inertia),
         "moment": max(sizes[body, "force"], inertia) * length,
         "stress": sizes.get((body, "sheared"), 0.0),
     }
-    return {(body, what) for what, reference in references.items() if sizes[body, what] <= NOTHING * reference}
+    nothing = {(body, what) for what, reference in references.items() if sizes[body, what] <= NOTHING * reference}
+    bent = sizes.get((body, DEFLECTION), math.inf)
+    return nothing | ({(body, DEFLECTION)} if bent <= UNMOVED * length else set())
 
 
 def unjudged(structure: Structure) -> str:
@@ -161,7 +163,8 @@ class Judgement(NamedTuple):
             estimate = estimate.adding(friction=0.0 if key in self.nothing else self.friction[key])
         theory, size = self.theory.sizes.get(key, math.nan), self.sizes[key]
         estimate = estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
-        return estimate if self.time is None or key == PLACE else replace(estimate, peak=self.peak(key, estimate.total))
+        peaks = self.time is not None and key[1] not in MOVED
+        return replace(estimate, peak=self.peak(key, estimate.total)) if peaks else estimate
 
     def peak(self, key: Quantity, total: float) -> float:
         """Error of the largest values of a quantity over time, whenever they are reached: the sum of the differences

@@ -118,15 +118,15 @@ class StructureRun(Run):
         return errors, doubts + effort(settings, len(self.trajectory.time) - 1, stride)
 
     @cached_property
-    def moved(self) -> Floats:
+    def moved(self) -> list[Floats]:
         """Displacement of the tip, (t, 3) m."""
-        return self.posed.tip(self.trajectory.q)
+        return [self.posed.tip(self.trajectory.q)]
 
     @cached_property
     def peaks(self) -> list[Floats]:
         """Peaks of the tip's displacement and of the root's moment, (4,) each."""
         tip, moment = self.posed.tip, self.posed.moment
-        histories = (self.moved, tip), (moment(self.trajectory.q), moment)
+        histories = (self.moved[0], tip), (moment(self.trajectory.q), moment)
         return [peaks_of_coordinates(self.trajectory, values, of) for values, of in histories]
 
     def loads(self, stride: int) -> list[Floats]:

@@ -66,6 +66,10 @@ class Run(ABC):
         """True if automatic steps are refined until errors of loads are small, too."""
         return True
 
+    def aims(self, aim: float, enough: float) -> list[float]:
+        """Errors of each history that :attr:`moved` at which automatic steps aim; `enough` is the largest."""
+        return [aim] * len(self.moved)
+
     @property
     def whole(self) -> bool:
         """True if the run came to its end."""
@@ -73,8 +77,8 @@ class Run(ABC):
 
     @property
     @abstractmethod
-    def moved(self) -> Floats:
-        """Displacement of the tip, or of all points side by side, (t, 3 p) m."""
+    def moved(self) -> Sequence[Floats]:
+        """Displacement of the tip, or of each body's points and of all places side by side, (t, 3 p) m each."""
 
     @property
     @abstractmethod

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -79,24 +79,27 @@ def left(runs: Sequence[Run], differences: Sequence[float], highest: float) -> f
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated errors of the last of two or three runs: by the order observed, and by the scheme's order."""
+    """Estimated errors of the last of two or three runs, of each history that `moved` and of peaks: by the order
+    observed, and by the scheme's order.
+    """
 
-    tip: float
+    moved: tuple[float, ...]
     peaks: float
-    promised_tip: float
+    promised: tuple[float, ...]
     promised_peaks: float
 
     @staticmethod
     def of(runs: Sequence[Run], order: int) -> Estimate:
         """Estimate from runs with falling steps, by a scheme of an order."""
-        differences = [difference(a.moved, b.moved, ratio(a, b)) for a, b in pairwise(runs)]
+        pairs = [(ratio(a, b), a.moved, b.moved) for a, b in pairwise(runs)]
+        differences = [[difference(a, b, jump) for a, b in zip(*both, strict=True)] for jump, *both in pairs]
         peaks = max((_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True)), default=0.0)
         jump, highest = ratio(*runs[-2:]), min(order, HIGHEST_ORDER)
-        tip = left(runs, differences, highest)
+        moved = tuple(left(runs, of_history, highest) for of_history in zip(*differences, strict=True))
         return Estimate(
-            tip,
-            peaks * share(runs, differences, order),
-            tip if runs[-1].bends else differences[-1] / (jump**highest - 1),
+            moved,
+            peaks * share(runs, [each[0] for each in differences], order),
+            moved if runs[-1].bends else tuple(each / (jump**highest - 1) for each in differences[-1]),
             peaks / (jump**order - 1),
         )
 
@@ -108,9 +111,10 @@ def _apart(coarse: Floats, fine: Floats) -> float:
 
 def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
     """Errors of the last run: of displacements, of the roots' loads and of stress, which are NaN if not known."""
-    displacement = Estimate.of(runs, order).tip
+    moved = Estimate.of(runs, order).moved
+    known = StepErrors(max(moved), moved=moved)
     if not all(run.whole for run in runs[-2:]):
-        return StepErrors(displacement)
+        return known
     runs, differences, of_peaks = runs if runs[0].whole else runs[-2:], [], []
     for coarse, fine in pairwise(runs):
         stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
@@ -119,14 +123,14 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
         of_peaks.append([_peaks_apart(time, a, b) for a, b in zip(*both, strict=True)])
     errors = [left(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
     if not errors:
-        return StepErrors(displacement)
+        return known
     if len(runs) > 2:  # peaks may agree by chance: as much is left as the order says of the runs before
         times = ratio(*runs[:2]) ** order
         of_peaks[-1] = [max(now, before / times) for before, now in zip(*of_peaks[-2:], strict=True)]
     peaks = tuple(left(runs, each, 4 / order) for each in zip(*of_peaks, strict=True))
     # Force, moment and stress of each body in turn.
     loads, stress = max(errors[::3] + errors[1::3]), max(errors[2::3], default=math.nan)
-    return StepErrors(displacement, loads, stress, tuple(errors), peaks)
+    return replace(known, loads=loads, stress=stress, each=tuple(errors), peaks=peaks)
 
 
 def _peaks_apart(time: Floats, coarse: Floats, fine: Floats) -> float:

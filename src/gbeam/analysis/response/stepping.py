@@ -153,21 +153,21 @@ def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = M
     are within their aims, and those of the root's loads, if followed, within a third of the tolerance (by LOADS_STEPS
     at most). Where the results' steps are as many as `limit`, a third of the tolerance is the aim of all.
     """
-    aims = settings.aim, settings.aim_of_peaks
+    aims, third = (settings.aim, settings.aim_of_peaks), settings.tolerance / 3
     if round(settings.duration / coarse) == limit:
-        aims = settings.tolerance / 3, settings.tolerance / 3
+        aims = third, third
 
     def refined(step: float) -> tuple[float, str]:
         return step, f"refining the step to {1e3 * step:.3g} ms"
 
     runs = [(yield 2 * coarse, "integrating"), (yield refined(coarse))]
     while True:
-        left, promised = _left(runs[-3:], order, aims)
+        left, promised = _left(runs[-3:], order, aims, third)
         both, new = runs[-2].whole and runs[-1].whole, runs[-1]
         if both and promised <= 1 and (more := _check_needed(runs, left)):
             checked = yield more, f"checking with {1e3 * more:.3g} ms"
             runs = sorted([*runs, checked], key=lambda run: -run.step)
-            left, _ = _left(runs[-3:], order, aims)
+            left, _ = _left(runs[-3:], order, aims, third)
         excess, most = promised, limit
         if both and left <= 1 and not new.missed and not (new.bends and len(runs) < 3):
             errors = of_everything(runs[-3:], order)
@@ -188,10 +188,15 @@ def finer_by(excess: float, order: int) -> int:
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
-def _left(runs: Sequence[Run], order: int, aims: tuple[float, float]) -> tuple[float, float]:
-    """Larger of the errors of tip and peaks over their aims: by the order observed, and by the scheme's order."""
-    error, (tip, peaks) = Estimate.of(runs, order), aims
-    return max(error.tip / tip, error.peaks / peaks), max(error.promised_tip / tip, error.promised_peaks / peaks)
+def _left(runs: Sequence[Run], order: int, aims: tuple[float, float], enough: float) -> tuple[float, float]:
+    """Largest of the errors of displacements and peaks over their aims: by the order observed, and by the scheme's."""
+    error, (aim, of_peaks) = Estimate.of(runs, order), aims
+    each = runs[-1].aims(aim, enough)
+    both = (error.moved, error.peaks), (error.promised, error.promised_peaks)
+    left, promised = (
+        max(peaks / of_peaks, *(a / b for a, b in zip(moved, each, strict=True))) for moved, peaks in both
+    )
+    return left, promised
 
 
 def _check_needed(runs: Sequence[Run], left: float) -> float | None:

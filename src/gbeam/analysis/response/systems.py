@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import PLACE, pieces
+from gbeam.analysis.accuracy.beam_theory import largest
+from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, Quantity, pieces
+from gbeam.analysis.accuracy.estimate import UNMOVED
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks, system_peaks
@@ -27,9 +29,9 @@ from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of, steps_to_try
-from gbeam.analysis.system.accuracy import UNSMOOTHED, doubts, system_errors, unmoved
+from gbeam.analysis.system.accuracy import UNSMOOTHED, doubts, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import Carried, beams_of, deflection, histories, loads_of, meshes_of
+from gbeam.analysis.system.histories import Carried, beams_of, deflection, deflections, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, in_words, started, started_traced, unknown_at_start
 from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.solution import Solution
@@ -50,11 +52,12 @@ from gbeam.motion.protocol import Motion, level_factor, notes_on
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
-from gbeam.results.errors import ErrorEstimate, StepErrors, SystemErrors
+from gbeam.results.errors import StepErrors, SystemErrors
 from gbeam.results.parts import Loads
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
 
+LONG = 3_000  # steps: more of them follow deflections within the tolerance only
 LOOKS = 30  # steps of a run at which its mass matrix is checked
 LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
 BEYOND = 1e-8  # of a coordinate's range: a stop is not met by less
@@ -127,16 +130,17 @@ class SystemRun(Run):
         def again(system: System) -> Solution:
             return SystemRun.by_steps(posed.of(system), self.step, partial(tell, progress, say)).every(self.stride)
 
-        stated = SystemErrors(ErrorEstimate(errors.displacement), note=settings.not_estimated)
+        by_step = dict(zip(self._moving, errors.moved, strict=False))
+        stated = unjudged(posed.system, by_step, note=settings.not_estimated)
         if settings.estimate and self.whole:
             tell(progress, say, 0.0)
-            by_step = {(body, load): math.nan for body in judged_bodies(posed.system) for load in LOADS}
-            peaks_by_step = dict(zip(by_step, errors.peaks, strict=False))
-            by_step |= {PLACE: errors.displacement, **dict(zip(by_step, errors.each, strict=False))}
+            of_loads = [(body, load) for body in judged_bodies(posed.system) for load in LOADS]
+            peaks_by_step = dict(zip(of_loads, errors.peaks, strict=False))
+            by_step |= dict(zip(of_loads, errors.each, strict=False))
             starting = partial(unknown_at_start, initial=settings.begin.state)
             rerun = again if posed.system.controllers else None
             rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
-            friction = dict(zip((PLACE, *by_step), rubbed, strict=False))
+            friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
             more: Any = {"peaks_by_step": peaks_by_step, "starting": starting, "friction": friction}
             stated = system_errors(self.every(self.stride), rerun, by_step, **more)
             if not friction and posed.system.rubbing:
@@ -148,15 +152,22 @@ class SystemRun(Run):
         return _described(self, stated, name, warnings)
 
     def _of_friction(self, progress: Progress) -> list[float]:
-        """Errors by the smooth law of friction, of displacements and of :meth:`loads`, which go as the rate below which
+        """Errors by the smooth law of friction, of :attr:`moved` and of :meth:`loads`, which go as the rate below which
         it is smooth: by a run with half of that, or twice where this fails. Empty without friction, or where both fail.
         """
         for times, share in ((0.5, 2.0), (2.0, 1.0)) if self.posed.system.rubbing else ():
             other = SystemRun.by_steps(replace(self.posed, slip=times * self.posed.slip), self.step, progress)
             if other.whole:
-                loads = zip(self.loads(self.stride), other.loads(self.stride), strict=True)
-                return [share * difference(a, b, 1) for a, b in ((other.moved, self.moved), *loads)]
+                mine, others = ((*run.moved, *run.loads(self.stride)) for run in (self, other))
+                return [share * difference(a, b, 1) for a, b in zip(others, mine, strict=True)]
         return []
+
+    def aims(self, aim: float, enough: float) -> list[float]:
+        """Errors of each history that :attr:`moved` at which automatic steps aim; of deflections `enough` in long runs,
+        where small bodies that commands or blows make ring would need many times the steps.
+        """
+        of_deflections = aim if len(self.trajectory.time) <= LONG else enough
+        return [of_deflections] * (len(self.moved) - 1) + [aim]
 
     @cached_property
     def peaks(self) -> list[Floats]:
@@ -185,13 +196,25 @@ class SystemRun(Run):
             return None
         return loop_of(controllers, samples, self.trajectory.time)
 
+    @property
+    def _moving(self) -> list[Quantity]:
+        """Quantities of which :attr:`moved` has the histories."""
+        return [*((name, DEFLECTION) for name in self.posed.system.flexible), PLACE]
+
     @cached_property
-    def moved(self) -> Floats:
-        """Displacements (t, 3 p) m of all points, and of three on each rigid body that has none off its root."""
-        solution = self.every(1)
+    def moved(self) -> list[Floats]:
+        """Displacements (t, 3 p) m: of each flexible body's points relative to its root, and of all points from their
+        first places, with three on each rigid body that has none off its root. Zero where they are rounding.
+        """
+        solution, histories = self.every(1), list[Floats]()
+        for name, q in solution.deformed.items():
+            body = self.posed.system.flexible[name]
+            bent = deflections(body, q)
+            histories.append(np.zeros_like(bent) if largest(bent) <= UNMOVED * body.length else bent)
         places = np.concatenate([solution.read(())[PLACE], solution.turning()], axis=1)
-        moved = np.asarray((places - places[0]).reshape(len(places), -1))
-        return np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved
+        moved = places - places[0]
+        histories.append(np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved)
+        return [np.asarray(each).reshape(len(places), -1) for each in histories]
 
     @cached_property
     def without_mass(self) -> int | None:

@@ -1,5 +1,6 @@
 """Errors of a system's answers from too few shapes of its beams, from their models and from the theory of slender
-beams, of every beam and of all: of places, of the loads at the beams' roots and of their stress.
+beams, of every beam and of all: of deflections relative to the beams' roots, of the loads there and of stress, each
+over the beam's own largest; and of places.
 
 What is computed is put into the exact model of the same system with more shapes. The residual that it leaves there is
 answered by that system's small departures, over time or at rest; in the new coordinates alone it is what shapes lack.
@@ -16,7 +17,7 @@ from types import MappingProxyType
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
-from gbeam.analysis.accuracy.correction import PLACE, Departures, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, Departures, Quantity, Reading, State, Within
 from gbeam.analysis.accuracy.estimate import MORE_SHAPES, UNMOVED, Judgement, cause_and_cure, negligible, percent, worst
 from gbeam.analysis.system.richer import coarser, judged_bodies, left_unjudged, richer, theories_of, with_beams
 from gbeam.analysis.system.solution import Solution
@@ -51,6 +52,25 @@ def unmoved(size: float, place: Floats) -> bool:
     return size <= UNMOVED * np.abs(place).max(initial=0.0)
 
 
+def unjudged(
+    system: System,
+    steps: Mapping[Quantity, float],
+    friction: Mapping[Quantity, float] = MappingProxyType({}),
+    *,
+    rest: float = math.nan,
+    note: str = "",
+) -> SystemErrors:
+    """Errors by the time steps and the law of friction; `rest` is that of all other causes."""
+
+    def error(key: Quantity) -> ErrorEstimate:
+        step = steps.get(key, math.nan)
+        return ErrorEstimate(step, rest, rest, total=step + rest).adding(friction=friction.get(key, math.nan))
+
+    place, bent = error(PLACE), [error((name, DEFLECTION)) for name in system.flexible]
+    worst_bent = max(bent, key=lambda each: each.step, default=place)
+    return SystemErrors(worst_bent if worst_bent.step > 0 else place, place, note=note)
+
+
 def system_errors(
     solution: Solution,
     again: Again | None,
@@ -62,16 +82,14 @@ def system_errors(
     friction: Mapping[Quantity, float] = MappingProxyType({}),
 ) -> SystemErrors:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
-    of the beams' root loads and stress; `steps` has the errors of the time steps, and `peaks_by_step` of their peaks.
-    Richer systems are linearised, beginning as `starting` says, or run by `again` if given (with controllers, at
-    rest). `friction` has the errors of its law.
+    of the beams' deflections, root loads and stress; `steps` has the errors of the time steps, and `peaks_by_step` of
+    their peaks. Richer systems are linearised, beginning as `starting` says, or run by `again` if given (with
+    controllers, at rest). `friction` has the errors of its law.
     """
     judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
-    step = steps.get(PLACE, math.nan)
+    by_steps = partial(unjudged, solution.system, steps, friction)
     if not judged or (again is None and count < FEWEST):
-        none = math.nan if note or judged else 0.0
-        stated = ErrorEstimate(step, none, none, total=step + none)
-        return SystemErrors(stated.adding(friction=friction.get(PLACE, math.nan)), note=note)
+        return by_steps(rest=math.nan if note or judged else 0.0, note=note)
     computed = solution.read(judged)
     place = computed[PLACE]
     sizes = {quantity: largest(values) for quantity, values in computed.items()}
@@ -105,9 +123,9 @@ def system_errors(
                 # The errors of models lie between the system with more shapes of the same models and the exact one.
                 shapes, model = (computed, same), (same, truth)
         except (ComputationError, np.linalg.LinAlgError):
-            return SystemErrors(ErrorEstimate(step), note=FAR)
+            return by_steps(note=FAR)
         if not np.isfinite(truth[PLACE]).all():
-            return SystemErrors(ErrorEstimate(step), note=FAR)
+            return by_steps(note=FAR)
         mesh = _by_mesh(solution, rerun, judged, starting)
         theories = theories_of(solution.system)
         loop = rerun if count > 1 else None
@@ -119,13 +137,17 @@ def system_errors(
     by_mesh = None if mesh is None else (mesh, computed)
     time = solution.of.time if count > 1 else None
     judgement = Judgement(shapes, model, lacking, dict(steps), sizes, nothing, by_mesh, time, peaks_by_step, friction)
+    of_places, bent = judgement.error(PLACE), [judgement.error((name, DEFLECTION)) for name in judged]
+    deforms = any((name, DEFLECTION) not in nothing for name in judged)
     loads, stress = [judgement.loads(name) for name in judged], [judgement.error((name, "stress")) for name in judged]
     return SystemErrors(
-        displacement=judgement.error(PLACE),
+        displacement=worst(bent) if deforms else of_places,
+        place=of_places,
         loads=worst(loads),
         stress=worst(stress),
         beams=tuple(judged),
         by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in alone or [truth]]),
+        displacement_by_beam=np.array([each.total for each in bent]),
         loads_by_beam=np.array([each.total for each in loads]),
         load_peaks_by_beam=np.array([each.peak for each in loads]),
         stress_by_beam=np.array([each.total for each in stress]),
@@ -139,14 +161,18 @@ def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
     """Warnings of errors above a tolerance, with cause and cure, and of answers that are not judged."""
     warnings = [errors.note] if errors.note else []
     for what, size, error, by_beam in (
-        ("places are", "the largest displacement", errors.displacement, errors.by_beam),
+        ("deflections are", "a body's largest", errors.displacement, errors.displacement_by_beam),
+        ("places are", "the largest displacement", errors.place, errors.by_beam),
         ("loads are", "the largest of them", errors.loads, errors.loads_by_beam),
         ("stress is", "its largest", errors.stress, errors.stress_by_beam),
     ):
         parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh, error.friction
-        if not any(part > tolerance for part in parts):
+        if what == "deflections are" and error is errors.place:
             continue
-        share = percent(np.nanmax([error.total, error.step]))
+        stated = max(filter(math.isfinite, (error.total, error.step)), default=0.0)
+        if not stated > tolerance:
+            continue
+        share = percent(stated)
         if not math.isnan(error.peak):
             size += f" at an instant, and in the peak by {percent(error.peak)}"
         if error.step == np.nanmax(parts):

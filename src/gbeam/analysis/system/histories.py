@@ -70,6 +70,11 @@ def histories(
     return out, {name: carried(system, state, name, acting) for name in beams_of(system)}
 
 
+def deflections(body: Structure, q: Array) -> Array:
+    """Displacements (t, p, 3) m of a body's named points relative to its root, by its own coordinates (t, n)."""
+    return body.displacement(q)[:, np.array([*stations_of(body).values()])]
+
+
 def deflection(system: System, point: str, q: Array) -> Array | None:
     """Displacement (t, 3) m of a named point relative to its flexible body's root, by coordinates (t, n); None if the
     point is of a rigid body.
@@ -78,7 +83,7 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
     body = system.bodies[name]
     if not isinstance(body, Structure) or k >= len(stations_of(body)):
         return None
-    return body.displacement(q[:, deforming(system.coordinates, name)])[:, list(stations_of(body).values())[k]]
+    return deflections(body, q[:, deforming(system.coordinates, name)])[:, k]
 
 
 def beams_of(system: System) -> dict[str, Structure]:

@@ -9,8 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import PLACE, IntArray, Posed, Quantity, Reading, Within, looked, pieces
-from gbeam.analysis.system.histories import Carried, carried, loads_of
+from gbeam.analysis.accuracy.correction import (
+    DEFLECTION,
+    PLACE,
+    IntArray,
+    Posed,
+    Quantity,
+    Reading,
+    Within,
+    looked,
+    pieces,
+)
+from gbeam.analysis.system.histories import Carried, carried, deflections, loads_of
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
@@ -50,8 +60,9 @@ class Solution:
         return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.of, shared)
 
     def read(self, bodies: Iterable[str]) -> Reading:
-        """Places (t, p, 3) m of all points and, of each body named, force and moment (t, 3) at the root and the largest
-        normal and von Mises stress over the sections (t,); of a solid the stress (t, c) of `recovery.felt`.
+        """Places (t, p, 3) m of all points and, of each body named, deflections (t, p, 3) m, force and moment (t, 3) at
+        the root and the largest normal and von Mises stress over the sections (t,); of a solid the stress (t, c) of
+        `recovery.felt`.
         """
         tree, of = self.system.tree, self.of
         places, along = list[Floats](), {name: list[Carried]() for name in bodies}
@@ -65,12 +76,13 @@ class Solution:
                     carried_pieces.append(carried(self.system, state, name, acting))
         out: dict[Quantity, Floats] = {PLACE: np.concatenate(places)}
         for name, carried_pieces in along.items():
-            body = self.system.flexible[name]
+            body, q = self.system.flexible[name], np.concatenate([piece.q for piece in carried_pieces])
             loads = loads_of(body, carried_pieces, of.time)
             sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
             stress = loads.stress.max(axis=1)
             if body.recovery is not None:
-                stress = body.recovery.felt(np.concatenate([piece.q for piece in carried_pieces]))
+                stress = body.recovery.felt(q)
+            out[name, DEFLECTION] = deflections(body, q)
             out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
             out |= {(name, "stress"): stress, (name, "sheared"): sheared.max(axis=1)}
         return out
@@ -102,12 +114,16 @@ class Solution:
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
     @property
-    def bends(self) -> dict[str, float]:
-        """Largest bends, as shares of the length, of flexible bodies by name."""
+    def deformed(self) -> dict[str, Floats]:
+        """Coordinates (t, n) of flexible bodies by name."""
         q = np.zeros((len(self.of.time), len(self.system.coordinates)))
         q[:, self.system.tree.free] = self.of.q
-        columns = {name: deforming(self.system.coordinates, name) for name in self.system.flexible}
-        return {name: bend(body, q[:, columns[name]]) for name, body in self.system.flexible.items()}
+        return {name: q[:, deforming(self.system.coordinates, name)] for name in self.system.flexible}
+
+    @property
+    def bends(self) -> dict[str, float]:
+        """Largest bends, as shares of the length, of flexible bodies by name."""
+        return {name: bend(self.system.flexible[name], q) for name, q in self.deformed.items()}
 
     @property
     def left_out(self) -> tuple[str, ...]:
