@@ -267,6 +267,7 @@ def compare(
         yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
         margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,
+        exceeded="" if axes is None else axes.beyond,
         kept_every=centrifuge.kept_every,
         point=chosen,
     )  # fmt: skip
