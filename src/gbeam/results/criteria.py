@@ -199,7 +199,7 @@ class Rule:
         return max(known, key=lambda value: self.use(value[0], bounds), default=values[0])
 
     def use(self, value: float, bounds: tuple[float, float]) -> float:
-        """Return how much of its bounds a value uses: 1 on a bound, more beyond it."""
+        """Return the share of its bounds that a value uses: 1 on a bound, more beyond it."""
         low, high = bounds
         if self.kind == "least":
             return low / value if value > 0 else math.inf
@@ -261,7 +261,7 @@ class Criterion:
 
     @property
     def use(self) -> float:
-        """How much of the limit is used: 1 on it, more beyond it."""
+        """Share of the limit that is used: 1 on it, more beyond it."""
         return RULES[self.name].use(self.value, self.bounds)
 
     @property
@@ -271,7 +271,7 @@ class Criterion:
 
     @property
     def number(self) -> str:
-        """The value, with as many digits as show on which side of its limit it lies."""
+        """Value, with as many digits as show on which side of its limit it lies."""
         rule, size = RULES[self.name], 100 * self.value
         if rule.band or not math.isfinite(size):
             return rule.written(self.value)

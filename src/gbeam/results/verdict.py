@@ -102,10 +102,10 @@ class Verdict:
 
     def _limit(self, *names: str, otherwise: str = "no limit set") -> str:
         """Limit of the first of these criteria, whether it is missed, and those of the others that are missed."""
-        given = {each.name: each for each in self.judged.criteria if each.name in names}
-        own = given.pop(names[0], None)
+        limits = {each.name: each for each in self.judged.criteria if each.name in names}
+        own = limits.pop(names[0], None)
         words = f"({otherwise})" if own is None else f"({_held(own)})"
-        others = [each for each in given.values() if each.passed is not True]
+        others = [each for each in limits.values() if each.passed is not True]
         return words + "".join(f"; missed: {each}" for each in others)
 
     def _largest(self) -> str:
