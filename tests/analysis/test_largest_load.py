@@ -53,8 +53,8 @@ def test_the_tip_further_out_on_the_arm_carries_more(compared: Comparison) -> No
     assert pair.machine == pytest.approx(np.hypot(rate**2 * out, angular * LENGTH), rel=1e-6)
     assert (pair.time_machine, pair.place_machine) == (3.0, "the tip")
     assert pair.ratio == pytest.approx(out / RADIUS, rel=1e-3)
-    assert compared.verdict.startswith(
-        "largest load anywhere on the specimen: flight 10 g at 3.00 s, arm 12.7 g at the tip at 3.00 s (+27 %); tip: "
+    assert compared.findings[0] == (
+        "Largest load: 12.7 g at the tip at 3.00 s, 27 % above the flight's 10 g (no limit set)."
     )
 
 

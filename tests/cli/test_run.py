@@ -82,12 +82,12 @@ def test_stress_yield_and_fatigue(fast: Path, gbeam: Call) -> None:
     compared = answer.json["comparisons"][0]
     margin, fatigue = compared["margin"], compared["fatigue"]
     assert margin["flight"] == pytest.approx(1, abs=4e-3) and margin["machine"] == pytest.approx(1, abs=0.1)
-    assert f"margin on yield {margin['flight']:.3g} in flight" in compared["verdict"]
+    assert any(f"margin on yield {margin['flight']:.3g} in flight" in each for each in compared["lines"])
     assert fatigue["exponent"] == 3 and set(fatigue["machine"]) == {"cycles", "largest_range", "equivalent_range"}
     said = gbeam("run", fast, "--set", f"beam.material.yield_strength={stress / 2}")
     words = " ".join(said.out.split())
-    assert said.status == 0 and "ABOVE YIELD: margin -0.5" in words and "above the yield strength" in words
-    assert "ABOVE YIELD in flight and " in words
+    assert said.status == 0 and "above the yield strength" in words
+    assert "; ABOVE YIELD in flight and on the machine." in words
     resting = gbeam("static", fast, "--json", "--set", material).json["motions"]["flight"]["loads"]
     assert resting["margin"][0] == pytest.approx(1, abs=4e-3) and len(resting["margin"]) == len(resting["stations"])
     heads, row, *_ = gbeam("static", fast, "--set", material).out.partition("force, N")[2].splitlines()
@@ -101,7 +101,9 @@ def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
     # A smaller limit than the arm's geometry allows.
     bad = gbeam("run", fast, *accept, "--set", "motion.spin.accept.spread=0.01 %", "--json", "--ignore-limits")
     assert bad.status == 1 and bad.json["outcome"] == "done"
-    assert bad.err == "gbeam: motion.spin not accepted: spread 0.103 % at the root at 0.00 s (limit 0.01 %)\n"
+    assert (
+        bad.err == "gbeam: motion.spin NOT ACCEPTED: spread of the load +0.1 % at the root at 0.00 s (limit 0.01 %)\n"
+    )
     (comparison,) = bad.json["comparisons"]
     assert comparison["accepted"] is False
     assert [each["passed"] for each in comparison["criteria"]] == [True, True, False]
@@ -111,7 +113,7 @@ def test_accepted_or_not(fast: Path, gbeam: Call) -> None:
 
 def test_accept_in_words(fast: Path, gbeam: Call) -> None:
     answer = gbeam("run", fast, "--set", "motion.spin.accept.followed=90 %")
-    assert answer.status == 0 and "accepted: followed 100 % (at least 90 %)" in answer.out
+    assert answer.status == 0 and "PASS: followed 100 % of the time (limit 90 % or more); largest load" in answer.out
     assert not [line for line in answer.out.splitlines() if line.endswith(" ")]
 
 
@@ -143,7 +145,7 @@ def test_a_short_second_pull_is_accounted_for(pulls: Any) -> None:
     first, second = accounting["peaks"]
     assert first["ratio"] == pytest.approx(1, abs=0.02)
     if second["reason"] is not None:
-        assert "not the 3.55 g at 4.28 s" in comparison["verdict"]
+        assert any(each.startswith("Peaks: 1 of 2 ") for each in comparison["findings"])
         (missed,) = (each for each in accounting["not_followed"] if each["reason"] == second["reason"])
         assert missed["flight_peak"] == pytest.approx(second["load"])
     for each in accounting["not_followed"]:  # what is called below idle is below it
@@ -159,8 +161,8 @@ def test_the_peak_is_that_of_the_whole_flight(pulls: Any) -> None:
     assert tip["time_flight"] == pytest.approx(flown["motions"]["flight"]["tip"]["z"]["time_of_max"], abs=0.01)
     first = comparison["accounting"]["peaks"][0]
     assert first["load"] == pytest.approx(98.0665, rel=1e-3)
-    lost = "flight's load peak of 10 g at 1.50 s is not reproduced"
-    assert comparison["verdict"].startswith(lost) == (abs(first["ratio"] - 1) > 0.05)
+    lost = "the largest peak is missed"
+    assert comparison["verdict"].endswith(lost) == (abs(first["ratio"] - 1) > 0.05)
 
 
 def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
@@ -175,7 +177,7 @@ def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
 def test_files(fast: Path, gbeam: Call, with_figures: None) -> None:
     answer = gbeam("run", fast, "--set", "motion.flight.acceleration.z.level=3 g")
     assert answer.status == 0
-    assert "; tip: flight's peak 0.87" in " ".join(answer.out.split())
+    assert "Tip: 0.87" in answer.out and "Displacement of the tip" not in answer.out
     folder = Path("out/fast")
     pictures = ["tip", "sizes", "tracking_spin", "comparison_spin", "shock_spin"]
     pictures += [f"axes_{each}_spin" for each in ("rate", "acceleration", "jerk")]

@@ -19,8 +19,8 @@ def test_summary_names_what_matters(study: Study) -> None:
     assert "spin (centrifuge): done" in said and "flight: done" in said
     assert "FOAM, newmark, 2000 steps of 1.000 ms; estimated error 0.0010 % (step 0.00080, model 0.00020)" in said
     # Largest while not held: 0.6 m/s² at the end, not the 9 m/s² in between.
-    assert "flight's own load followed within 0.0612 g (1.0 % of it) at 2.000 s" in said
-    assert "target held 0.505 to 0.795 s: below idle" in said
+    assert "largest error of the load while it is followed: 0.0612 g (1.0 %) at 2.000 s" in said
+    assert "target is not the flight's load 0.505 to 0.795 s: below idle" in said
     assert "hub: angle at the end 2.000 rad, largest rate 4.000 rad/s" in said
     verdict = study.comparisons[0].verdict
     assert verdict[1:] in " ".join(said.split())

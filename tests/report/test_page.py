@@ -52,7 +52,7 @@ def test_page_says_what_the_run_says(study: Study) -> None:
     verdict = study.comparisons[0].verdict
     assert verdict[1:] in page and '<span class="badge good">done</span>' in page
     assert "axis 1 acceleration" in page and "89 %" in page
-    assert "Flight's own load followed within 0.0612 g" in page
+    assert "Largest error of the load while it is followed: 0.0612 g" in page
 
 
 def test_page_says_when_the_result_was_written(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -68,8 +68,8 @@ def test_a_band_may_be_wider_one_way() -> None:
     assert (over.value, over.where, over.passed) == (pytest.approx(1.5), "at 10 Hz along y", False)
     assert (under.value, under.where, under.passed) == (pytest.approx(0.5), "at 100 Hz along z", False)
     assert judged(srs=(0.49, 1.6)).passed
-    assert str(over) == "srs +3.52 dB at 10 Hz along y (limit -6.2 dB to +2.92 dB)"
-    assert str(judged(srs=10**0.15)) == "srs -6.02 dB at 100 Hz along z (limit ±3 dB)"
+    assert str(over) == "shock spectrum +3.52 dB at 10 Hz along y (limit -6.2 dB to +2.92 dB)"
+    assert str(judged(srs=10**0.15)) == "shock spectrum -6.02 dB at 100 Hz along z (limit ±3 dB)"
     assert str(judged(damage=2)) == "damage 1.61 of the root (limit 0.5 to 2)"
     assert judged(damage=(0.9, 1.7)).passed and not judged(damage=(1 / 1.7, 1.6)).passed
 
@@ -103,12 +103,12 @@ def test_what_is_not_known_is_not_decided() -> None:
     assert unknown.refusal == "stress unknown (limit 50 %), damage unknown (limit 0.111 to 9)"
     assert state_of("done", [unknown]) == state_of("done", [unknown, Imitation({"tip": 0.06})]) == "not decided"
     missed = Imitation({"stress": 0.5, "tip": 0.01})
-    assert missed.accepted is False and missed.refusal == "tip 5 % (limit 1 %)"
+    assert missed.accepted is False and missed.refusal == "tip +5.0 % (limit 1 %)"
     assert state_of("done", [unknown, missed]) == "not accepted"
     none = PeakPair(flight=0.0, machine=1.26749)
     for machine, words in (
-        (1.26749, "root_moment unknown as flight has none and the machine makes 1.267 N m (limit 50 %)"),
-        (0.0, "root_moment 0 % (limit 50 %)"),
+        (1.26749, "root moment unknown as flight has none and the machine makes 1.267 N m (limit 50 %)"),
+        (0.0, "root moment under 0.1 % (limit 50 %)"),
     ):
         moments = Imitation({"root_moment": 0.5})
         moments.peaks = {"root_moment": replace(none, machine=machine)}

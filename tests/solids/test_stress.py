@@ -148,7 +148,7 @@ def test_where_a_tenth_of_the_nodes_would_be_left_out_the_largest_stress_is_not_
     runs = [gb.simulate(structure, motion, **options) for motion in (turn, machine)]
     compared = gb.compare(*runs, accept={"stress": 0.5, "damage": 9.0})
     assert compared.decision == "not decided" and compared.accepted is None
-    assert "not decided: stress unknown (limit 50 %), damage unknown" in " ".join(comparison_lines(compared))
+    assert "limits not known: stress unknown (limit 50 %), damage unknown" in " ".join(comparison_lines(compared))
     assert gb.compare(*runs, stress_at="middle", accept={"stress": 9.0}).accepted is True
 
 
@@ -352,7 +352,7 @@ def test_a_run_whose_limit_is_not_decided_ends_with_status_1(
     (tmp_path / "s.toml").write_text(UNDECIDED, encoding="utf-8")
     assert main(["run", str(tmp_path / "s.toml"), "--json"]) == 1
     answer = capsys.readouterr()
-    assert "motion.spin not decided: stress unknown (limit 50 %)\n" in answer.err
+    assert "motion.spin NOT DECIDED: stress unknown (limit 50 %)\n" in answer.err
     facts = json.loads(answer.out)
     (compared,) = facts["comparisons"]
     assert (facts["outcome"], facts["state"], compared["accepted"]) == ("done", "not decided", None)

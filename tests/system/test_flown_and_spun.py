@@ -127,13 +127,13 @@ def test_a_run_of_a_system_that_is_not_accepted_fails(tmp_path: Path, capsys: py
     file = tmp_path / "scenario.toml"
     file.write_text(SCENARIO.replace("{structure}", OF_SYSTEM), encoding="utf-8")
     short = ["--set", "response.step=20 ms", "--out", str(tmp_path / "out"), "--report"]
-    assert main(["run", str(file), *short]) == 1
+    assert main(["run", str(file), *short, "--verbose"]) == 1
     printed = capsys.readouterr()
-    assert "motion.centrifuge not accepted: damage" in printed.err
-    assert "  not accepted: damage" in printed.out and "  kept: tip" in printed.out
+    assert "motion.centrifuge NOT ACCEPTED: damage" in printed.err
+    assert "  limits missed: damage" in printed.out and "  limits kept: tip" in printed.out
     assert "from standstill to standstill" in printed.out and "the tip is strip.tip" in printed.out
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    assert "Verdict" in page and "not accepted" in page
+    assert "Verdict" in page and "NOT ACCEPTED: damage" in page
     assert main(["run", str(file), *short, "--set", "motion.centrifuge.accept.damage=5"]) == 0
 
 

@@ -101,9 +101,9 @@ def test_a_scenario_of_a_mesh_on_a_plate_is_judged_by_its_stress(
     machine = MACHINE.replace("control = { gauge = 1, tip = 1 }", 'stress = "0.1 %", control = { "bar.gauge" = 1 }')
     machine = machine.replace('"gauge"', '"bar.gauge"')
     scenario.write_text(text.replace("[response]", joints + machine + "[response]"), encoding="utf-8")
-    assert main(["run", str(scenario), "--out", str(tmp_path / "out"), "--report"]) == 1
+    assert main(["run", str(scenario), "--out", str(tmp_path / "out"), "--report", "--verbose"]) == 1
     printed = capsys.readouterr()
-    assert "bar: von Mises" in printed.out and "not accepted: stress" in printed.err
+    assert "bar: von Mises" in printed.out and "NOT ACCEPTED: stress" in printed.err
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "von Mises stress" in page and "margin" in page
 

@@ -61,7 +61,7 @@ def plan(
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
-    from gbeam.results.criteria import judging
+    from gbeam.results.criteria import in_capitals, judging
 
     origin = provenance(environments, command())
     tables = {name: table for name, table in environments.motion.items() if isinstance(table, schema.Centrifuge)}
@@ -94,7 +94,7 @@ def plan(
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
     refused = [each for each in plans if each.refusal]
     for each in refused:
-        complain(f"motion.{each.name} {each.decision}: {each.refusal}")
+        complain(f"motion.{each.name} {in_capitals(each.decision)}: {each.refusal}")
     return FAILED if refused or (broken and not ignore_limits) else 0
 
 

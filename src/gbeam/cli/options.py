@@ -55,6 +55,10 @@ Report = Annotated[
         "structure in motion; without --out into out/NAME.",
     ),
 ]
+Verbose = Annotated[
+    bool,
+    option("--verbose", "Print what a verdict rests on, too: displacements, loads, limits used, and every peak."),
+]
 
 
 def usual_folder(scenario: Path, ending: str = "") -> Path:
@@ -71,6 +75,7 @@ class Output:
     out: Out = None
     json: Json = False
     report: Report = False
+    verbose: Verbose = False
 
     def folder(self, scenario: Path, *, always: bool = False) -> Path | None:
         """Folder for files, or None: that of --out, or out/NAME for --report and, unless with --json, if `always`.

@@ -78,7 +78,7 @@ def deliver(
         from gbeam.report import lines_of
         from gbeam.report.words import plain
 
-        show_lines(lines_of(type(answers[0]), plain(signed_facts()), **options))
+        show_lines(lines_of(type(answers[0]), plain(signed_facts()), verbose=output.verbose, **options))
         if copy is not None:
             print(printable(f"\n{copy} has these values"))
     files: list[Path] = []

@@ -70,7 +70,7 @@ def _tip(c: Comparison, axis: int) -> Iterator[_Part]:
     lines = {_less(c): stations.trend_difference[:, axis]}
     if c.mismatch is not None and np.isfinite(c.mismatch.tip_bound[axis]):
         envelope = c.mismatch.tip_envelope[:, axis]
-        lines |= {"what a slow mismatch implies": envelope, "and its negative": -envelope}
+        lines |= {"what a slow difference of load implies": envelope, "and its negative": -envelope}
     yield f"tip's trend, below {stations.cutoff:.3g} Hz", "m", "difference", lines
     lines = {c.flight: stations.vibration_flight[:, axis], c.centrifuge: stations.vibration_centrifuge[:, axis]}
     yield f"tip's elastic vibration, above {stations.cutoff:.3g} Hz", "m", "displacement", lines
@@ -103,6 +103,9 @@ def placement(result: Placement, title: str = "") -> Figure:
     measures = tuple(next(iter(result.values.values()), {}))
     bars = {place: 100 * np.array([values[each] for each in measures]) for place, values in result.values.items()}
     panel = Panel(
-        "", x="mismatch over flight's peak, %", bars=Bars(measures, bars), height=max(1.0, 0.3 * len(measures))
+        "",
+        x="difference of the load over flight's peak, %",
+        bars=Bars(measures, bars),
+        height=max(1.0, 0.3 * len(measures)),
     )
     return Figure(title, f"{result.centrifuge} in place of {result.flight}: best and other control points", (panel,))

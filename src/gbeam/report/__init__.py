@@ -54,14 +54,20 @@ def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
     yield Section("Figures", (FIGURES,))
 
 
-def lines_of(kind: type, facts: Facts, **options: Any) -> list[tuple[str, str]]:
-    """Return the lines that a terminal shows of a kind of result, from its JSON, each with its tone."""
+def lines_of(kind: type, facts: Facts, *, verbose: bool = True, **options: Any) -> list[tuple[str, str]]:
+    """Return the lines that a terminal shows of a kind of result, from its JSON, each with its tone.
+
+    Without `verbose` a verdict stands alone, and what it rests on is left out.
+    """
     from gbeam.results.facts import paths_of
     from gbeam.results.study import tree_of_answers  # of every kind, which `gbeam check` does without
 
     title = [Sentence(facts["title"], "verdict")] if facts.get("title") and kind.__name__ in _TITLED else []
     words = {path: each.words for path, each in paths_of(tree_of_answers(kind))}
-    return in_words([*title, *blocks_of(kind.__name__, facts, words, options), *remarks_of(facts)])
+    blocks = list(blocks_of(kind.__name__, facts, words, options))
+    lines = in_words([*title, *blocks, *remarks_of(facts)], verbose=verbose)
+    hidden = not verbose and any(isinstance(block, Section) and block.verbose for block in blocks)
+    return [*lines, ("", ""), ("Everything else: --verbose, --report or --json.", "faint")] if hidden else lines
 
 
 def text(*answers: Result) -> str:

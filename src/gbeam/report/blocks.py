@@ -97,6 +97,7 @@ class Section:
     folded: str = ""  # words that a page shows instead until they are clicked, if any
     detail: bool = False  # whether it is for a page only
     tone: str = ""  # of the title in a terminal
+    verbose: bool = False  # whether a terminal has it with --verbose only
 
 
 Block = Table | Sentence | Items | Verbatim | Place | Section
@@ -232,10 +233,10 @@ def six(value: float | str | None) -> Cell:
     return _cell(value, ".6g")
 
 
-def in_words(blocks: Iterable[Block]) -> list[tuple[str, str]]:
+def in_words(blocks: Iterable[Block], *, verbose: bool = True) -> list[tuple[str, str]]:
     """Return blocks as lines of text, each with its tone; sections and captioned tables stand between empty lines."""
     lines: list[tuple[str, str]] = []
-    for line, tone in _lines(blocks):
+    for line, tone in _lines(blocks, verbose):
         if line or (lines and lines[-1][0]):
             lines.append((line, tone))
     return lines if not lines or lines[-1][0] else lines[:-1]
@@ -244,10 +245,12 @@ def in_words(blocks: Iterable[Block]) -> list[tuple[str, str]]:
 _BLANK = ("", "")
 
 
-def _lines(blocks: Iterable[Block]) -> Iterator[tuple[str, str]]:
+def _lines(blocks: Iterable[Block], verbose: bool) -> Iterator[tuple[str, str]]:
     """Lines of blocks for a terminal, each with its tone; empty ones about sections."""
     for block in blocks:
         match block:
+            case Section(verbose=True) if not verbose:
+                continue
             case Table(detail=False) if block.rows:
                 yield from _rows(block)
             case Sentence():
@@ -258,9 +261,9 @@ def _lines(blocks: Iterable[Block]) -> Iterator[tuple[str, str]]:
             case Verbatim():
                 yield f"  {block.text}", ""
             case Section(detail=False, titled=False):
-                yield from [_BLANK, *_lines(block.blocks), _BLANK]
+                yield from [_BLANK, *_lines(block.blocks, verbose), _BLANK]
             case Section(detail=False):
-                below = ((f"  {line}".rstrip(), tone) for line, tone in _lines(block.blocks))
+                below = ((f"  {line}".rstrip(), tone) for line, tone in _lines(block.blocks, verbose))
                 yield from [_BLANK, (block.title, block.tone), *below, _BLANK]
 
 

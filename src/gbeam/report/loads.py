@@ -148,7 +148,7 @@ def specimen_tables(rigid: Facts) -> Blocks:
     """Tables of the loads of rigid specimens in every motion: at the corners, on the fixture and on the bolts."""
 
     def spread(each: Facts) -> Value:
-        verdicts = {True: (", accepted", "good"), False: (", NOT accepted", "bad"), None: ("", "")}
+        verdicts = {True: (", PASS", "good"), False: (", NOT ACCEPTED", "bad"), None: ("", "")}
         words, tone = verdicts[each.get("within_limit")]
         return Cell(f"{100 * known(each['spread']):.3g} %{words}", tone)
 

@@ -25,9 +25,9 @@ from gbeam.report.blocks import (
     table,
 )
 from gbeam.report.words import known, percent, sentence
-from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, change, in_g
+from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, against, change, in_g
 from gbeam.results.accounting import percent as share_of
-from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
+from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged, in_capitals
 from gbeam.results.machine import AxesResult, Driven, Shortfall
 from gbeam.results.result import Floats, level_words
 
@@ -41,23 +41,22 @@ def tracked(driven: Driven) -> str:
 
 
 def followed(facts: Mapping[str, Any]) -> str:
-    """Words for how well the load follows the target and the flight, from the JSON of both errors."""
+    """Words for the largest error of the load beside the flight and the target, from the JSON of both errors."""
     error, of_flight = facts["tracking_error"], facts.get("flight_error")
     if error["max"] is None or math.isnan(error["max"]):
-        return "the target is held all the time"
-    if of_flight is None:
-        return f"target followed {_within(error)}"
-    if math.isclose(of_flight["max"], error["max"], rel_tol=1e-6, abs_tol=_EXACT):
-        return f"flight's own load followed {_within(of_flight)}"  # the target does not round it
-    return f"target followed {_within(error)}; the flight's own load, whose corners it rounds, {_within(of_flight)}"
+        return "the target is the flight's load at no time"
+    said = f"largest error of the load while it is followed: {_size(of_flight or error)}"
+    if of_flight is None or math.isclose(of_flight["max"], error["max"], rel_tol=1e-6, abs_tol=_EXACT):
+        return said  # the target does not round it
+    return f"{said}; beside the target, which rounds corners: {_size(error)}"
 
 
-def _within(error: Mapping[str, Any]) -> str:
+def _size(error: Mapping[str, Any]) -> str:
     """Words for an error of the load, in g and as a share, and its time."""
     if error["fraction"] is not None and error["fraction"] < _EXACT:
-        return "exactly"
+        return "none"
     share = math.nan if error["fraction"] is None else error["fraction"]
-    return f"within {in_g(error['max'])} ({percent(share)} of it) at {error['time_of_max']:.3f} s"
+    return f"{in_g(error['max'])} ({percent(share)}) at {error['time_of_max']:.3f} s"
 
 
 def ends_line(time: Floats, axes: AxesResult) -> str:
@@ -87,15 +86,13 @@ SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
 
 
 def judged_lines(judged: Judged) -> Iterator[str]:
-    """Say what was accepted, then the accounting."""
-    if judged.criteria:
-        part = f" for {judged.part} only" if judged.part else ""
-        if not judged.accepted:
-            yield f"{judged.decision}{part}: {judged.refusal}"
-        if kept := ", ".join(str(each) for each in judged.criteria if each.passed):
-            yield f"{'accepted' if judged.accepted else 'kept'}{part}: {kept}"
+    """Yield the limits that are missed, not known, kept and not judged; then the accounting."""
+    part = f" for {judged.part} only" if judged.part else ""
+    for heading, passed in (("limits missed", False), ("limits not known", None), ("limits kept", True)):
+        if said := ", ".join(str(each) for each in judged.criteria if each.passed is passed):
+            yield f"{heading}{part}: {said}"
     if judged.not_judged:
-        yield f"not judged, as it needs the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
+        yield f"limits that need the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
     yield from accounting_lines(judged.accounting)
 
 
@@ -103,6 +100,7 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
     """Yield lines on up to :data:`SHOWN` load peaks, first chosen those not reproduced, then the largest, in order of
     time; on the load over the specimen; and on as many of the longest stretches that are not followed.
     """
+    yield f"followed means within {against(accounting)}"
     listed = sorted(accounting.peaks, key=lambda peak: (not peak.reason, -peak.load))[:SHOWN]
     for peak in sorted(listed, key=lambda peak: peak.time):
         # Where the size hides a difference of direction, that is said too.
@@ -134,6 +132,13 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
         )
     if len(stretches) > SHOWN:
         yield f"not followed {len(stretches) - SHOWN} times more: see --json"
+    if accounting.preloads:
+        worst = max(accounting.preloads, key=lambda each: each.load - max(each.flight, accounting.idle))
+        idle = f", idle {in_g(accounting.idle)}" if accounting.idle else ""
+        yield (
+            f"the machine loads the specimen more than the flight: {in_g(worst.load)} at {worst.time:.2f} s "
+            f"(flight {in_g(worst.flight)}{idle})"
+        )
 
 
 def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
@@ -150,21 +155,22 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
 
 
 def machine_plan(facts: Facts) -> Blocks:
-    """Plan of every machine: limits, tracking, stretches in which the target is held, and the verdict."""
+    """Plan of every machine: limits, tracking, stretches without a target, and the verdict."""
     for name, plan in facts["motions"].items():
         state = plan.get("state", plan["outcome"])  # files of 0.2 have none
         tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
-        title = f"{name} ({plan['arm']:g} m{tracks}): {state}"
-        yield Section(title, tuple(_planned(plan)), titled=True, tone="good" if state in GOOD else "bad")
+        title = f"{name} ({plan['arm']:g} m{tracks}): {in_capitals(state)}"
+        tone = "good" if state in GOOD else "bad"
+        message = (Sentence(plan["message"], "bad"),) if plan["message"] else ()
+        yield Section(title, message or (Sentence(""),), titled=True, tone=tone)
+        yield Section("Machine", tuple(_planned(plan)), verbose=True)
         yield from verdict(plan, (level_words(plan["tracks"] or "flight", plan.get("scale")), name))
-        yield said(plan)
+        yield from said(plan)
     yield Section("Histories", (FIGURES,))
 
 
 def _planned(plan: Facts) -> Blocks:
-    """Message, limits, tracking, stretches in which the target is held, and loads out of reach, of one plan."""
-    if plan["message"]:
-        yield Sentence(plan["message"], "bad")
+    """Limits, tracking, stretches in which the target is another, and loads out of reach, of one plan."""
     yield limits(plan)
     yield Sentence(followed(plan))
     yield held(plan)
@@ -194,29 +200,37 @@ def limits(machine: Facts) -> Block:
 
 
 def held(machine: Facts) -> Block:
-    """Table of the stretches in which the target is held, and why."""
+    """Table of the stretches in which the target is not the flight's load, and why."""
     cells = {"from, s": "start:.3f", "to, s": "end:.3f", "why": "reason"}
-    return table(machine["not_followed"], cells, "The target is held", most=SHOWN, detail="lines" not in machine)
+    return table(
+        machine["not_followed"], cells, "The target is not the flight's load", most=SHOWN, detail="lines" not in machine
+    )
 
 
 def comparison(facts: Facts) -> Blocks:
     """Verdict on the imitation of a flight, the sentences that it rests on, and the figures."""
     yield from verdict(facts, (level_words(facts["flight"], facts.get("scale")), facts["centrifuge"]))
-    yield said(facts)
+    yield from said(facts)
     yield Section("Histories", (FIGURES,))
 
 
 def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
     """Section for a page, of the verdict on an imitation and its tables; `names` are those of flight and machine."""
     tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
-    yield Section("Verdict", (Sentence(judged["verdict"], "verdict"), *tables), detail=True)
+    yield Section("Verdict", (Sentence(judged["verdict"], "verdict"), Items(_findings(judged)), *tables), detail=True)
 
 
-def said(judged: Facts) -> Block:
-    """Section of the verdict and the sentences that it rests on."""
-    lines = Items(tuple(judged["lines"]))
+def _findings(judged: Facts) -> tuple[str, ...]:
+    return tuple(judged.get("findings", ()))  # which files of 0.3 lack
+
+
+def said(judged: Facts, name: str = "") -> Blocks:
+    """Sections of the verdict, with a `name` in front where there are several, and of what it rests on."""
     tone = "bad" if not all(each["passed"] for each in judged["criteria"]) else "verdict"
-    return Section(sentence(judged["verdict"]), (lines,), titled=True, folded="Verdict in words", tone=tone)
+    title = f"{name}: {judged['verdict']}" if name else sentence(judged["verdict"])
+    yield Section(title, (Items(_findings(judged)),), titled=True, folded="Verdict in words", tone=tone)
+    lines = (Items(tuple(judged["lines"])),)
+    yield Section("What the verdict rests on", lines, titled=True, folded="In detail", verbose=True)
 
 
 def _criteria(judged: Facts) -> Block:

@@ -172,7 +172,10 @@ def placement(facts: Facts) -> Blocks:
     if facts["message"]:
         yield Sentence(facts["message"], "" if facts["outcome"] == "done" else "bad")
     places = _PLACES if facts["fraction_of_length"] else _PLACES | {"middle": "mid-way"}
-    for title, key in (("Mismatch field alone", "mismatch"), ("With smoothing and tracking", "total_error")):
+    for title, key in (
+        ("Difference of the load along the specimen alone", "mismatch"),
+        ("With smoothing and tracking", "total_error"),
+    ):
         yield _measures(facts[key], places, title)
     yield from _verified(facts, places)
     refused = Items(tuple(f"cannot: {each}" for each in facts["refused"]))

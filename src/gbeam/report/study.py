@@ -114,9 +114,9 @@ def of_machine(response: Response | SystemResponse) -> Iterator[str]:
     yield tracked(response)
     stretches = not_followed_stretches(axes)
     for start, end, reason in stretches[:EPISODES]:
-        yield f"target held {start:.3f} to {end:.3f} s: {reason}"
+        yield f"target is not the flight's load {start:.3f} to {end:.3f} s: {reason}"
     if len(stretches) > EPISODES:
-        yield f"target held {len(stretches) - EPISODES} times more: see the result file"
+        yield f"target is not the flight's load {len(stretches) - EPISODES} times more: see the result file"
     # Stretches in which the target is held are listed above; a load that is followed and yet out of reach is news.
     not_held = [each for each in axes.shortfalls if not any(start <= each.time <= end for start, end, _ in stretches)]
     for each in not_held[:SHORTFALLS]:
@@ -137,6 +137,8 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         yield f"the tip is {comparison.point}"
     yield from judged_lines(comparison)
     yield from peak_lines(comparison.peaks)
+    if comparison.margins is not None:
+        yield "margin on yield {:.3g} in flight, {:.3g} on the centrifuge".format(*comparison.margins)
     if comparison.covered.any() and np.isfinite(comparison.relative).any():
         root = "" if comparison.root is None else f", root moment by up to {share_of(comparison.root.moment_agreement)}"
         yield (
@@ -170,7 +172,7 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         matters = bound > _FELT * comparison.peak_flight[main]
         advice = "; `gbeam place` finds the best control point" if matters and not mismatch.placed else ""
         bent = f", which bends the tip by up to {1e3 * bound:.3g} mm quasi-statically" if math.isfinite(bound) else ""
-        yield f"mismatch up to {in_g(mismatch.max_acceleration[main])} along the beam{bent}{advice}"
+        yield f"load along the beam differs by up to {in_g(mismatch.max_acceleration[main])}{bent}{advice}"
 
 
 def of_system(response: SystemResponse) -> Iterator[str]:
@@ -217,7 +219,8 @@ def study(facts: Facts) -> Blocks:
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
-    yield Section("Response", (_tips(motions), points_table(motions), loads_table(motions), *parts_tables(motions)))
+    response = _tips(motions), points_table(motions), loads_table(motions), *parts_tables(motions)
+    yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))
     for name, motion in motions.items():
         if "limits" in motion:
             yield Section(f"Machine: {name}", (limits(motion), Sentence(followed(motion))), titled=True, detail=True)
@@ -234,8 +237,14 @@ def verdicts(facts: Facts) -> Blocks:
         yield from verdict(compared, (level_words(compared["flight"], compared.get("scale")), compared["centrifuge"]))
 
 
+def compared_in(facts: Facts) -> set[str]:
+    """Names of the motions that verdicts are on."""
+    return {each[key] for each in facts["comparisons"] for key in ("flight", "centrifuge")}
+
+
 def in_words_of(facts: Facts) -> Blocks:
     """Outcome and sentences of every run, and every verdict with the figures that it rests on."""
+    compared = compared_in(facts)
     for name, run in facts["motions"].items():
         kind = run.get("environment", name)
         named = level_words(name, run.get("scale")) if kind == "flight" else name
@@ -244,8 +253,11 @@ def in_words_of(facts: Facts) -> Blocks:
         message = (Sentence(sentence(run["message"]), "bad"),) if run.get("message") else ()
         limits_used = (limits(run),) if "limits" in run else ()
         lines = Items(tuple(run.get("lines", ())))
-        yield Section(title, (*message, *limits_used, lines), titled=True, folded=folded, tone=tone)
-    yield from map(said, facts["comparisons"])
+        blocks, verbose = (*message, *limits_used, lines), name in compared and run["outcome"] == "done"
+        yield Section(title, blocks, titled=True, folded=folded, tone=tone, verbose=verbose)
+    several = len(facts["comparisons"]) > 1
+    for each in facts["comparisons"]:
+        yield from said(each, each["centrifuge"] if several else "")
 
 
 def _tips(motions: Facts) -> Block:

@@ -19,7 +19,7 @@ from gbeam.report.blocks import (
 )
 from gbeam.report.loads import READ, at_points, loads_table, resting_loads, stress_table
 from gbeam.report.steady import ERROR, evenly, growing, modes_table
-from gbeam.report.study import HINT, in_words_of, verdicts
+from gbeam.report.study import HINT, compared_in, in_words_of, verdicts
 from gbeam.report.words import errors_in_words, known, tidy
 
 
@@ -120,7 +120,8 @@ def system_study(facts: Facts) -> Blocks:
     yield Section("Histories", (Place("figures", HINT),))
     for name, motion in facts["motions"].items():
         if "points" in motion:
-            yield Section(f"motion {name}", tuple(_of_points({**motion, "units": _units(facts)})), titled=True)
+            points = tuple(_of_points({**motion, "units": _units(facts)}))
+            yield Section(f"motion {name}", points, titled=True, verbose=name in compared_in(facts))
     yield from in_words_of(facts)
 
 

@@ -1,16 +1,13 @@
-"""Every part of a flight on a machine: peaks of its load, what is not followed and why, what comes on top; and the
-sentence that says how well it is reproduced.
-"""
+"""Every part of a flight on a machine: peaks of its load, what is not followed and why, and what comes on top."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.results.declared import BESIDE, declared, fact, quantity, rows
-from gbeam.results.result import Part, part_words
+from gbeam.results.result import Part
 
 TOLERANCE = 0.05  # of a load of the flight
 TOLERANCE_OF = ("peak", "instant")  # the flight's largest load, or its load at each time
@@ -165,116 +162,7 @@ class PeakPair(Part):
         return self.machine / self.flight if self.flight > 0 else math.nan
 
 
-_FINEST = 1e-3  # how well a load peak is said to be reproduced at most
 _TIMES = 3.0  # from here on a ratio says more than a change of so many per cent
-_APART = 0.1  # s: the machine's peak has a time of its own
-
-
-def verdict(
-    flight: str,
-    machine: str,
-    peaks: Mapping[str, PeakPair],
-    accounting: Accounting,
-    within: float | None = None,
-    margins: tuple[float, float] | None = None,
-    whole: tuple[float, float] | None = None,
-    point: str = "tip",
-) -> str:
-    """Return the verdict on an imitation as one sentence; `flight` and `machine` are the names of the motions.
-
-    As far as they are known it states: the part that was run, if the `whole` flight, from its first to its last time,
-    s, was not; the flight's largest load peak, if that is not reproduced; the largest load anywhere on the specimen;
-    the peaks of the tip, or of another `point`, and of the root moment, where the tip's counts as reproduced if it
-    differs by at most the share `within` (the load's tolerance by default); the least `margins` on yield in flight and
-    on the machine; how many load peaks are reproduced, and how well; the share of the time that is followed, and why
-    the rest is not; and the worst preload.
-    """
-    within = accounting.tolerance if within is None else within
-    clauses = [] if whole is None else [part_words(accounting.span, whole)]
-    main = accounting.main
-    if main is not None and main.reason:
-        clauses.append(
-            f"{flight}'s load peak of {in_g(main.load)} at {main.time:.2f} s is not reproduced: {machine} makes "
-            f"{in_g(main.reproduced)} ({main.reason})"
-        )
-    largest_load = peaks.get("largest_load", PeakPair())
-    if math.isfinite(largest_load.machine):
-        clauses.append(_largest(flight, machine, largest_load))
-    if "tip" in peaks:
-        clauses.append(_tip(flight, machine, peaks["tip"], within, point))
-    moment = peaks.get("root_moment", PeakPair())
-    if math.isfinite(moment.ratio):
-        clauses.append(f"root moment {change(moment.ratio)}")
-    if margins is not None:
-        beyond = [name for name, margin in zip((flight, machine), margins, strict=True) if margin < 0]
-        warning = f", ABOVE YIELD in {' and '.join(beyond)}" if beyond else ""
-        clauses.append(f"margin on yield {margins[0]:.3g} in {flight}, {margins[1]:.3g} on {machine}{warning}")
-    clauses.append(_load_peaks(accounting))
-    clauses += _missed(accounting, main)
-    clauses.append(_time(accounting))
-    if accounting.preloads:
-        worst = max(accounting.preloads, key=lambda preload: preload.load - max(preload.flight, accounting.idle))
-        clauses.append(
-            f"preload: {machine} makes {in_g(worst.load)} at {worst.time:.2f} s, where {flight} has "
-            f"{in_g(worst.flight)}{f' and idle is {in_g(accounting.idle)}' if accounting.idle else ''}"
-        )
-    return "; ".join(clauses)
-
-
-def _largest(flight: str, machine: str, load: PeakPair) -> str:
-    """Clause on the largest load anywhere on the specimen, in flight and on the machine."""
-    extremes = (
-        f"{name}{':' if ' ' in name else ''} {in_g(size)}{f' at {place}' if place else ''} at {time:.2f} s"
-        for name, size, place, time in (
-            (flight, load.flight, load.place_flight, load.time_flight),
-            (machine, load.machine, load.place_machine, load.time_machine),
-        )
-    )
-    relative = f" ({change(load.ratio)})" if math.isfinite(load.ratio) else ""
-    return f"largest load anywhere on the specimen: {', '.join(extremes)}{relative}"
-
-
-def _tip(flight: str, machine: str, tip: PeakPair, within: float, point: str) -> str:
-    """Clause on the peaks of the tip, or of another point; reproduced if they differ by at most the share `within`."""
-    deflection = metres(tip.machine)
-    if not math.isfinite(tip.ratio):
-        return f"{point}: not moved by {flight}, by up to {deflection} on {machine}"
-    begin = f"{point}: {flight}'s peak {metres(tip.flight)} at {tip.time_flight:.2f} s"
-    when = f" at {tip.time_machine:.2f} s" if abs(tip.time_machine - tip.time_flight) > _APART else ""
-    if abs(tip.ratio - 1) <= within:
-        return f"{begin} reproduced as {deflection} ({change(tip.ratio)}){when}"
-    return f"{begin} not reproduced: {deflection} on {machine} ({change(tip.ratio)}){when}"
-
-
-def _load_peaks(accounting: Accounting) -> str:
-    """Clause on how many load peaks are reproduced, and how well."""
-    count = len(accounting.peaks)
-    above = f" above {in_g(accounting.idle)}" if accounting.idle else ""
-    if not count:
-        return f"no load peak{above}"
-    reproduced = [peak for peak in accounting.peaks if not peak.reason]
-    noun = "load peak" if count == 1 else "load peaks"
-    within = f" within {percent(max(_FINEST, *(peak.error for peak in reproduced)), up=True)}" if reproduced else ""
-    return f"{len(reproduced)} of {count} {noun}{above} reproduced{within}"
-
-
-def _missed(accounting: Accounting, main: LoadPeak | None) -> Iterator[str]:
-    """Yield a clause on the largest peak that is not reproduced, other than `main`, if there is one."""
-    others = [peak for peak in accounting.missed if peak is not main]
-    if others:
-        worst = max(others, key=lambda peak: peak.load)
-        yield f"not the {in_g(worst.load)} at {worst.time:.2f} s: {in_g(worst.reproduced)} ({worst.reason})"
-
-
-def _time(accounting: Accounting) -> str:
-    """Clause on the share of the time that is followed, and why the rest is not."""
-    followed = f"{100 * accounting.followed_share:.0f} % of the time followed within {against(accounting)}"
-    shares = accounting.shares
-    if len(shares) == 1:
-        return f"{followed}; the rest is {next(iter(shares))}"
-    # A share that rounds to nothing is listed among the stretches.
-    parts = [f"{percent(share)} {reason}" for reason, share in shares.items() if share >= 0.005]
-    return f"{followed}, {', '.join(parts)}" if parts else followed
 
 
 def against(accounting: Accounting) -> str:
@@ -304,9 +192,9 @@ def change(ratio: float) -> str:
     """Write by how much a ratio differs from one, with its sign; the ratio where it is large."""
     share = 100 * (ratio - 1)
     if ratio >= _TIMES:
-        return f"× {ratio:.2g}" if ratio < 100 else f"× {ratio:.0f}"
+        return f"{ratio:.2g} times" if ratio < 100 else f"{ratio:.0f} times"
     if abs(share) < 0.05:
-        return "0.0 %"
+        return "under 0.1 %"
     return f"{share:+.0f} %" if abs(share) >= 10 else f"{share:+.1f} %"
 
 

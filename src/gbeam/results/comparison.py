@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from gbeam.results.accounting import UNITS, Accounting, PeakPair, verdict
-from gbeam.results.criteria import Judged, Limit, state_of
+from gbeam.results.accounting import UNITS, Accounting, PeakPair
+from gbeam.results.criteria import Limit, state_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
 from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
-from gbeam.results.result import Figured, Flags, Floats, level_words
+from gbeam.results.result import Figured, Flags, Floats
+from gbeam.results.verdict import Verdict, Worded
 
 # The main axis has no letter.
 ComparisonFigure = Literal["parts", "parts x", "parts y", "parts z", "shock"]
@@ -23,7 +23,7 @@ _ACROSS = "over the times at which the target was not held"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Comparison(Judged, Figured[ComparisonFigure]):
+class Comparison(Worded, Figured[ComparisonFigure]):
     """Differences of a centrifuge's response from the flight's that it imitates.
 
     Peaks and accounting are those of the whole flight; differences are taken where the target is the flight's load.
@@ -103,6 +103,8 @@ class Comparison(Judged, Figured[ComparisonFigure]):
     )
     scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
 
+    exceeded: str = internal("", "worst of the machine's limits that are exceeded", default="")
+
     @declared("", "share of the times that are compared", role="fact", name=None, key="covered")
     def covered_share(self) -> float:
         return float(self.covered.mean())
@@ -119,14 +121,9 @@ class Comparison(Judged, Figured[ComparisonFigure]):
         return int(np.argmax(self.peak_flight)) if self.covered.any() else 2
 
     @property
-    def verdict(self) -> str:
-        """One sentence about the whole flight that a person can quote."""
-        tip = self.accept.get("tip")
-        within = tip if isinstance(tip, float) else None
-        return verdict(
-            level_words(self.flight, self.scale), self.centrifuge, self.peaks, self.accounting, within, self.margins,
-            self.whole, self.point or "tip",
-        )  # fmt: skip
+    def words(self) -> Verdict:
+        """The verdict as words are made of it."""
+        return Verdict(self, self.point or "tip", self.margins, self.exceeded, self.scale)
 
     @declared("", "least margin on yield in flight and on the machine", role="fact", name=None, key="margin")
     def margin(self) -> dict[str, float] | None:
@@ -145,17 +142,14 @@ class Comparison(Judged, Figured[ComparisonFigure]):
         return float(flight), float(machine)
 
     def __str__(self) -> str:
-        return self.verdict[:1].upper() + self.verdict[1:]
+        return "\n".join([self.verdict, *self.findings])
 
     def __repr__(self) -> str:
-        return f"Comparison: {self.verdict}"
-
-
-_WIDTH = 110  # columns
+        return "\n  ".join([f"Comparison: {self.verdict}", *self.findings])
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class MachinePlan(Judged, Driven, Figured[AxesFigure]):
+class MachinePlan(Worded, Driven, Figured[AxesFigure]):
     """Motion of a centrifuge that imitates a flight, without the response of a beam."""
 
     listed_by, unnamed = "name", "centrifuge"
@@ -188,12 +182,9 @@ class MachinePlan(Judged, Driven, Figured[AxesFigure]):
     with_response = False
 
     @property
-    def verdict(self) -> str:
-        """One sentence about the load over the whole flight."""
-        return verdict(
-            level_words(self.tracks or "flight", self.scale), self.name or "centrifuge", self.peaks, self.accounting,
-            whole=self.whole,
-        )  # fmt: skip
+    def words(self) -> Verdict:
+        """The verdict as words are made of it."""
+        return Verdict(self, exceeded=self.axes.beyond, scale=self.scale)
 
     @declared("", "the outcome, with what limits make of it", role="fact", name=None)
     def state(self) -> str:
@@ -205,7 +196,7 @@ class MachinePlan(Judged, Driven, Figured[AxesFigure]):
         tracks = f", tracks {self.tracks!r}" if self.tracks else ""
         lines = [f"MachinePlan{name} (arm {self.arm:g} m{tracks}): {self.state}"]
         lines += [self.message] if self.message else []
-        lines += textwrap.wrap(self.verdict, _WIDTH)
+        lines.append(self.verdict)
         rate, acceleration = (np.abs(history).max(axis=0) for history in (self.axes.rate, self.axes.acceleration))
         lines.append(f"axis rates up to {_listed(rate)} rad/s, accelerations {_listed(acceleration)} rad/s²")
         error = self.axes.tracking_error[~self.axes.not_followed]

@@ -31,6 +31,13 @@ STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen h
 NOT_ACCEPTED, NOT_DECIDED, EXCEEDED = "not accepted", "not decided", "machine limits exceeded"
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
 GOOD = ("done", "accepted")  # states of which nothing is to be said
+_CAPITALS = {"accepted": "PASS"} | {each: each.upper() for each in (NOT_ACCEPTED, NOT_DECIDED)}
+
+
+def in_capitals(state: str) -> str:
+    """Return a state as people read it, with PASS, NOT ACCEPTED or NOT DECIDED where it begins with a decision."""
+    decision, comma, missed = state.partition(",")
+    return _CAPITALS.get(decision, decision) + comma + missed
 
 
 class Judged:
@@ -44,8 +51,12 @@ class Judged:
     whole: tuple[float, float] | None = None
     with_response = True
 
-    @declared("", "one sentence about the whole flight", role="fact")
+    @declared("", "PASS, NOT ACCEPTED or NOT DECIDED, and why", role="fact")
     def verdict(self) -> str:
+        raise NotImplementedError
+
+    @declared("", "at most six sentences on what the verdict rests on", role="fact", name=None)
+    def findings(self) -> tuple[str, ...]:
         raise NotImplementedError
 
     @declared("s", "time of the flight that is judged", "ends", name=None)
@@ -183,18 +194,20 @@ class Rule:
 
     def worst(self, judged: Judged, bounds: tuple[float, float]) -> Value:
         """Return the value nearest to its bound or furthest beyond it, and where; NaN, and why, if none is known."""
-        low, high = bounds
-
-        def use(value: Value) -> float:
-            size = value[0]
-            if not self.band:
-                return abs(size)
-            if not size > 0:
-                return math.inf
-            return math.log(size) / math.log(high if size > 1 else low)
-
         values = [*self.values(judged), (math.nan, "")]
-        return max((value for value in values if not math.isnan(value[0])), key=use, default=values[0])
+        known = (value for value in values if not math.isnan(value[0]))
+        return max(known, key=lambda value: self.use(value[0], bounds), default=values[0])
+
+    def use(self, value: float, bounds: tuple[float, float]) -> float:
+        """Return the share of its bounds that a value uses: 1 on a bound, more beyond it."""
+        low, high = bounds
+        if self.kind == "least":
+            return low / value if value > 0 else math.inf
+        if not self.band:
+            return abs(value) / high
+        if not value > 0:
+            return math.inf
+        return math.log(value) / math.log(high if value > 1 else low)
 
     def written(self, value: float) -> str:
         """Write a value with its unit: dB of a level, % of a share, none of a ratio."""
@@ -208,7 +221,7 @@ class Rule:
         """Write a limit, or the least and the largest value, with the unit."""
         if not isinstance(limit, tuple):
             if not self.band:
-                return f"{'at least' if self.kind == 'least' else 'limit'} {self.written(limit)}"
+                return f"limit {self.written(limit)}{' or more' if self.kind == 'least' else ''}"
             if self.kind == "level":
                 return f"limit ±{_decibels(limit):.3g} dB"
         return f"limit {' to '.join(self.written(end) for end in self.bounds(limit))}"
@@ -241,10 +254,57 @@ class Criterion:
         low, high = self.bounds
         return None if math.isnan(self.value) else bool(low <= self.value <= high)
 
+    @property
+    def words(self) -> str:
+        """The quantity that the limit is on."""
+        return _SAID.get(self.name, self.name.replace("_", " "))
+
+    @property
+    def use(self) -> float:
+        """Share of the limit that is used: 1 on it, more beyond it."""
+        return RULES[self.name].use(self.value, self.bounds)
+
+    @property
+    def written(self) -> str:
+        """The value in words."""
+        return self.number + " of the time" * (self.name == "followed")
+
+    @property
+    def number(self) -> str:
+        """Value, with as many digits as show on which side of its limit it lies."""
+        rule, size = RULES[self.name], 100 * self.value
+        if rule.band or not math.isfinite(size):
+            return rule.written(self.value)
+        sign = "+" if rule.kind == "most" and self.name != "peaks" else ""
+        if abs(size) < 0.05 and self.passed and self.bounds[1] >= 1e-3:
+            return "under 0.1 %"
+        low, high = self.bounds
+        first = 0 if abs(size) >= 10 else 1
+        texts = (f"{size:{sign}.{digits}f}" for digits in range(first, first + 8))
+        return (
+            next((text for text in texts if (low <= float(text) / 100 <= high) == self.passed), f"{size:{sign}g}")
+            + " %"
+        )
+
+    @property
+    def limit_written(self) -> str:
+        """The limit in words, ``limit 2 %``; of a followed share the least."""
+        return RULES[self.name].limit_written(self.limit)
+
+    @property
+    def brief(self) -> str:
+        """The value and the limit on its side, without where and when that is."""
+        rule, nearest = RULES[self.name], self.bounds[self.value > 1]
+        limit = f"limit {rule.written(nearest)}" if rule.band else self.limit_written
+        where = f" {self.where}" if math.isinf(self.value) else ""
+        return f"{self.words} {self.written}{where} ({limit})"
+
     def __str__(self) -> str:
-        rule = RULES[self.name]
         where = f" {self.where}" if self.where else ""
-        return f"{self.name} {rule.written(self.value)}{where} ({rule.limit_written(self.limit)})"
+        return f"{self.words} {self.written}{where} ({self.limit_written})"
+
+
+_SAID = {"peaks": "error of peaks", "srs": "shock spectrum", "spread": "spread of the load"}
 
 
 def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, Any]:

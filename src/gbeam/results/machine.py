@@ -158,6 +158,12 @@ class AxesResult(Part):
         return f"exceeds {'; '.join(broken)}" if broken else ""
 
     @property
+    def beyond(self) -> str:
+        """The limit that is exceeded most, and by how much; empty where none is."""
+        worst = max((use for use in self.limits if use.exceeded), key=lambda use: use.share, default=None)
+        return f"{worst.axis} {worst.quantity} {worst.share:.0%}".replace("%", " % of its limit") if worst else ""
+
+    @property
     def limit_shares(self) -> dict[str, Floats]:
         """Used share of each finite limit over time, (t,), by axis and quantity: ``axis 2 jerk``."""
         histories = {"rate": self.rate, "acceleration": self.acceleration, "jerk": self.jerk}

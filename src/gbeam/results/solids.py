@@ -363,7 +363,7 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     def lines(self) -> list[str]:
         """The largest loads in words."""
         worst = self.largest
-        verdict = {None: "", True: ", accepted", False: ", not accepted"}[self.within_limit]
+        verdict = {None: "", True: ", PASS", False: ", NOT ACCEPTED"}[self.within_limit]
         limit = "" if self.spread_limit is None else f"{verdict} (limit {100 * self.spread_limit:.3g} %)"
         lines = [
             f"up to {worst.g:.4g} g at {place_words(worst.place)}, at {worst.time:.4g} s; spread over the specimen "

@@ -268,6 +268,7 @@ def compare(
         margins_of_materials=_of_materials(flight, centrifuge),
         whole=whole,
         scale=flight.scale,
+        exceeded="" if axes is None else axes.beyond,
         kept_every=centrifuge.kept_every,
         point=chosen,
     )  # fmt: skip

@@ -133,14 +133,14 @@ def _broken_promise(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple
     if (harder := motion.less_eased()) is not None:
         left = float(np.linalg.norm(harder.tracking_error(time[worst])))
         if held := used_up(axes.limit_shares, _around(time, worst, motion.limits)):
-            causes.append(f"{', '.join(held)} used up there")
+            causes.append(f"used up there: {', '.join(held)}")
         if left < (1 - _FELT) * size[worst]:
             eased = f"the plan's ease, for ease = {harder.ease:g} leaves {in_g(left)} on the same knots"
             causes.insert(len(causes) if left > _MOST * size[worst] else 0, eased)
     return (
-        f"the target is followed within {percent(share[worst])} of it only ({in_g(size[worst])} at "
-        f"{time[worst]:.3f} s), where {type(motion.inverse).__name__.lower()} promises "
-        f"{percent(motion.inverse.within)}: {'; '.join(causes) or motion.inverse.unless}",
+        f"the machine cannot follow the load at {time[worst]:.3f} s: error {in_g(size[worst])} "
+        f"({percent(share[worst])}; the plan aims at {percent(motion.inverse.within)}); "
+        f"{'; '.join(causes) or motion.inverse.unless}",
     )
 
 

@@ -1,0 +1,206 @@
+"""The verdict on an imitation in words: a headline of three numbers, and at most six sentences below it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from gbeam.results.accounting import NotFollowed, PeakPair, change, in_g, metres, percent
+from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Criterion, Judged, in_capitals
+from gbeam.results.result import level_words
+
+_TIMES, _APART, _BRIEF = 3.0, 5e-4, 0.005  # a ratio is said as such from here on; shares alike; stretches to omit, s
+_IDLE = "below idle"
+
+
+class Worded(Judged):
+    """An imitation whose verdict is said in words."""
+
+    @property
+    def words(self) -> Verdict:
+        """The verdict as words are made of it."""
+        raise NotImplementedError
+
+    @property
+    def verdict(self) -> str:
+        """PASS, NOT ACCEPTED or NOT DECIDED, and why, in one line about the whole flight that a person can quote."""
+        return self.words.headline
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """At most six sentences: largest load, peaks, time followed, tip, root, and what the machine could not do."""
+        return self.words.findings
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """An imitation that is judged, as the words on it need it."""
+
+    judged: Judged
+    point: str = "tip"  # point that counts as the tip
+    margins: tuple[float, float] | None = None  # least margins on yield in flight and on the machine
+    exceeded: str = ""  # limits of the machine that are exceeded
+    scale: float | None = None  # level factor of the flight's loads
+
+    @property
+    def headline(self) -> str:
+        """The decision and its reason in one line, with three numbers where as many are known."""
+        judged, criteria = self.judged, self.judged.criteria
+        failed = [each for each in criteria if each.passed is not True]
+        context = {
+            "largest_load": self._loads(beside=not criteria),
+            "followed": f"followed {self._followed} of the time",
+        }
+        pending, decision, shown = judged.not_judged, judged.decision, 1
+        if decision == NOT_ACCEPTED:
+            worst = max((each for each in failed if each.passed is False), key=lambda each: each.use)
+            reason = f"{'' if len(failed) == 1 else 'worst of all: '}{worst.brief}"
+        elif decision == NOT_DECIDED:
+            worst, shown = failed[0], 2
+            reason = f"{worst.words} is not known ({worst.limit_written})"
+        elif self.exceeded:
+            worst, decision, shown = None, NOT_ACCEPTED, 2
+            reason = f"the machine exceeds its limits, {self.exceeded}"
+        elif pending:
+            worst = max(criteria, key=lambda each: each.use, default=None)
+            decision, shown = NOT_DECIDED, 0 if criteria else 2
+            reason = f"{len(pending)} {'limit needs' if len(pending) == 1 else 'limits need'} `gbeam run`"
+            reason += f"; kept: {worst.brief}" if worst else ""
+        elif criteria:
+            worst = max(criteria, key=lambda each: each.use)
+            reason = worst.brief if len(criteria) == 1 else f"all limits are kept, the nearest: {worst.brief}"
+        else:
+            worst, shown, reason = None, 2, ""
+        known = [words for name, words in context.items() if words and not (worst and worst.name == name)]
+        start = in_capitals(decision) if decision else "No limits set"
+        flight = level_words("the flight", self.scale)
+        start += f" for a part of {flight}" if judged.whole is not None else f" for {flight}" if self.scale else ""
+        missed = judged.accounting.main is not None and judged.accounting.main.reason
+        parts = [reason, ", ".join(known[:shown]), "the largest peak is missed" if missed else ""]
+        return f"{start}: {'; '.join(filter(None, parts))}"
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """At most six sentences: largest load, peaks, time followed, tip, root, and what the machine could not do."""
+        said = (self._largest(), self._peaks(), self._time(), self._tip(), self._root(), self._machine())
+        return tuple(filter(None, said))
+
+    @property
+    def _followed(self) -> str:
+        followed = next((each for each in self.judged.criteria if each.name == "followed"), None)
+        return followed.number if followed else f"{100 * self.judged.accounting.followed_share:.0f} %"
+
+    def _loads(self, *, beside: bool) -> str:
+        """The machine's largest load, or its largest peak where that is not known; with the flight's `beside` it."""
+        load, main = self.judged.peaks.get("largest_load", PeakPair()), self.judged.accounting.main
+        if math.isfinite(load.machine):
+            flight, machine, quantity = load.flight, load.machine, "load"
+        elif main is not None:
+            flight, machine, quantity = main.load, main.reproduced, "peak"
+        else:
+            return ""
+        words = f"largest {quantity} {in_g(machine)}"
+        return f"{words} (flight {in_g(flight)})" if beside else words
+
+    def _limit(self, *names: str, otherwise: str = "no limit set") -> str:
+        """Limit of the first of these criteria, whether it is missed, and those of the others that are missed."""
+        limits = {each.name: each for each in self.judged.criteria if each.name in names}
+        own = limits.pop(names[0], None)
+        words = f"({otherwise})" if own is None else f"({_held(own)})"
+        others = [each for each in limits.values() if each.passed is not True]
+        return words + "".join(f"; missed: {each}" for each in others)
+
+    def _largest(self) -> str:
+        load = self.judged.peaks.get("largest_load", PeakPair())
+        if not math.isfinite(load.machine):
+            return ""
+        place = f" at {load.place_machine}" if load.place_machine else ""
+        return (
+            f"Largest load: {in_g(load.machine)}{place} at {load.time_machine:.2f} s, {_beside(load, in_g)} "
+            f"{self._limit('largest_load', 'spread')}."
+        )
+
+    def _peaks(self) -> str:
+        accounting = self.judged.accounting
+        peaks, above = accounting.peaks, f" above {in_g(accounting.idle)} (idle)" if accounting.idle else ""
+        if not peaks:
+            return f"Peaks: the flight has none{above}."
+        made = f"{len(peaks) - len(accounting.missed)} of {len(peaks)}{above} reproduced"
+        main, worst = accounting.main, max(peaks, key=lambda peak: peak.error)
+        name = "the worst"
+        if main is not None and main.reason:
+            name, worst = "the largest", main
+        size = f"{percent(worst.error)} off" if worst.error >= _APART else "within 0.1 %"
+        limit = self._limit("peaks", otherwise=f"limit {percent(accounting.tolerance)}")
+        why = f", {worst.reason}" if worst.reason else ""
+        return f"Peaks: {made}; {name}, {in_g(worst.load)} at {worst.time:.2f} s, is {size} {limit}{why}."
+
+    def _time(self) -> str:
+        accounting = self.judged.accounting
+        limit, shares = self._limit("followed"), accounting.shares
+        rest = [f"{percent(share)} {reason}" for reason, share in shares.items() if share >= _BRIEF][:2]
+        why = f"; {' and '.join(rest)}" if rest else ""
+        part = f" from {self.judged.part}, the part that was run," if self.judged.part else ""
+        return f"Followed: {self._followed} of the time{part} {limit}{why}."
+
+    def _tip(self) -> str:
+        if "tip" not in self.judged.peaks:
+            return ""
+        tip, name = self.judged.peaks["tip"], self.point[:1].upper() + self.point[1:]
+        limit = self._limit("tip", "srs")
+        return f"{name}: {metres(tip.machine)} at {tip.time_machine:.2f} s, {_beside(tip, metres)} {limit}."
+
+    def _root(self) -> str:
+        limited = {each.name for each in self.judged.criteria}
+        name = "root_force" if "root_force" in limited and "root_moment" not in limited else "root_moment"
+        pair, unit = self.judged.peaks.get(name, PeakPair()), "N" if name == "root_force" else "N m"
+        if not math.isfinite(pair.ratio):
+            return ""
+        limit = self._limit(name, "root_force", "root_moment", "stress", "damage")
+        yielding = ""
+        if self.margins is not None:
+            beyond = [
+                name for name, margin in zip(("in flight", "on the machine"), self.margins, strict=True) if margin < 0
+            ]
+            yielding = f"; ABOVE YIELD {' and '.join(beyond)}" if beyond else ""
+        quantity = name.replace("root_", "")
+        compared = _beside(pair, lambda size: f"{size:.4g} {unit}")
+        return f"Root: {quantity} {pair.machine:.4g} {unit}, {compared} {limit}{yielding}."
+
+    def _machine(self) -> str:
+        """Sentence on the longest stretch that the machine cannot follow above idle, or else below it."""
+        if self.exceeded:
+            return f"Machine: it exceeds {self.exceeded}."
+        stretches = self.judged.accounting.not_followed
+        above = [each for each in stretches if each.reason != _IDLE and each.end - each.start > _BRIEF]
+
+        def length(stretch: NotFollowed) -> float:
+            return stretch.end - stretch.start
+
+        worst = max(above or stretches, key=length, default=None)
+        if worst is None:
+            return ""
+        when = f"from {worst.start:.2f} to {worst.end:.2f} s"
+        if worst.reason == _IDLE:
+            return f"Machine: it cannot go below idle, {in_g(self.judged.accounting.idle)}, longest {when}."
+        used = "used up: " if worst.reason.startswith(("axis", "arm")) else ""
+        return f"Machine: it cannot follow {in_g(worst.flight_peak)} {when} ({used}{worst.reason})."
+
+
+def _held(criterion: Criterion) -> str:
+    missed = {False: ", missed", None: ", not known", True: ""}[criterion.passed]
+    return criterion.limit_written + missed
+
+
+def _beside(pair: PeakPair, written: Callable[[float], str]) -> str:
+    """Words for the machine's size of a quantity beside the flight's."""
+    if not math.isfinite(pair.ratio):
+        return "in flight none"
+    flight = f"the flight's {written(pair.flight)}"
+    if abs(pair.ratio - 1) < _APART:
+        return f"within 0.1 % of {flight}"
+    if pair.ratio >= _TIMES:
+        return f"{change(pair.ratio)} {flight}"
+    size = change(pair.ratio).lstrip("+-−")
+    return f"{size} {'above' if pair.ratio > 1 else 'below'} {flight}"
