@@ -124,7 +124,7 @@ class Samples:
                 (self.law, ["hinge.angle"], ["hinge.angle"], 0.01),
                 {"delay": 0.01, "limit": 5.0, "reference": 0.1, "state": None},
             ),
-            "Flight": ((), {"x": 1.0, "y": 2.0, "z": 3.0}),
+            "Flight": ((), {"x": 1.0, "y": 2.0, "z": 3.0, "scale": 1.25}),
             "Gauge": ((0.1,), {"y": 0.0, "z": 0.002, "along": (1.0, 0.0, 0.0), "body": ""}),
             "Hub": (
                 (),
@@ -295,7 +295,7 @@ class Samples:
                 (self.record, *columns),
                 {
                     "time_unit": "s", "sample_rate": None, "quantity": "specific-force", "vehicle": "aircraft",
-                    "span": (None, 0.1),
+                    "turn": (0.0, 0.0, 0.1), "level": None, "span": (None, 0.1),
                 },
             ),
             "read_scenario": ((self.fast, ["beam.length=250 mm"]), {}),
