@@ -195,7 +195,7 @@ def test_a_plan_that_misses_the_main_peak_is_never_done_alone(
     words = " ".join(capsys.readouterr().out.split())
     assert "spin (3.3 m, tracks flight): done, largest load peak missed" in words
     assert "No limits set: largest peak 3.4" in words and "; the largest peak is missed" in words
-    assert "Peaks: 0 of 1 reproduced; the largest, 6 g at " in words and "% off (limit 5 %), axis 1 rate." in words
+    assert "Peaks: 0 of 1 reproduced; the largest, 6 g at " in words and "% off (tolerance 5 %), axis 1 rate." in words
     assert main(["plan", str(scenario), "--json", "--report", "--out", str(tmp_path / "there")]) == 0
     facts = json.loads(capsys.readouterr().out)
     spin = facts["motions"]["spin"]

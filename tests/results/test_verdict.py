@@ -49,7 +49,7 @@ def check(imitation: Worded, begins: str) -> None:
     assert len(line.split()) <= WORDS and len(numbers(line)) == 3, line
     assert len(findings) <= SENTENCES and len({each.partition(":")[0] for each in findings}) == len(findings)
     for each in findings:
-        assert each.endswith(".") and (each.startswith("Machine: ") or "limit" in each), each
+        assert each.endswith(".") and (each.startswith("Machine: ") or "limit" in each or "tolerance" in each), each
 
 
 @pytest.mark.parametrize("ratio", [0.3, 0.98, 1.0, 1.0001, 1.2, 4.0, 400.0])

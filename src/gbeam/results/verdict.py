@@ -106,8 +106,8 @@ class Verdict:
     def _limit(self, *names: str, otherwise: str = "no limit set") -> str:
         """Limit of the first of these criteria, whether it is missed, and those of the others that are missed."""
         limits = {each.name: each for each in self.judged.criteria if each.name in names}
-        own = limits.pop(names[0], None)
-        words = f"({otherwise})" if own is None else f"({_held(own)})"
+        first = limits.pop(names[0], None)
+        words = f"({otherwise})" if first is None else f"({_held(first)})"
         others = [each for each in limits.values() if each.passed is not True]
         return words + "".join(f"; missed: {each}" for each in others)
 
@@ -126,15 +126,15 @@ class Verdict:
         peaks, above = accounting.peaks, f" above {in_g(accounting.idle)} (idle)" if accounting.idle else ""
         if not peaks:
             return f"Peaks: the flight has none{above}."
-        made = f"{len(peaks) - len(accounting.missed)} of {len(peaks)}{above} reproduced"
+        count = f"{len(peaks) - len(accounting.missed)} of {len(peaks)}{above} reproduced"
         main, worst = accounting.main, max(peaks, key=lambda peak: peak.error)
         name = "the worst"
         if main is not None and main.reason:
             name, worst = "the largest", main
         size = f"{percent(worst.error)} off" if worst.error >= _APART else "within 0.1 %"
-        limit = self._limit("peaks", otherwise=f"limit {percent(accounting.tolerance)}")
+        limit = self._limit("peaks", otherwise=f"tolerance {percent(accounting.tolerance)}")
         why = f", {worst.reason}" if worst.reason else ""
-        return f"Peaks: {made}; {name}, {in_g(worst.load)} at {worst.time:.2f} s, is {size} {limit}{why}."
+        return f"Peaks: {count}; {name}, {in_g(worst.load)} at {worst.time:.2f} s, is {size} {limit}{why}."
 
     def _time(self) -> str:
         accounting = self.judged.accounting
