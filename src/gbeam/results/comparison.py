@@ -9,13 +9,14 @@ from typing import Literal
 
 import numpy as np
 
+from gbeam.printable import level_words
 from gbeam.results.accounting import UNITS, Accounting, PeakPair, verdict
 from gbeam.results.criteria import Judged, Limit, state_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
 from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
-from gbeam.results.result import Figured, Flags, Floats, level_words
+from gbeam.results.result import Figured, Flags, Floats
 
 # The main axis has no letter.
 ComparisonFigure = Literal["parts", "parts x", "parts y", "parts z", "shock"]
