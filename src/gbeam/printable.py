@@ -78,3 +78,8 @@ def advise(word: str, choices: Iterable[str], *, listed: str = "choose one of") 
     possible = list(choices)
     near = closest(word, possible)
     return f"did you mean {near!r}?" if near else f"{listed} {', '.join(possible)}"
+
+
+def level_words(name: str, scale: float | None) -> str:
+    """Name of a motion with the level factor of its loads: ``flight × 1.25``."""
+    return name if scale in (None, 1) else f"{name} × {scale:.6g}"

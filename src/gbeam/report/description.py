@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from gbeam.constants import STANDARD_GRAVITY
+from gbeam.printable import level_words
 from gbeam.report.words import tidy
 from gbeam.results.description import (
     Curves,
@@ -17,7 +18,7 @@ from gbeam.results.description import (
     SystemDescription,
     Vector,
 )
-from gbeam.results.result import level_words, part_words
+from gbeam.results.result import part_words
 
 
 def text(case: Described) -> str:

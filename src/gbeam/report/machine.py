@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from gbeam.printable import raised
+from gbeam.printable import level_words, raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,
@@ -29,7 +29,7 @@ from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, against, 
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged, in_capitals
 from gbeam.results.machine import AxesResult, Driven, Shortfall
-from gbeam.results.result import Floats, level_words
+from gbeam.results.result import Floats
 
 _EXACT = 1e-9  # of the load: a smaller error is rounding
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from gbeam.printable import level_words
 from gbeam.report.blocks import (
     FIGURES,
     Block,
@@ -41,7 +42,6 @@ from gbeam.results.criteria import RULES
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.facts import facts_of
 from gbeam.results.response import Response
-from gbeam.results.result import level_words
 from gbeam.results.system import SystemResponse
 from gbeam.results.system import named as named_histories
 

@@ -47,11 +47,6 @@ def part_words(span: tuple[float, float], whole: tuple[float, float]) -> str:
     return f"{span[0]:.6g} to {span[1]:.6g} of {beginning}{whole[1]:.6g} s"
 
 
-def level_words(name: str, scale: float | None) -> str:
-    """Name of a motion with the level factor of its loads: ``flight × 1.25``."""
-    return name if scale in (None, 1) else f"{name} × {scale:.6g}"
-
-
 def _short(value: Any) -> str:
     """A value on a line: arrays by their shapes, other records by their names, long tuples and mappings by length."""
     if isinstance(value, (str, bool, int)) or value is None:

@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from gbeam.printable import level_words
 from gbeam.results.accounting import NotFollowed, PeakPair, change, in_g, metres, percent
 from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Criterion, Judged, in_capitals
-from gbeam.results.result import level_words
 
 _TIMES, _APART, _BRIEF = 3.0, 5e-4, 0.005  # a ratio is said as such from here on; shares alike; stretches to omit, s
 _IDLE = "below idle"

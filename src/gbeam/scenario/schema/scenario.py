@@ -20,9 +20,8 @@ from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, State
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
-from gbeam.printable import advise, shortened, unprintable
+from gbeam.printable import advise, level_words, shortened, unprintable
 from gbeam.questions import QUESTIONS
-from gbeam.results.result import level_words
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
