@@ -215,10 +215,11 @@ def test_limits_that_need_no_response_are_judged(scenario: Path, capsys: pytest.
     assert main(["plan", str(scenario)]) == 0
     words = " ".join(capsys.readouterr().out.split())
     assert "NOT DECIDED: 1 limit needs `gbeam run`; kept: error of peaks " in words
+    said = {"peaks": "error of peaks", "followed": "followed", "largest_load": "largest load", "spread": "spread of"}
     for limit, value in {"peaks": "5 %", "followed": "99 %", "largest_load": "5 %", "spread": "0.05 %"}.items():
         assert main(["plan", str(scenario), "--set", f"motion.spin.accept.{limit}={value}", "--json"]) == 1
         answer = capsys.readouterr()
-        assert answer.err.startswith("gbeam: motion.spin NOT ACCEPTED: "), answer.err
+        assert answer.err.startswith(f"gbeam: motion.spin NOT ACCEPTED: {said[limit]} "), answer.err
         facts = json.loads(answer.out)
         assert (facts["outcome"], facts["state"]) == ("done", "not accepted")
         spin = facts["motions"]["spin"]
