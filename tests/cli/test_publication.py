@@ -101,6 +101,6 @@ def test_a_full_disk_under_a_run(most: int, fast: Path, gbeam: Call) -> None:
         answer = gbeam("run", fast, "--out", "full")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    assert answer.status == 1 and "flight: done" in answer.out and "files in" not in answer.out
+    assert answer.status == 1 and "No limits set: largest load" in answer.out and "files in" not in answer.out
     assert answer.err.startswith("gbeam: not written: the files could not be written to full: File too large, nor to ")
     assert [file.name for file in Path().iterdir()] == ["fast.toml"]
