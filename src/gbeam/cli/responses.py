@@ -64,11 +64,8 @@ def run(
     for decision, reasons in refused.items():
         for name, which in reasons.items():
             complain(f"motion.{name} {in_capitals(decision)}: {which}")
-    return (
-        0
-        if answer.outcome == "done" and not any(refused.values()) and (ignore_limits or not answer.exceeding)
-        else FAILED
-    )
+    kept = not any(refused.values()) and (ignore_limits or not answer.exceeding)
+    return 0 if answer.outcome == "done" and kept else FAILED
 
 
 def _import_leaves() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -78,7 +79,8 @@ def through(
             break
     q, qd, *qdd = (namespace(parts[0]).concatenate(parts) for parts in zip(*pieces, strict=True))
     known = qdd[0] if qdd else Demanded(equations, steps, q, qd, samples)
-    return Trajectory(time[: len(q)], q, qd, known, converged, stopped, samples)
+    trajectory = Trajectory(time[: len(q)], q, qd, known, converged, stopped, samples)
+    return replace(trajectory, stopped=stopped or trajectory.failure is not None)
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:

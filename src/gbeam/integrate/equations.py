@@ -15,6 +15,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf, record
 from gbeam.arrays.types import Floats
+from gbeam.errors import ComputationError
 from gbeam.numerics.series import STEP
 
 Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there, arrays with that leading axis
@@ -125,6 +126,11 @@ class Trajectory:
     def whole(self) -> bool:
         """True if the integration reached the end of its steps."""
         return self.converged and not self.stopped
+
+    @property
+    def failure(self) -> ComputationError | None:
+        """Error of a controller's law that ended the integration; None if none did."""
+        return None if self.samples is None or self.samples.failure is None else self.samples.failure[1]
 
     @property
     def qdd(self) -> Any:

@@ -198,6 +198,14 @@ def sizes(vectors: Floats) -> Floats:
     return columns.reshape(*columns.shape[:-2], 4 * vectors.shape[-2])
 
 
+def column_peaks(time: Floats, columns: Floats) -> tuple[Floats, Floats]:
+    """Largest values (k,) of histories (t, k), each looked at by itself, and their times, between samples."""
+    each = (column[:, None] for column in columns.T)
+    largest = [maxima(time, one, *seven_point(time, one, near_maxima(time, one))) for one in each]
+    value, when = np.reshape(largest, (-1, 2)).T
+    return value, when
+
+
 def extremes(time: Floats, values: Floats) -> Floats:
     """Highest values (k,) between the samples of a history (t,); or the highest and lowest of columns (t, c), and the
     largest length of a row.
@@ -206,11 +214,7 @@ def extremes(time: Floats, values: Floats) -> Floats:
         columns = values[:, None]
     else:
         columns = np.concatenate([values, -values, np.sqrt((values**2).sum(axis=1, keepdims=True))], axis=1)
-    highest = []
-    for column in columns.T:
-        one = column[:, None]
-        highest.append(maxima(time, one, *seven_point(time, one, near_maxima(time, one)))[0][0])
-    return np.array(highest)
+    return column_peaks(time, columns)[0]
 
 
 def peaks_apart(time: Floats, values: Floats, others: Floats) -> float:

@@ -55,7 +55,8 @@ def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple
     samples = {"tip": lambda: vector_peaks(time, response.displacement[part, tip])}
     if response.solid is not None:
         von_mises = response.solid.von_mises[part, None]
-        samples |= {"stress": lambda: _between_steps(time, von_mises)} if response.solid.known else {}
+        if response.solid.known:
+            samples["stress"] = lambda: _between_steps(time, von_mises)
     elif response.loads is not None:
         loads = response.loads
         stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)

@@ -104,14 +104,12 @@ def _of_section(loads: Loads, section: int) -> Cyclic | None:
 def _worst(solid: SolidStress, of: str = "") -> dict[str, Cyclic]:
     """Stress where each material of a mesh is stressed most, by the place in words; empty where that is not known."""
     several = len(solid.materials) > 1
-    return (
-        {}
-        if not solid.known
-        else {
-            f"where {of}{name if several else 'mesh' if of else 'it'} is stressed most": Cyclic(stress, float(exponent))
-            for name, stress, exponent in zip(solid.materials, solid.material_normal.T, solid.exponents, strict=True)
-        }
-    )
+    if not solid.known:
+        return {}
+    return {
+        f"where {of}{name if several else 'mesh' if of else 'it'} is stressed most": Cyclic(stress, float(exponent))
+        for name, stress, exponent in zip(solid.materials, solid.material_normal.T, solid.exponents, strict=True)
+    }
 
 
 def stress_cycles(time: Floats, stress: Floats) -> StressCycles:

@@ -12,7 +12,16 @@ from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.numerics.peaks import FEWEST, maxima, near_maxima, quintic_hermite, seven_point, sizes, vector_peaks
+from gbeam.numerics.peaks import (
+    FEWEST,
+    column_peaks,
+    maxima,
+    near_maxima,
+    quintic_hermite,
+    seven_point,
+    sizes,
+    vector_peaks,
+)
 from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks
 from gbeam.results.system import SystemPeaks
 
@@ -129,20 +138,13 @@ def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) 
         peaks = np.reshape([vector_peaks(time, each) for each in np.moveaxis(vectors, 1, 0)], (-1, 2, 4))
         return peaks[:, 0, 3], peaks[:, 1, 3]
 
-    def of_columns(values: Floats) -> tuple[Floats, Floats]:
-        """Largest values (n,) of histories (t, n), and their times."""
-        each = (column[:, None] for column in values.T)
-        largest = [maxima(time, one, *seven_point(time, one, near_maxima(time, one))) for one in each]
-        value, when = np.reshape(largest, (-1, 2)).T
-        return value, when
-
     def of_ground(key: str) -> VectorPeaks:
         value, when = vector_peaks(time, over_time[key])
         return VectorPeaks(Extremes(value[:3], when[:3]), Extremes(value[3], when[3]))
 
     place, q = over_time["place"], over_time["q"]
     distance, when = of_points(place - place[0])
-    lowest, lowest_time = of_columns(-q)
+    lowest, lowest_time = column_peaks(time, -q)
     return SystemPeaks(
         system.points,
         system.coordinates,
@@ -152,9 +154,9 @@ def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) 
         *of_points(over_time["acceleration"]),
         -lowest,
         lowest_time,
-        *of_columns(q),
-        *of_columns(np.abs(over_time["qd"])),
-        *of_columns(np.abs(over_time["effort"])),
+        *column_peaks(time, q),
+        *column_peaks(time, np.abs(over_time["qd"])),
+        *column_peaks(time, np.abs(over_time["effort"])),
         of_ground("ground_force"),
         of_ground("ground_moment"),
     )

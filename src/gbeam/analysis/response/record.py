@@ -251,8 +251,10 @@ def response_of(
         warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
     recovered = dict[str, Any]()
     if settings.loads and not traced:
-        at_all = entire if looked == stride else joined(up, trajectory, down, looked)[0]
-        base_then = over_time if looked == stride else posed.moving(at_all.time, at_all.q, at_all.qd, at_all.qdd)[0]
+        at_all, base_then = entire, over_time
+        if looked < stride and structure.recovery is not None:
+            at_all = joined(up, trajectory, down, looked)[0]
+            base_then, _ = posed.moving(at_all.time, at_all.q, at_all.qd, at_all.qdd)
         recovered = _recovered(structure, motion, at_all.time, base_then, at_all.q[:, beam], name, peaks)
         if looked < stride and "solid" in recovered:
             recovered["solid"] = recovered["solid"].sampled(np.searchsorted(at_all.time, time))

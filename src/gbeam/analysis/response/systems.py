@@ -43,7 +43,7 @@ from gbeam.integrate.equations import Trajectory, slopes
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import SLIP, SLIPS, STUCK, Inputs, Link
 from gbeam.mechanics.tree.joints import SLIDES, SPIN, Joint
-from gbeam.mechanics.tree.signals import local_names, units_of
+from gbeam.mechanics.tree.signals import local_names, unit_of_effort, units_of
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
@@ -105,10 +105,7 @@ class SystemRun(Run):
     @classmethod
     def by_steps(cls, posed: PosedSystem, step: float, progress: Progress = None) -> SystemRun:
         """Run the problem by steps of a length, s."""
-        trajectory = posed.integrated(step, corners=posed.felt, progress=progress)
-        if trajectory.samples is not None and trajectory.samples.failure is not None:
-            trajectory = replace(trajectory, stopped=True)
-        return cls(trajectory, step, posed)
+        return cls(posed.integrated(step, corners=posed.felt, progress=progress), step, posed)
 
     @classmethod
     def traced(
@@ -236,12 +233,12 @@ class SystemRun(Run):
     @cached_property
     def missed(self) -> tuple[str, ...]:
         """Warning of a stop that the steps may miss; empty if there is none."""
-        return _missed_stop(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
+        return _missed_stop(self.posed.system, self.trajectory, self.driven)
 
     @cached_property
     def turned_over(self) -> tuple[str, ...]:
         """Warning of springs that a ball's turn of more than 180° makes pull the other way; empty if none do."""
-        return _turned_over(self.posed.system, self.trajectory, self.inputs(self.posed.system, slice(None)))
+        return _turned_over(self.posed.system, self.trajectory, self.driven)
 
     @cached_property
     def crept(self) -> tuple[str, ...]:
@@ -249,7 +246,7 @@ class SystemRun(Run):
         system, run, warnings = self.posed.system, self.trajectory, list[str]()
         if not any(joint.frictions for joint in system.joints.values()):
             return ()
-        for name, joint, link, q, qd in _states(system, run, self.inputs(system, slice(None))):
+        for name, joint, link, q, qd in _states(system, run, self.driven):
             values, rates = link.held(q, qd)
             for kind, friction in joint.frictions.items():
                 k, driven, step = joint.rate_names.index(kind), kind in joint.rates, np.diff(run.time)
@@ -279,6 +276,11 @@ class SystemRun(Run):
         local, names = Point(system.tree, *state, self.inputs(system, step)).local, local_names(system.coordinates)
         k = [names[each] for each in local.tree.free].index(name)
         return float(1 / np.linalg.inv(local.slopes()[3])[k, k])
+
+    @cached_property
+    def driven(self) -> Inputs:
+        """Inputs at all steps."""
+        return self.inputs(self.posed.system, slice(None))
 
     def inputs(self, of: System, steps: Any) -> Inputs:
         """Inputs, at an index or slice of the steps, of its system or of another one with the same controllers."""
@@ -310,10 +312,9 @@ class SystemRun(Run):
 
 def _creeping(name: str, way: float, time: float, felt: float, friction: float, *, driven: bool) -> str:
     """Warning of a coordinate that moves by a `way`, m or rad, where friction, N or N m, is felt in part."""
-    slides = name.rpartition(".")[2] in SLIDES
-    unit, far = "N" if slides else "N m", in_words(name.rpartition(".")[2], way)
-    smooth = f"friction is smooth below {SLIPS[not slides]}"
-    share = f"{felt:.4g} of {friction:.4g} {unit} at most"
+    kind = name.rpartition(".")[2]
+    far, smooth = in_words(kind, way), f"friction is smooth below {SLIPS[kind not in SLIDES]}"
+    share = f"{felt:.4g} of {friction:.4g} {unit_of_effort(kind)} at most"
     if driven:
         return f"{name} moves by {far} in {time:.4g} s so slowly that its drive feels {share}: {smooth}"
     held = f"{name} creeps by {far} in {time:.4g} s in which friction would hold it with {share}"
@@ -412,9 +413,8 @@ def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[
     if not trajectory.whole:
         outcome, end = "not converged", trajectory.time[-1]
         message = f"Newton's method failed at {end:.4g} s: give a smaller step, or look for what breaks there"
-    if trajectory.samples is not None and trajectory.samples.failure is not None:
-        _, error = trajectory.samples.failure
-        outcome, message = error.outcome, str(error)
+    if trajectory.failure is not None:
+        outcome, message = trajectory.failure.outcome, str(trajectory.failure)
     if (step := run.without_mass) is not None:
         free = [system.coordinates[k] for k in system.tree.free]
         words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"

@@ -16,7 +16,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import Trajectory, accelerations, slopes, solved
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
-from gbeam.mechanics.tree.signals import local_names
+from gbeam.mechanics.tree.signals import local_names, unit_of_effort
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import (
@@ -101,7 +101,7 @@ class Point:
                 i = joint.rate_names.index(kind)
                 if kind in joint.rates or abs(rates[i]) >= STUCK:
                     continue
-                words = f"friction of {name}.{kind}, {friction:.4g} {'N' if kind in SLIDES else 'N m'}, is left out"
+                words = f"friction of {name}.{kind}, {friction:.4g} {unit_of_effort(kind)}, is left out"
                 if not resting:
                     warnings.append(f"{words} of small departures, which it damps or holds; rate = 0 holds the joint")
                     continue
@@ -431,7 +431,7 @@ def _unheld(system: System, local: Point) -> str:
     row = int(np.abs(left / np.sqrt(np.diag(m))).argmax())
     name = local_names(system.coordinates)[local.tree.free[row]]
     joint, _, kind = name.rpartition(".")
-    size = f"{abs(left[row]):.4g} {'N' if kind in SLIDES else 'N m'}"
+    size = f"{abs(left[row]):.4g} {unit_of_effort(kind)}"
     if joint in system.joints and kind in ("rx", "ry", "rz") and system.joints[joint].kind == "free":
         about = f"{kind[1]} of {system.joints[joint].body}.root"
         fix = "push in line with the mass centre, balance the moment, or hold it"
@@ -448,7 +448,7 @@ def _friction(system: System, name: str) -> float:
 
 def _pushed(system: System, name: str, force: float) -> str:
     """Say by which force, N or N m, a local coordinate is accelerated, and what friction holds of it."""
-    unit, friction = "N" if name.rpartition(".")[2] in SLIDES else "N m", _friction(system, name)
+    unit, friction = unit_of_effort(name.rpartition(".")[2]), _friction(system, name)
     size, fix = f"{abs(force):.4g} {unit}", "hold it, or take away what pushes it"
     if not friction:
         return f"{name} is accelerated by {size}, which nothing holds: {fix}"

@@ -19,7 +19,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES, SPIN
-from gbeam.mechanics.tree.signals import deforming, local_names
+from gbeam.mechanics.tree.signals import deforming, local_names, unit_of_effort
 from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import ROOT, System
 from gbeam.motion.hub import Hub
@@ -408,7 +408,7 @@ def settled(system: System, drive: Drive) -> SteadySystem:
             for kind in kinds:
                 size, friction = force[system.row(f"{name}.{kind}")], system.joints[name].frictions[kind]
                 shares[name] = max(shares.get(name, 0.0), size / friction)
-                share = f"{size:.4g} of its {friction:.4g} {'N' if kind in SLIDES else 'N m'}"
+                share = f"{size:.4g} of its {friction:.4g} {unit_of_effort(kind)}"
                 held_by = f"nothing but friction holds {name}.{kind}, where it begins, with {share}"
                 words.append(f"{held_by}; small departures are those with it held")
         worst = max(shares, key=lambda name: shares[name])

@@ -204,7 +204,7 @@ class Tree:
 
     @property
     def frictionless(self) -> Tree:
-        """The same tree without friction."""
+        """Tree without friction, otherwise as it is."""
         return self._holding(lambda holder: replace(holder, friction=0 * holder.friction))
 
     def slipping(self, rate: float) -> Tree:

@@ -53,6 +53,11 @@ def kind_of_drive(name: str) -> str:
     return CARRIED.get(drive.rpartition("_")[0]) or kind_of_value("effort", drive)
 
 
+def unit_of_effort(coordinate: str) -> str:
+    """Unit, N or N m, of an effort along a coordinate or rate of a joint."""
+    return KINDS[kind_of_value("effort", coordinate)].unit
+
+
 def deforming(names: Sequence[str], body: str) -> list[int]:
     """Indices of the coordinates, among these names, that deform a body."""
     return [k for k, name in enumerate(names) if name.startswith(f"{body}.q")]

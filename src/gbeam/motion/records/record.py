@@ -259,7 +259,10 @@ def read_flight(
     def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
         turned = upended(table, names)
         specific = quantity == "specific-force"
-        place = lambda i: table.place(int(rows[i]))  # noqa: E731
+
+        def place(i: int) -> str:
+            return table.place(int(rows[i]))
+
         return Samples(time, load, names, load_unit, specific, vehicle, turned, place, axes)
 
     flown = samples(line.time, line.values[:, :3], line.rows)
