@@ -1,0 +1,42 @@
+"""Systems of one body: a structure on ground that moves as a motion says, or on a hub that turns freely."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import namespace
+from gbeam.arrays.types import Floats
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.joints import Joint
+from gbeam.mechanics.tree.system import Place, RigidBody, System
+from gbeam.motion.protocol import Motion
+
+HUB, HINGE, RIM, CLAMP = "hub", "hinge", "rim", "clamp"  # names of a free hub, its joint, its rim, what holds there
+
+
+def on_motion(structure: Structure, motion: Motion | None, name: str = "beam") -> tuple[System, Motion | None]:
+    """System of a structure alone in a motion, and the motion of the system's ground: none under a free hub."""
+    if motion is None or not motion.free:
+        return System({name: structure}, {CLAMP: Joint("fixed", name)}), motion
+    return on_free_hub(structure, motion, name), None
+
+
+def on_free_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
+    """System of a structure on the rim of a hub that turns freely under its torque, spring and damper."""
+    rim = Place(at=(hub.radius, 0.0, 0.0), turn=_turn_of_root(hub))
+    # Only the moment about the hinge's axis takes part; equal ones are those of a possible body.
+    body = RigidBody(0.0, namespace(hub.inertia).stack([hub.inertia] * 3), points={RIM: rim})
+    hinge = Joint("revolute", HUB, axes=[(0, 0, 1)], stiffness=hub.stiffness, damping=hub.damping, effort=hub.torque)
+    clamp = Joint("fixed", name, on=f"{HUB}.{RIM}")
+    return System({HUB: body, name: structure}, {HINGE: hinge, CLAMP: clamp}, gravity=hub.gravity)
+
+
+def _turn_of_root(hub: Any) -> Floats:
+    """Rotation vector (3,) of the root's axes in the hub's, rad: the setting angle about x and, inward, half a turn."""
+    angle = 0.0 if hub.setting_angle is None else hub.setting_angle
+    xp = namespace(angle)
+    if hub.pointing == "outward":
+        return xp.asarray(angle) * np.array([1.0, 0.0, 0.0])
+    return np.pi * (xp.cos(angle / 2) * np.array([0.0, 0.0, 1.0]) + xp.sin(angle / 2) * np.array([0.0, 1.0, 0.0]))
