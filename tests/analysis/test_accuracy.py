@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.accuracy.correction import RESOLVED, Departures, Within
-from gbeam.analysis.accuracy.response_errors import Solution, lacking
+from gbeam.analysis.accuracy.correction import RESOLVED, Correction, Departures, Within
+from gbeam.analysis.system.solution import Solution
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.tree.frames import Frame
+from gbeam.mechanics.tree.one_body import on_motion
 from gbeam.results.parts import Base
 
 from ..differences import jacobian
@@ -161,12 +164,11 @@ def test_errors_of_step_shapes_and_model_add_up() -> None:
 def test_a_solution_far_from_the_exact_models_has_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """2 (v/L)² is the largest law of its class: docs/theory.md."""
 
-    def nothing(*arguments: Any, **more: Any) -> Any:
-        *readings, rings = lacking(*arguments, **more)
-        return *({key: np.nan * each for key, each in one.items()} for one in readings), rings
+    def nothing(departures: Departures, residual: Any, start: Any = None) -> Correction:
+        return Correction(*np.full((3, *residual.shape), np.nan))
 
     structure = gb.assemble(beam(), "FOAM", axial=1, y=3)
-    monkeypatch.setattr("gbeam.analysis.accuracy.response_errors.lacking", nothing)
+    monkeypatch.setattr(Departures, "answer", nothing)
     far = gb.simulate(structure, gb.Flight(y=-1.2), duration=0.5, step=1e-3)
     moved = float(np.linalg.norm(far.tip, axis=1).max()) / LENGTH
     error = far.errors.displacement
@@ -190,7 +192,11 @@ def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
     structure = laden("exact")
     q, qd, qdd = (states(structure.size, 2, 0.1, seed) for seed in range(3))
     base, loads = Base(*(states(3, 2, 1.0, seed) for seed in (3, 4, 5))), structure.history(np.zeros(2))
-    posed = Solution(structure, Trajectory(np.zeros(2), q, qd, qdd), (base, loads)).posed()
+    system, _ = on_motion(structure, None)
+    none = np.zeros((2, 3))
+    ground = Frame(np.broadcast_to(np.eye(3), (2, 3, 3)), none, none, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+    inputs = replace(system.inputs(np.zeros(2)), ground=ground, loads=(loads,))
+    posed = Solution(system, Trajectory(np.zeros(2), q, qd, qdd), lambda *_: inputs).posed(())
     ours = posed.residual(q, qd, qdd, posed.inputs(slice(None)))
     first = Base(base.a_WO_B[0], base.w_WB_B[0], base.alpha_WB_B[0])
     theirs = quickly_compiled(base_residual)(structure, q[0], qd[0], qdd[0], first, loads[0])
@@ -208,7 +214,8 @@ def test_departures_of_a_beam_on_a_free_hub_are_derivatives_of_its_equations(kin
         np.concatenate([about[:, [k]], states(n, 2, size, k)], axis=1) for k, size in enumerate((0.1, 0.3, 2.0))
     )
     of = Trajectory(np.array([0.0, 0.1]), y, yd, ydd)
-    posed = Solution(structure, of, (np.zeros(2), structure.history(of.time)), hub).posed()
+    system, _ = on_motion(structure, hub)
+    posed = Solution(system, of, lambda other, times: other.inputs(of.time[times])).posed(())
     ours = Within.lifted(posed, posed, of).departures()
     for at in range(2):
         for k, matrix in enumerate((ours.k[at], ours.c[at], ours.m[at])):

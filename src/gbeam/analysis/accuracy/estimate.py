@@ -67,19 +67,21 @@ def apart(value: float, reference: float) -> float:
     return math.inf if math.isinf(value) else abs(value / reference - 1)
 
 
-def of_bodies(structure: Structure, lacking: Lacking, tip: float, limit: float) -> Iterator[str]:
-    """Warn of each mass off the beam's axis that the twist, which the model lacks, displaces by more than `limit`
-    times the displacement `tip`, m, of the tip.
+def of_bodies(
+    structure: Structure, name: str, causes: Mapping[str, float], distances: Floats, bent: float, limit: float
+) -> Iterator[str]:
+    """Warn of each mass off a beam's axis that the twist, which the model lacks, displaces by one of the `distances`,
+    m, by more than `limit` times the beam's deflection `bent`, m; the `name` is that of one among several bodies.
     """
-    if structure.source is None or lacking.causes.get(BEAM, {}).get("twist", 0.0) <= 0:
+    if structure.source is None or causes.get("twist", 0.0) <= 0:
         return
-    for i, (body, difference) in enumerate(zip(structure.source.beam.masses, lacking.bodies[BEAM], strict=False)):
-        arm = float((body.offset[1] ** 2 + body.offset[2] ** 2) ** 0.5)
-        if arm and difference > limit * tip:
-            share = f"{percent(difference / tip)} of the tip's displacement"
+    for i, (mass, difference) in enumerate(zip(structure.source.beam.masses, distances, strict=False)):
+        arm = float((mass.offset[1] ** 2 + mass.offset[2] ** 2) ** 0.5)
+        if arm and difference > limit * bent:
+            share = f"{percent(difference / bent)} of the tip's displacement"
             yield (
-                f"beam.masses[{i}] lies {1e3 * arm:.4g} mm off the axis: the beam twists under it, and it moves by an "
-                f"estimated {1e3 * difference:.3g} mm more or less than computed, {share}; {TORSION}"
+                f"{name or 'beam'}.masses[{i}] lies {1e3 * arm:.4g} mm off the axis: the beam twists under it, and it "
+                f"moves by an estimated {1e3 * difference:.3g} mm more or less than computed, {share}; {TORSION}"
             )
 
 

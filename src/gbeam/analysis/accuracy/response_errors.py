@@ -9,24 +9,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
-from gbeam.analysis.accuracy.correction import PLACE, RESOLVED, IntArray, Posed, Quantity, Reading, State, Within
-from gbeam.analysis.accuracy.estimate import BEAM, UNMOVED, Judgement, negligible, of_bodies, unjudged
+from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described
+from gbeam.analysis.accuracy.correction import PLACE, IntArray, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.estimate import BEAM, UNMOVED, Judgement, negligible, unjudged
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
-from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.enrichment import Enrichment, Twin, enrichment
+from gbeam.mechanics.enrichment import Enrichment, Twin
 from gbeam.mechanics.section_forces import section_forces, sections
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import theory_of
-from gbeam.motion.protocol import Motion
-from gbeam.results.errors import ErrorEstimate, Errors, StepErrors
-from gbeam.results.parts import Base, Loads
+from gbeam.results.errors import Errors
+from gbeam.results.parts import Base
 from gbeam.structure.section import extreme_stresses
 
 FORCE, MOMENT, STRESS, SHEARED = ((BEAM, each) for each in ("force", "moment", "stress", "sheared"))
@@ -150,78 +148,6 @@ class Solution:
         return beyond(self.posed(), self.of, {BEAM: theory}, lambda beams: self.posed(beams[BEAM]), begun)
 
 
-class Rings(NamedTuple):
-    """Bounds (k,) of the ringing of modes that the samples do not resolve: rad/s, m, N, N m."""
-
-    rate: Floats
-    place: Floats
-    force: Floats
-    moment: Floats
-
-
-def lacking(
-    solution: Solution, computed: Reading, begin: Begin | None, *, straight: bool
-) -> tuple[Reading, Reading, Rings]:
-    """Readings by the exact model with more shapes, and with the shapes of the solution; bounds of unresolved modes.
-    `straight` linearises the exact model about the straight beam, not about the solution.
-    """
-    kind, count = solution.structure.kind, len(solution.of.time)
-    more = enrichment(solution.structure, solution.base)
-    directions = solution.at(np.linspace(0, count - 1, min(count, SCAN)).astype(int)).along(more)
-    exact, index = more.model("exact", directions=directions)
-    within = solution.within(exact, index)
-    linear = solution.posed(replace(exact, linear=True)) if straight else None
-    departures, residual = within.departures(linear), within.residual()
-
-    def start(richer: Structure) -> State | None:
-        return None if begin is None else _departure(begin, richer, within.of)
-
-    begun, few_shapes = start(exact), computed
-    total = departures.answer(residual, begun)
-    if kind != exact.kind:
-        same = more.model(kind, directions=directions)[0]
-        few_shapes = within.moved(total.less(departures.answer(within.of_new(residual), start(same))))
-    return within.moved(total), few_shapes, _rings(exact, *departures.shaken(residual, begun))
-
-
-def by_mesh(solution: Solution, computed: Reading, begin: Begin | None) -> tuple[Reading, Reading] | None:
-    """Pair of readings: by a coarser mesh, and as computed; None if the structure has no coarser mesh."""
-    rough = solution.structure.coarser
-    if rough is None:
-        return None
-    within = solution.within(rough)
-    begun = None if begin is None else _departure(begin, rough, within.of)
-    return within.moved(within.departures().answer(within.residual(), begun)), computed
-
-
-def _rings(exact: Structure, rate: Floats, amplitude: Floats) -> Rings:
-    """Bounds of ringing at the tip and, by the elastic forces, at the root, by amplitudes (first + n, k) of modes."""
-    c, q = exact.coefficients, amplitude[-exact.size :]
-    inertia = np.linalg.solve(c.mass, c.stiffness @ q)
-    vectors = exact.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T
-    return Rings(rate, *(np.linalg.norm(vector, axis=1) for vector in vectors))
-
-
-def _departure(begin: Begin, richer: Structure, of: Trajectory) -> State:
-    """Initial state of a richer structure, by `begin`, minus the first state; NaN if it has none."""
-    departure = np.zeros((2, of.q.shape[1]))
-    try:
-        state = begin(richer)
-    except ComputationError:
-        departure[:] = np.nan
-        return departure[0], departure[1]
-    for row, begun, coordinates in zip(departure, state, (of.q[0], of.qd[0]), strict=True):
-        row[-richer.size :] = begun - coordinates[-richer.size :]  # the axial shapes, which SFOAM lacks, come first
-    return departure[0], departure[1]
-
-
-def stated(structure: Structure, tip: Floats, loads: Loads, q: Floats) -> Reading:
-    """Readings of a response as it is stated, from its tip's displacement (t, 3) m, loads and coordinates (t, n)."""
-    felt = loads.stress.max(axis=1) if structure.recovery is None else structure.recovery.felt(q)
-    sheared = np.zeros(len(tip)) if loads.von_mises is None else np.nan_to_num(loads.von_mises).max(axis=1)
-    return {PLACE: tip, FORCE: loads.force[:, 0], MOMENT: loads.moment[:, 0], STRESS: felt, SHEARED: sheared}
-
-
 def errors_of(
     structure: Structure,
     shapes: tuple[Reading, Reading],
@@ -244,76 +170,3 @@ def errors_of(
     if structure.source is None and structure.exact:
         tip, loads, stress = (replace(error, model=math.nan) for error in (tip, loads, stress))
     return Errors(tip, loads, stress, unjudged(structure), described(structure, beyond.causes.get(BEAM, {})))
-
-
-def response_errors(
-    structure: Structure,
-    motion: Motion,
-    of: Trajectory,
-    tip: Floats,
-    loads: Loads | None,
-    steps: StepErrors,
-    *,
-    stride: int = 1,
-    begin: Begin | None = None,
-    tolerance: float = math.inf,
-) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of a response, as fractions of the largest tip displacement, load and stress, and warnings.
-
-    `steps` are those of the time steps; `tip` (t, 3) and `loads` are the results, one for every
-    `stride` steps of the solution `of`. A solution that does not resolve a mode that rings is judged at more steps.
-    """
-    if not structure.judged or loads is None or len(tip) < 3:
-        force, moment, stress = steps.peaks or (math.nan,) * 3
-        parts = (steps.displacement, math.nan), (steps.loads, max(force, moment)), (steps.stress, stress)
-        of_steps = [ErrorEstimate(step=step, total=step, peak=peak) for step, peak in parts]
-        if loads is None or not np.isfinite(loads.stress).any():  # such as that of particles, which is not known
-            of_steps[2] = ErrorEstimate()
-        return Errors(of_steps[0], of_steps[1], of_steps[2], unjudged(structure)), ()
-    readings = stated(structure, tip, loads, of.q[::stride, -structure.size :])
-    sizes = {quantity: largest(values) for quantity, values in readings.items()}
-    straight = sizes[PLACE] <= BENT * structure.length
-    period = 2 * math.pi / float(structure.rest[0][0])
-    step, least = float(of.time[1] - of.time[0]), math.ceil(len(of.time) / MOST)
-    skipped = max(1, min(int(period / PER_PERIOD / (stride * step)), len(tip) // FEWEST))
-    stride *= skipped
-    by_step = {PLACE: steps.displacement, FORCE: steps.loads, MOMENT: steps.loads, STRESS: steps.stress}
-    peaks_by_step = dict(zip((FORCE, MOMENT, STRESS), steps.peaks, strict=False))
-    solution = Solution.driven(structure, motion, of.at(slice(None, None, stride)))
-    with np.errstate(all="ignore"):
-        beyond = solution.theory(begin, straight=straight)
-
-    def judged(solution: Solution, computed: Reading) -> tuple[Errors, float]:
-        """Errors by a solution at some of the steps, and the frequency, rad/s, of a mode that these do not resolve."""
-        with np.errstate(all="ignore"):
-            truth, exact, rings = lacking(solution, computed, begin, straight=straight)
-            mesh = by_mesh(solution, computed, begin)
-        if not np.isfinite(truth[PLACE]).all():
-            bounded = structure.source is not None
-            of_steps = steps.displacement
-            return _bounded(structure, sizes[PLACE], of_steps) if bounded else Errors(ErrorEstimate(of_steps)), 0.0
-        apart, time = ((exact, truth), (computed, exact)), solution.of.time
-        errors = errors_of(structure, *apart, beyond, by_step, sizes, mesh, time, peaks_by_step)
-        return errors, _missed(rings, sizes, errors, RESOLVED / (least * step))
-
-    errors, rate = judged(solution, {quantity: values[::skipped] for quantity, values in readings.items()})
-    finer = max(least, int(RESOLVED / (rate * step))) if rate else stride
-    if finer < stride:
-        solution = Solution.driven(structure, motion, of.at(slice(None, None, finer)))
-        errors, _ = judged(solution, solution.read())
-    return errors, tuple(of_bodies(structure, beyond, sizes[PLACE], tolerance))
-
-
-def _missed(rings: Rings, sizes: dict[Quantity, float], errors: Errors, fastest: float) -> float:
-    """Frequency, rad/s, of the fastest mode, below `fastest`, whose ringing may exceed the stated errors; 0 if none."""
-    limits = zip((PLACE, FORCE, MOMENT), (errors.displacement, errors.loads, errors.loads), strict=True)
-    visible = np.zeros(len(rings.rate), dtype=bool)
-    for quantity, error in limits:
-        visible |= getattr(rings, quantity[1]) > error.slender * sizes[quantity]
-    return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
-
-
-def _bounded(structure: Structure, size: float, step: float) -> Errors:
-    """Errors of a response too far from the exact model's for an estimate, by a bound on the largest displacement."""
-    model = LARGEST * (size / structure.length) ** 2
-    return Errors(ErrorEstimate(step, math.nan, model, total=step + model), note=TOO_FAR)

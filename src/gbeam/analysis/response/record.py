@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import NOTHING
-from gbeam.analysis.accuracy.response_errors import response_errors
+from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE
+from gbeam.analysis.accuracy.estimate import BEAM, NOTHING, unjudged
 from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks, peaks_of_coordinates
@@ -28,6 +28,9 @@ from gbeam.analysis.response.stepping import (
     split,
     steps_beyond,
 )
+from gbeam.analysis.system.accuracy import Starting, system_errors
+from gbeam.analysis.system.point import unknown_at_start
+from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.namespace import Array, is_jax
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
@@ -35,6 +38,7 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import accelerations, root_loads, section_forces
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.one_body import on_motion
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
@@ -46,6 +50,7 @@ from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
 from gbeam.structure.beam import names_at
 
+LOADS = "force", "moment", "stress"  # whose errors are estimated
 Prepared = tuple[Motion, ResponseSettings]
 
 
@@ -98,24 +103,37 @@ class StructureRun(Run):
         down = self.posed.spun_down(self.trajectory, progress) if self.whole else None
         return response_of(replace(self, down=down), errors, name)
 
-    def judged(self, steps: StepErrors, tip: Floats, loads: Loads | None) -> tuple[Errors, tuple[str, ...]]:
-        """Errors of the response, whose tip (t, 3) and loads are those of the flight's times, and warnings of them."""
-        posed, settings, stride = self.posed, self.posed.settings, self.stride
-        structure, motion, of_steps = posed.structure, posed.motion, (steps.displacement, steps.loads, steps.stress)
-        doubts: tuple[str, ...] = ()
+    def judged(self, steps: StepErrors) -> tuple[Errors, tuple[str, ...]]:
+        """Errors of the response over the flight's times, and warnings of them."""
+        posed, settings = self.posed, self.posed.settings
+        structure, motion = posed.structure, posed.motion
+        tip, root, stress = (ErrorEstimate(step=step) for step in (steps.displacement, steps.loads, steps.stress))
+        errors, doubts = Errors(tip, root, stress, settings.not_estimated), tuple[str, ...]()
+        if settings.estimate and not settings.loads:
+            tip, root = (replace(each, total=each.step) for each in (tip, root))
+            errors = Errors(tip, root, note=unjudged(structure))
+        elif settings.estimate:
+            system, ground = on_motion(structure, motion, BEAM)
 
-        def begin(richer: Structure) -> tuple[Floats, Floats]:
-            return start_of(richer, motion, settings.start, settings.begin)[:2]
+            def every(stride: int) -> Solution:
+                of = self.trajectory.at(slice(None, None, stride))
+                return Solution(system, of, lambda other, times: other.inputs(of.time[times], ground))
 
-        if settings.estimate:
+            def begun(body: Structure) -> tuple[Floats, Floats]:
+                return start_of(body, motion, settings.start, settings.begin)[:2]
+
             settled = not motion.free and (self.up is not None or settings.begin.settled)
-            more: Any = {"stride": stride, "begin": None if settled else begin, "tolerance": settings.tolerance}
-            errors, doubts = response_errors(structure, motion, self.trajectory, tip, loads, steps, **more)
-        else:
-            displacement, root, stress = (ErrorEstimate(step=step) for step in of_steps)
-            errors = Errors(displacement, root, stress, settings.not_estimated)
+            starting = None if settled else Starting(partial(unknown_at_start, initial=settings.begin.state), begun)
+            by_step = dict.fromkeys((PLACE, (BEAM, DEFLECTION)), steps.displacement)
+            by_step |= {(BEAM, load): steps.loads for load in LOADS[:2]}
+            stressed = structure.size and (structure.sections is not None or structure.recovery is not None)
+            by_step |= {(BEAM, LOADS[2]): steps.stress} if stressed else {}
+            peaks = dict(zip(((BEAM, load) for load in LOADS), steps.peaks, strict=False))
+            how: Any = {"stride": self.stride, "peaks_by_step": peaks, "starting": starting}
+            found, doubts = system_errors(every, None, by_step, **how, tolerance=settings.tolerance)
+            errors = Errors(found.displacement, found.loads, found.stress, found.note, "".join(found.theory))
         doubts += inaccuracies(structure, errors, settings)
-        return errors, doubts + effort(settings, len(self.trajectory.time) - 1, stride)
+        return errors, doubts + effort(settings, len(self.trajectory.time) - 1, self.stride)
 
     @cached_property
     def moved(self) -> list[Floats]:
@@ -243,8 +261,7 @@ def response_of(
     if not traced:
         outcome, message, from_run = describe(structure, posed.problem, last, over_time, peaks, time, q[:, beam])
         if outcome == "done":
-            during = None if loads is None else loads.during(flight)
-            errors, doubts = run.judged(step_errors, np.asarray(displacement[flight, -1]), during)
+            errors, doubts = run.judged(step_errors)
             from_run += doubts
         span = time[0], time[-1]
         from_inputs = input_warnings(structure, motion, name=name, span=span, base=over_time, rest=frequencies)

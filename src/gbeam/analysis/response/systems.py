@@ -29,7 +29,7 @@ from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of, steps_to_try
-from gbeam.analysis.system.accuracy import UNSMOOTHED, doubts, system_errors, unjudged, unmoved
+from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, doubts, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, deflections, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point, in_words, started, started_traced, unknown_at_start
@@ -134,12 +134,14 @@ class SystemRun(Run):
             of_loads = [(body, load) for body in judged_bodies(posed.system) for load in LOADS]
             peaks_by_step = dict(zip(of_loads, errors.peaks, strict=False))
             by_step |= dict(zip(of_loads, errors.each, strict=False))
-            starting = partial(unknown_at_start, initial=settings.begin.state)
+            starting = Starting(partial(unknown_at_start, initial=settings.begin.state))
             rerun = again if posed.system.controllers else None
             rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
             friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
             more: Any = {"peaks_by_step": peaks_by_step, "starting": starting, "friction": friction}
-            stated = system_errors(self.every(self.stride), rerun, by_step, **more)
+            more |= {"stride": self.stride, "tolerance": settings.tolerance}
+            stated, off_axis = system_errors(self.every, rerun, by_step, **more)
+            warnings += off_axis
             if not friction and posed.system.rubbing:
                 stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
             if rerun is not None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import largest
 from gbeam.analysis.accuracy.correction import PLACE, Reading
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, of_bodies, percent, unjudged
+from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, cause_and_cure, not_known, of_bodies, percent, unjudged
 from gbeam.analysis.accuracy.response_errors import BENT, Solution, errors_of
 from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
 from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
@@ -66,8 +66,13 @@ def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
     beyond = solution.theory(straight=sizes[PLACE] <= BENT * structure.length)
     same, steps = same or unknown, dict.fromkeys(computed, 0.0)
     mesh = None if structure.coarser is None else (rested(structure.coarser) or unknown, computed)
+    causes, bodies = beyond.causes.get(BEAM, {}), beyond.bodies.get(BEAM, np.zeros(0))
     errors = errors_of(structure, (computed, same), (same, truth), beyond, steps, sizes, mesh)
-    return errors, (*_doubtful(errors), *of_bodies(structure, beyond, sizes[PLACE], LIMIT), *_sideways(point))
+    return errors, (
+        *_doubtful(errors),
+        *of_bodies(structure, "", causes, bodies, sizes[PLACE], LIMIT),
+        *_sideways(point),
+    )
 
 
 def _sideways(point: OperatingPoint) -> tuple[str, ...]:

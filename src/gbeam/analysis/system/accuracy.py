@@ -10,29 +10,54 @@ Put into systems of thick and of slender beams, bent as they are, it leaves what
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
-from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, Departures, Quantity, Reading, State, Within
-from gbeam.analysis.accuracy.estimate import MORE_SHAPES, UNMOVED, Judgement, cause_and_cure, negligible, percent, worst
-from gbeam.analysis.system.richer import coarser, judged_bodies, left_unjudged, richer, theories_of, with_beams
+from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, RESOLVED, Departures, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.estimate import (
+    MORE_SHAPES,
+    UNMOVED,
+    Judgement,
+    cause_and_cure,
+    negligible,
+    of_bodies,
+    percent,
+    worst,
+)
+from gbeam.analysis.system.richer import (
+    coarser,
+    judged_bodies,
+    left_unjudged,
+    linear_about_rest,
+    richer,
+    theories_of,
+    with_beams,
+)
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError
-from gbeam.mechanics.theory import Theory
+from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import SLIPS
 from gbeam.mechanics.tree.system import System
 from gbeam.results.errors import ErrorEstimate, SystemErrors
 from gbeam.results.parts import Base
 
-Again = Callable[[System], Solution]
-Starting = Callable[[System], tuple[Flags, Flags]]  # flags of what a start bends and accelerates: `unknown_at_start`
+Again = Callable[[System], Solution]  # solution of another system, at the results' times
+Sampled = Callable[[int], Solution]  # solution at every so many-th step
 Rerun = Callable[[System, Iterable[str]], Reading]  # runs another system, and reads some of its bodies
 FEWEST = 3  # times of a response that is judged
+BENT = 0.1  # of the length: bodies that bend by less are straight for small departures
+MANY, PER_PERIOD = 500, 6  # samples looked at, in all and in a period of the lowest mode of a body held at its root
+MOST = 20_000  # samples where fast modes may ring
+LARGEST = 2.0  # times (v/L)²: error of a second-order model, up to what a beam that points inward on a hub has
+TOO_FAR = "the solution is too far from the exact model's for an estimate; it is the bound 2 (v/L)² of its class"
 FAR = "shapes and models are not judged: a system with more shapes does not follow"
 
 TOGETHER = "with more shapes of the same models the system does not follow: too few shapes count as the models' error"
@@ -45,6 +70,16 @@ UNSMOOTHED = (
 )
 STEPS = "the steps do not resolve what vibrates; give a smaller step, or damp it"
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
+
+
+@dataclass(frozen=True)
+class Starting:
+    """How richer systems begin: flags of what a start bends and accelerates, see :func:`unknown_at_start`, or the state
+    in which the only body that deforms begins.
+    """
+
+    flags: Callable[[System], tuple[Flags, Flags]]
+    state: Callable[[Structure], State] | None = None
 
 
 def unmoved(size: float, place: Floats) -> bool:
@@ -68,93 +103,222 @@ def unjudged(
 
     place, bent = error(PLACE), [error((name, DEFLECTION)) for name in system.flexible]
     worst_bent = max(bent, key=lambda each: each.step, default=place)
-    return SystemErrors(worst_bent if worst_bent.step > 0 else place, place, note=note)
+    loads, stress = ([error(key) for key in steps if key[1] in of] for of in (("force", "moment"), ("stress",)))
+    return SystemErrors(
+        worst_bent if worst_bent.step > 0 else place, place, loads=worst(loads), stress=worst(stress), note=note
+    )
 
 
 def system_errors(
-    solution: Solution,
+    every: Sampled,
     again: Again | None,
     steps: Mapping[Quantity, float],
     *,
+    stride: int = 1,
     peaks_by_step: Mapping[Quantity, float] = MappingProxyType({}),
     starting: Starting | None = None,
     start: Floats | None = None,
     friction: Mapping[Quantity, float] = MappingProxyType({}),
-) -> SystemErrors:
+    tolerance: float = math.inf,
+) -> tuple[SystemErrors, tuple[str, ...]]:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
-    of the beams' deflections, root loads and stress; `steps` has the errors of the time steps, and `peaks_by_step` of
-    their peaks. Richer systems are linearised, beginning as `starting` says, or run by `again` if given (with
-    controllers, at rest). `friction` has the errors of its law.
+    of the beams' deflections, root loads and stress; and warnings of masses that a twist, which the model lacks, moves
+    by more than a `tolerance`.
+
+    `every` returns the solution at every so many steps, of which results have every `stride`-th; `steps` has the errors
+    of the time steps, `peaks_by_step` of their peaks, and `friction` those of its law. Richer systems are linearised,
+    beginning as `starting` says, or run by `again` if given (with controllers, at rest). A solution that does not
+    resolve a mode that rings is judged at more steps.
     """
-    judged, note, count = judged_bodies(solution.system), left_unjudged(solution.system), len(solution.of.time)
-    by_steps = partial(unjudged, solution.system, steps, friction)
+    solution = every(stride)
+    system, count = solution.system, len(solution.of.time)
+    judged, note = judged_bodies(system), left_unjudged(system)
+    by_steps = partial(unjudged, system, steps, friction)
     if not judged or (again is None and count < FEWEST):
-        return by_steps(rest=math.nan if note or judged else 0.0, note=note)
+        return by_steps(rest=math.nan if note or judged else 0.0, note=note), ()
     computed = solution.read(judged)
     place = computed[PLACE]
     sizes = {quantity: largest(values) for quantity, values in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
-    bases, nothing = solution.bases(judged), set[Quantity]()
+    bases = solution.bases(judged)
+    known = _Known(steps, sizes, _negligible(judged, bases, sizes, place), peaks_by_step, friction, note)
+    straight = all(sizes[name, DEFLECTION] <= BENT * body.length for name, body in judged.items())
+    extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
+    interval = float(solution.of.time[-1] - solution.of.time[0]) / max(count - 1, 1) / stride  # of two steps, s
+    period = min(2 * math.pi / float(body.rest[0][0]) for body in judged.values())
+    least = max(1, math.ceil(count * stride / MOST))  # steps from one that is looked at to the next
+    skipped = max(1, min(int(period / PER_PERIOD / (stride * interval)), count // MANY)) if again is None else 1
+
+    def judge(solution: Solution, computed: Reading) -> tuple[SystemErrors, float, Lacking]:
+        """Errors by a solution at some of the steps, the frequency, rad/s, of a mode that these do not resolve, and
+        what the theory of slender beams lacks.
+        """
+        rerun = None if again is None else _rerun(again, len(solution.of.time))
+        with np.errstate(all="ignore"):
+            try:
+                apart = _apart(solution, rerun, bases, computed, starting, straight=straight)
+            except (ComputationError, np.linalg.LinAlgError):
+                return by_steps(note=FAR), 0.0, Lacking()
+            if not np.isfinite(apart.truth[PLACE]).all():
+                return _bounded(judged, known) or by_steps(note=FAR), 0.0, Lacking()
+            mesh = _by_mesh(solution, rerun, judged, starting)
+            lacking, lost = _beyond(solution, rerun, known, extent, starting, straight=straight)
+        errors = _judged(solution, known, computed, apart, lacking, mesh, lost)
+        missed = 0.0 if apart.rings is None else _missed(apart.rings, known, errors, RESOLVED / (least * interval))
+        return errors, missed, lacking
+
+    some = {quantity: values[::skipped] for quantity, values in computed.items()}
+    errors, rate, lacking = judge(solution if skipped == 1 else every(stride * skipped), some)
+    finer = max(least, int(RESOLVED / (rate * interval))) if rate else stride * skipped
+    if finer < stride * skipped:
+        solution = every(finer)
+        errors, _, lacking = judge(solution, solution.read(judged))
+    moved = [warning for name, body in judged.items() for warning in of_bodies(
+        body, name if len(judged) > 1 else "", lacking.causes.get(name, {}), lacking.bodies.get(name, np.zeros(0)),
+        sizes[name, DEFLECTION], tolerance,
+    )]  # fmt: skip
+    return errors, tuple(moved)
+
+
+class _Known(NamedTuple):
+    """What is known before richer systems are asked: errors by the steps, sizes of quantities and those that are
+    rounding, errors of peaks by the steps and of the law of friction, and a note.
+    """
+
+    steps: Mapping[Quantity, float]
+    sizes: Mapping[Quantity, float]
+    nothing: set[Quantity]
+    peaks_by_step: Mapping[Quantity, float]
+    friction: Mapping[Quantity, float]
+    note: str
+
+
+class _Rings(NamedTuple):
+    """Bounds (k,) of the ringing of modes that the samples do not resolve: rad/s, and of quantities."""
+
+    rate: Floats
+    sizes: Mapping[Quantity, Floats]
+
+
+class _Apart(NamedTuple):
+    """Pairs of readings that differ by too few shapes and by the models, readings by the exact models with more shapes
+    and of systems in which one body alone is richer, bounds of ringing, and why models are not judged apart.
+    """
+
+    shapes: tuple[Reading, Reading]
+    model: tuple[Reading, Reading]
+    truth: Reading
+    alone: list[Reading]
+    rings: _Rings | None = None
+    note: str = ""
+
+
+def _negligible(
+    judged: Mapping[str, Structure], bases: Mapping[str, Base], sizes: Mapping[Quantity, float], place: Floats
+) -> set[Quantity]:
+    """Quantities that are rounding."""
+    nothing = set[Quantity]()
     for name, body in judged.items():
         inertia = body.coefficients.rigid[0] * largest(bases[name].a_WO_B)
         nothing |= negligible(sizes, name, body.length, inertia)
-    if unmoved(sizes[PLACE], place):
-        nothing.add(PLACE)
-    exact = all(body.exact for body in judged.values())
-    rerun = None if again is None else _rerun(again, count)
+    return nothing | ({PLACE} if unmoved(sizes[PLACE], place) else set())
 
-    with np.errstate(all="ignore"):
+
+def _apart(
+    solution: Solution,
+    rerun: Rerun | None,
+    bases: Mapping[str, Base],
+    computed: Reading,
+    starting: Starting | None,
+    *,
+    straight: bool,
+) -> _Apart:
+    """Readings that richer systems have beside the `computed` ones: linearised ones, or by running them."""
+    judged = judged_bodies(solution.system)
+    exact = all(body.exact for body in judged.values())
+    if rerun is None:
+        return _departing(solution, bases, computed, starting, exact=exact, straight=straight)
+    note, same = "", None
+    truth = rerun(richer(solution.system, bases, exact=True).system, judged)
+    alone = [
+        _alone(rerun, richer(solution.system, {name: base}, exact=True).system, truth)
+        for name, base in bases.items()
+        if len(bases) > 1
+    ]
+    if not exact:
         try:
-            if rerun is None:
-                truth, few_shapes, *alone = _departing(solution, bases, computed, starting, exact=exact)
-                shapes, model = (few_shapes, truth), (computed, few_shapes)
-            else:
-                same = truth = rerun(richer(solution.system, bases, exact=True).system, judged)
-                alone = [
-                    _alone(rerun, richer(solution.system, {name: base}, exact=True).system, truth)
-                    for name, base in bases.items()
-                    if len(bases) > 1
-                ]
-                if not exact:
-                    try:
-                        same = rerun(richer(solution.system, bases, exact=False).system, judged)
-                    except ComputationError:
-                        same, note = computed, "; ".join(filter(None, (note, TOGETHER)))
-                # The errors of models lie between the system with more shapes of the same models and the exact one.
-                shapes, model = (computed, same), (same, truth)
-        except (ComputationError, np.linalg.LinAlgError):
-            return by_steps(note=FAR)
-        if not np.isfinite(truth[PLACE]).all():
-            return by_steps(note=FAR)
-        mesh = _by_mesh(solution, rerun, judged, starting)
-        theories = theories_of(solution.system)
-        loop = rerun if count > 1 else None
-        lacking = _beyond(solution, theories, loop, starting) if theories else Lacking()
-    extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
-    if theories and not lacking.sizes.get(PLACE, math.nan) <= LOST * max(sizes[PLACE], extent):
-        lacking = Lacking()
-        note = "; ".join(filter(None, (note, BENT_FAR if loop is None else LOOP_LOST)))
+            same = rerun(richer(solution.system, bases, exact=False).system, judged)
+        except ComputationError:
+            same, note = computed, TOGETHER
+    same = truth if same is None else same
+    # The errors of models lie between the system with more shapes of the same models and the exact one.
+    return _Apart((computed, same), (same, truth), truth, alone, note=note)
+
+
+def _judged(
+    solution: Solution,
+    known: _Known,
+    computed: Reading,
+    apart: _Apart,
+    lacking: Lacking,
+    mesh: Reading | None,
+    lost: str,
+) -> SystemErrors:
+    """Errors by what richer systems, thick beams and coarser meshes make of the `computed` readings."""
+    judged, time = judged_bodies(solution.system), solution.of.time if len(solution.of.time) > 1 else None
     by_mesh = None if mesh is None else (mesh, computed)
-    time = solution.of.time if count > 1 else None
-    judgement = Judgement(shapes, model, lacking, dict(steps), sizes, nothing, by_mesh, time, peaks_by_step, friction)
-    of_places, bent = judgement.error(PLACE), [judgement.error((name, DEFLECTION)) for name in judged]
-    deforms = any((name, DEFLECTION) not in nothing for name in judged)
-    loads, stress = [judgement.loads(name) for name in judged], [judgement.error((name, "stress")) for name in judged]
+    judgement = Judgement(
+        apart.shapes, apart.model, lacking, dict(known.steps), known.sizes, known.nothing, by_mesh, time,
+        known.peaks_by_step, known.friction,
+    )  # fmt: skip
+
+    def of_bodies(error: Callable[[str], ErrorEstimate]) -> list[ErrorEstimate]:
+        """Errors of the bodies; the model is unknown of those that have no other."""
+        alone = [name for name, body in judged.items() if body.source is None and body.exact]
+        return [replace(error(name), **({"model": math.nan} if name in alone else {})) for name in judged]
+
+    of_places = judgement.error(PLACE)
+    bent = of_bodies(lambda name: judgement.error((name, DEFLECTION)))
+    loads, stress = of_bodies(judgement.loads), of_bodies(lambda name: judgement.error((name, "stress")))
+    deforms = any((name, DEFLECTION) not in known.nothing for name in judged)
     return SystemErrors(
         displacement=worst(bent) if deforms else of_places,
         place=of_places,
         loads=worst(loads),
         stress=worst(stress),
         beams=tuple(judged),
-        by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in alone or [truth]]),
+        by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in apart.alone or [apart.truth]]),
         displacement_by_beam=np.array([each.total for each in bent]),
         loads_by_beam=np.array([each.total for each in loads]),
         load_peaks_by_beam=np.array([each.peak for each in loads]),
         stress_by_beam=np.array([each.total for each in stress]),
         stress_peaks_by_beam=np.array([each.peak for each in stress]),
         theory=tuple(described(judged[name], lacking.causes.get(name, {})) for name in judged),
-        note=note,
+        note="; ".join(filter(None, (known.note, apart.note, lost))),
     )
+
+
+def _bounded(judged: Mapping[str, Structure], known: _Known) -> SystemErrors | None:
+    """Errors too far from the exact model's for an estimate, by a bound on the largest deflection of beams; None of
+    other bodies.
+    """
+    if not all(body.source is not None for body in judged.values()):
+        return None
+    bounds = dict[str, ErrorEstimate]()
+    for name, body in judged.items():
+        size, step = known.sizes[name, DEFLECTION], known.steps.get((name, DEFLECTION), math.nan)
+        model = LARGEST * (size / body.length) ** 2
+        bounds[name] = ErrorEstimate(step, math.nan, model, total=step + model)
+    return SystemErrors(worst(bounds.values()), note=TOO_FAR)
+
+
+def _missed(rings: _Rings, known: _Known, errors: SystemErrors, fastest: float) -> float:
+    """Frequency, rad/s, of the fastest mode, below `fastest`, whose ringing may exceed the stated errors; 0 if none."""
+    visible = np.zeros(len(rings.rate), dtype=bool)
+    for quantity, amplitude in rings.sizes.items():
+        error = errors.displacement if quantity[1] == DEFLECTION else errors.loads
+        visible |= amplitude > error.slender * known.sizes[quantity]
+    return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
 
 
 def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
@@ -227,43 +391,87 @@ def _by_mesh(
 
 
 def _departing(
-    solution: Solution, bases: Mapping[str, Base], computed: Reading, starting: Starting | None, *, exact: bool
-) -> Iterator[Reading]:
+    solution: Solution,
+    bases: Mapping[str, Base],
+    computed: Reading,
+    starting: Starting | None,
+    *,
+    exact: bool,
+    straight: bool,
+) -> _Apart:
     """Readings of linearised richer systems: exact models with more shapes, exact models with the same shapes and, of
-    several bodies, each alone richer.
+    several bodies, each alone richer; `straight` if departures are from undeformed bodies.
     """
-    rich = richer(solution.system, bases, exact=True)
+    along = solution.along(bases)
+    rich = richer(solution.system, bases, exact=True, along=along)
     within = solution.within(rich.system, bases, rich.shared)
-    departures, residual = within.departures(), within.residual()
-    total = departures.answer(residual, _begun(starting, rich.system, within, departures))
-    yield within.moved(total)
-    if exact:
-        yield computed
-    else:
-        start = _begun(starting, rich.system, within, departures, within.of_new)
-        yield within.moved(total.less(departures.answer(within.of_new(residual), start)))
+    linear = solution.posed(bases, linear_about_rest(rich.system, bases)) if straight else None
+    departures, residual = within.departures(linear), within.residual()
+    begun = _begun(starting, rich.system, within, departures)
+    total = departures.answer(residual, begun)
+    few_shapes, truth = computed, within.moved(total)
+    if not exact:
+        same = richer(solution.system, bases, exact=False, along=along).system.flexible
+        body = next(iter(same.values()))
+        start = _begun(starting, rich.system, within, departures, within.of_new, body=body)
+        few_shapes = within.moved(total.less(departures.answer(within.of_new(residual), start)))
+    alone = list[Reading]()
     for name in bases if len(bases) > 1 else ():
         # The residual of a system in which it alone is exact; the others feel it only through the joints.
-        one_richer = richer(solution.system, {name: bases[name]}, exact=True)
-        alone = solution.within(one_richer.system, (), one_richer.shared)
-        kept = [k for k, body in enumerate(alone.more.bodies) if body == name or body not in bases]
-        onto = np.zeros((len(alone.more.names), residual.shape[1]))
-        onto[kept, [within.more.names.index(alone.more.names[k]) for k in kept]] = 1.0
-        start = _begun(starting, one_richer.system, alone, departures, lambda left: left @ onto, rich.system)  # noqa: B023
-        yield within.moved(departures.answer(alone.residual() @ onto, start))
+        one_richer = richer(solution.system, {name: bases[name]}, exact=True, along=along)
+        one = solution.within(one_richer.system, (), one_richer.shared)
+        kept = [k for k, body in enumerate(one.more.bodies) if body == name or body not in bases]
+        onto = np.zeros((len(one.more.names), residual.shape[1]))
+        onto[kept, [within.more.names.index(one.more.names[k]) for k in kept]] = 1.0
+        start = _begun(starting, one_richer.system, one, departures, lambda left: left @ onto, rich.system)  # noqa: B023
+        alone.append(within.moved(departures.answer(one.residual() @ onto, start)))
+    rings = _rings(rich.system, bases, within, *departures.shaken(residual, begun))
+    return _Apart((few_shapes, truth), (computed, few_shapes), truth, alone, rings)
+
+
+def _rings(system: System, bodies: Iterable[str], within: Within, rate: Floats, amplitude: Floats) -> _Rings:
+    """Bounds of ringing of deflections and, by the elastic forces, of root loads, by amplitudes (n, k) of modes."""
+    sizes = dict[Quantity, Floats]()
+    for name in bodies:
+        body, columns = system.flexible[name], [k for k, of in enumerate(within.more.bodies) if of == name]
+        c, q = body.coefficients, amplitude[columns]
+        inertia = np.linalg.solve(c.mass, c.stiffness @ q)
+        vectors = body.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T
+        lengths = (np.linalg.norm(vector, axis=1) for vector in vectors)
+        sizes |= {(name, what): each for what, each in zip((DEFLECTION, "force", "moment"), lengths, strict=True)}
+    return _Rings(rate, sizes)
 
 
 def _beyond(
-    solution: Solution, theories: Mapping[str, Theory], loop: Rerun | None, starting: Starting | None
-) -> Lacking:
-    """Differences to thick beams: by runs of these in a `loop`, else by the residual in their equations."""
+    solution: Solution,
+    rerun: Rerun | None,
+    known: _Known,
+    extent: float,
+    starting: Starting | None,
+    *,
+    straight: bool,
+) -> tuple[Lacking, str]:
+    """Differences to thick beams: by runs of these in a loop, else by the residual in their equations, which may be
+    linearised about `straight` beams; and why they are not known.
+    """
+    theories = theories_of(solution.system)
+    if not theories:
+        return Lacking(), ""
+    loop = rerun if len(solution.of.time) > 1 else None
     bent = partial(with_beams, solution.system)
     thick = bent({name: theory.thick for name, theory in theories.items()})
 
     def begun(departures: Departures, within: Within, plate: Floats) -> State | None:
-        return _begun(starting, thick, within, departures, lambda left: left + within.of.q[0] @ plate)
+        if starting is None or starting.state is None:
+            return _begun(starting, thick, within, departures, lambda left: left + within.of.q[0] @ plate)
+        (theory,) = theories.values()
+        less, more = starting.state(theory.slender), starting.state(theory.thick)
+        new = theory.thick.size - theory.slender.size
+        q, qd = (b - np.pad(a, (0, new)) for a, b in zip(less, more, strict=True))
+        before = len(within.more.names) - len(q)
+        return np.pad(q, (before, 0)), np.pad(qd, (before, 0))
 
-    return beyond(
+    lacking = beyond(
         solution.posed(theories),
         solution.of,
         theories,
@@ -271,6 +479,9 @@ def _beyond(
         begun,
         None if loop is None else lambda beams: loop(bent(beams), theories),
     )
+    if lacking.sizes.get(PLACE, math.nan) <= LOST * max(known.sizes[PLACE], extent):
+        return lacking, ""
+    return Lacking(), BENT_FAR if loop is None else LOOP_LOST
 
 
 def _begun(
@@ -280,12 +491,30 @@ def _begun(
     departures: Departures,
     part: Callable[[Floats], Floats] = np.asarray,
     departing: System | None = None,
+    body: Structure | None = None,
 ) -> State | None:
-    """Initial departure by a `part` of the residual that a solution within another `system` leaves at the start; the
-    `departing` system is the same unless given. None in equilibrium.
+    """Initial departure by a `part` of the residual that a solution within another `system` leaves at the start, or to
+    the state in which its `body`, by default that of the system, begins; the `departing` system is the same unless
+    given. None in equilibrium.
     """
     if starting is None:
         return None
-    flags = starting(system)
+    if starting.state is not None:
+        (only,) = system.flexible.values()
+        return _departure(starting.state, only if body is None else body, within.of)
+    flags = starting.flags(system)
     left = part(within.held_residual(flags[1]))
-    return departures.settled(left, *(flags if departing is None else starting(departing)))
+    return departures.settled(left, *(flags if departing is None else starting.flags(departing)))
+
+
+def _departure(state: Callable[[Structure], State], body: Structure, of: Trajectory) -> State:
+    """Initial state of the only body that deforms, the last, minus that of a trajectory; NaN if there is none."""
+    departure = np.zeros((2, of.q.shape[1]))
+    try:
+        begun = state(body)
+    except ComputationError:
+        departure[:] = np.nan
+        return departure[0], departure[1]
+    for row, values, coordinates in zip(departure, begun, (of.q[0], of.qd[0]), strict=True):
+        row[-body.size :] = values - coordinates[-body.size :]  # the axial shapes, which SFOAM lacks, come first
+    return departure[0], departure[1]

@@ -69,7 +69,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
     start, sticking = begun["place"][0], point.sticking(system, resting=True)
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
-    errors = system_errors(standing(system), standing, {}, start=start)
+    errors, off_axis = system_errors(lambda _: standing(system), standing, {}, start=start, tolerance=LIMIT)
     return SystemRest(
         name=name,
         time=time,
@@ -80,7 +80,7 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         errors=errors,
         accelerated=state.accelerated,
         stable=None if undecided else not unstable,
-        warnings=unstable + doubts(errors, LIMIT) + state.warnings + sticking + open_loops(system),
+        warnings=unstable + doubts(errors, LIMIT) + off_axis + state.warnings + sticking + open_loops(system),
         notes=notes_on({name: state.drive.motion}),
         assembly=assembly_of(system),
         outlines={

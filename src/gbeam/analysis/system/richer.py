@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base
 
+Directions = tuple[bool, bool, bool]  # flags of x, y and z
 NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
 
 
@@ -41,7 +43,7 @@ def judged_beams(system: System) -> dict[str, Structure]:
 def left_unjudged(system: System) -> str:
     """Sentence about bodies that are not judged at all, and about meshes that are not judged; may be empty."""
     judged = judged_bodies(system)
-    others = [name for name in system.flexible if name not in judged]
+    others = [name for name, body in system.flexible.items() if body.size and name not in judged]
     sentences = [NOT_ALL.format(", ".join(others))] if others else []
     meshes = [name for name, body in judged.items() if body.source is None and body.coarser is None]
     return "; ".join(sentences + ([NO_MESH.replace("mesh", f"mesh of {', '.join(meshes)}")] if meshes else []))
@@ -57,12 +59,21 @@ def coarser(system: System) -> System | None:
     return replace(system, bodies={**system.bodies, **rough}) if rough else None
 
 
-def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
-    """System with more shapes in the bodies whose roots move as `bases`, of their own models or the exact one."""
+def richer(
+    system: System,
+    bases: Mapping[str, Base],
+    *,
+    exact: bool,
+    along: Mapping[str, Directions] = MappingProxyType({}),
+) -> Richer:
+    """System with more shapes in the bodies whose roots move as `bases`, of their own models or the exact one; beams
+    get new shapes `along` some of x, y and z, by default along all.
+    """
     beams, original = dict[str, Structure](), dict[str, IntArray]()
     for name, base in bases.items():
         body = judged_bodies(system)[name]
-        rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind)
+        directions = along.get(name, (True, True, True))
+        rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind, directions=directions)
         beams[name] = replace(rich, load_values=body.load_values)
     other = replace(system, bodies={**system.bodies, **beams})
     renamed = {
@@ -73,14 +84,23 @@ def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
     return Richer(other, np.searchsorted(other.tree.free, indices[system.tree.free]), system, renamed)
 
 
-def theories_of(system: System) -> dict[str, Theory]:
-    """Slender and thick exact models of the judged beams, by name; bodies and forces may act on their stations."""
+def linear_about_rest(system: System, bodies: Iterable[str]) -> System:
+    """The system whose `bodies` have the equations that are linear about their undeformed shapes."""
+    linear = {name: replace(system.flexible[name], linear=True) for name in bodies}
+    return replace(system, bodies={**system.bodies, **linear})
+
+
+def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
+    """Slender and thick models of the judged beams, by name: exact ones, or linear about `straight` beams; bodies and
+    forces may act on their stations.
+    """
     tree, theories = system.tree, dict[str, Theory]()
     loaded = [(link.parent, link.on) for link in tree.links] + [(force.body, force.on) for force in tree.forces]
     for name, body in judged_beams(system).items():
         number, stations = system.order.index(name), [*stations_of(body).values()]
         hung = {stations[on] for of, on in loaded if of == number and on < len(stations)}
-        theories[name] = theory_of(body, tuple(sorted(hung))).exact
+        theory = theory_of(body, tuple(sorted(hung)))
+        theories[name] = theory if straight else theory.exact
     return theories
 
 

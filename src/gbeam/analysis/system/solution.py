@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,14 +22,20 @@ from gbeam.analysis.accuracy.correction import (
     pieces,
 )
 from gbeam.analysis.system.histories import Carried, carried, deflections, loads_of
+from gbeam.analysis.system.richer import Directions
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.results.parts import Base
 
+SCAN = 200  # samples at which to look for directions without shapes that are moved
+IDLE = 1e-9  # of the largest force: a direction with a smaller one gets no shapes
 InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, at times by an index or slice
 
 
@@ -71,7 +78,7 @@ class Solution:
             state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, inputs)
             places.append(np.stack([frame.p for frame in state.every_point], axis=1))
             if along:
-                acting = tree.demanded(state, inputs)[2]
+                acting = tree.demanded(state, inputs)[2] if self._acted & {*along} else [[] for _ in tree.links]
                 for name, carried_pieces in along.items():
                     carried_pieces.append(carried(self.system, state, name, acting))
         out: dict[Quantity, Floats] = {PLACE: np.concatenate(places)}
@@ -86,6 +93,12 @@ class Solution:
             out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
             out |= {(name, "stress"): stress, (name, "sheared"): sheared.max(axis=1)}
         return out
+
+    @property
+    def _acted(self) -> set[str]:
+        """Names of the bodies on whose points others hang or forces act."""
+        tree, order = self.system.tree, self.system.order
+        return {order[link.parent] for link in tree.links if link.parent >= 0} | {order[f.body] for f in tree.forces}
 
     def turning(self) -> Floats:
         """Places (t, 3 k, 3) m from the root, in the ground's axes, of three points on the axes of each of the k rigid
@@ -113,6 +126,27 @@ class Solution:
         roots = {name: state.roots[k] for k, name in enumerate(self.system.order)}
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
+    def along(self, bodies: Iterable[str]) -> dict[str, Directions]:
+        """Flags of x, y and z by the names of bodies: True if a body has shapes along the axis, or would move new ones.
+        Bodies on which others hang, or forces act, may move along all.
+        """
+        tree, count, acted = self.system.tree, len(self.of.time), self._acted
+        every, wanted = dict[str, Directions](), list[tuple[int, str]]()
+        for k, name in enumerate(self.system.order):
+            if name in bodies:
+                every[name] = True, True, True
+                body = self.system.flexible[name]
+                if body.source is not None and not all(body.counts[:3]) and name not in acted:
+                    wanted.append((k, name))
+        if wanted:
+            times = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
+            at, inputs = self.of.at(times), self.inputs(self.system, times)
+            state = tree.motion(at.q, at.qd, at.qdd, inputs)
+            for k, name in wanted:
+                q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
+                every[name] = _moved_along(self.system.flexible[name], state.roots[k], q, qd, qdd, inputs.loads[k])
+        return every
+
     @property
     def deformed(self) -> dict[str, Floats]:
         """Coordinates (t, n) of flexible bodies by name."""
@@ -136,3 +170,16 @@ class Solution:
         warnings = [(name, unstiffened(flexible[name], base, "its motion")) for name, base in bases.items()]
         warnings += [(name, bent_far(flexible[name], share)) for name, share in self.bends.items()]
         return tuple(f"{name}: {warning}" for name, of_body in warnings for warning in of_body)
+
+
+def _moved_along(body: Structure, root: Frame, q: Floats, qd: Floats, qdd: Floats, loads: Floats | None) -> Directions:
+    """Flags of x, y and z: True if a beam whose root moves so has shapes along the axis, or would move new ones."""
+    rich, index = enrichment(body, Base(root.a, root.w, root.alpha)).model(body.kind)
+    c, lifted = rich.coefficients, np.zeros((3, len(q), rich.size))
+    lifted[:, :, index] = q, qd, qdd
+    residual = c.residual(lifted[0], lifted[1], lifted[2], root.a, root.w, root.alpha, loads)
+    counts = np.cumsum([0, *rich.counts])
+    forces = [np.abs(residual[:, a:b]).max(initial=0.0) for a, b in pairwise(counts)]
+    limit = IDLE * max(np.abs(lifted[0] @ c.stiffness).max(), *forces)
+    axial, along_y, along_z = (n > 0 or size > limit for n, size in zip(body.counts[:3], forces, strict=False))
+    return axial, along_y, along_z

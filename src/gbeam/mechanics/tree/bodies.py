@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import Array, is_traced, namespace
-from gbeam.arrays.tree import record
+from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.fields.series import SeriesField
@@ -220,11 +220,15 @@ class LinearBody:
     with C q̇ the momentum of deforming and R the inertia of the body about its root: the kinetic energy has
     ½ q̇ᵀ(CᵀR⁻¹C − C0ᵀR0⁻¹C0) q̇ more, which is of third order in q and q̇. It is then that of the rigid motion with all
     momentum and of vibration about it, and positive wherever R is.
+
+    Without `hub_force` the root does not feel the rates of the coordinates: so is SFOAM as printed, 2009 (32), which
+    conserves nothing.
     """
 
     coefficients: Coefficients
     points: Points
     carried: Array | None = None
+    hub_force: bool = static(default=True)
 
     @property
     def size(self) -> int:
@@ -254,6 +258,8 @@ class LinearBody:
         if loads is not None and c.loads is not None:
             forces = c.loads.generalised(q, loads)
             force, moment, along = force - forces[..., :3], moment - forces[..., 3:6], along - forces[..., 6:]
+        if not self.hub_force and np.any(qd):
+            return along, self.demanded(q, 0 * qd, qdd, root, loads)[1]
         return along, Wrench(force, moment)
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:

@@ -399,7 +399,8 @@ class System(Value):
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
                 free.add(body)
-            terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free)
+            hinged = parent == 0 and self.joints[self._holding(self.order[0])].kind == "revolute"
+            terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free, hinged=hinged)
             links.append(Link(joint.steps, joint.holder, terms, parent, on, joint.loose))
         forces = []
         for name, force in self.forces.items():
@@ -546,11 +547,13 @@ def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
         raise InputError(where, "is a point of particles, which do not say how it turns", fix)
 
 
-def body_of(where: str, body: RigidBody | Structure, *, free: bool = False) -> Body:
-    """Terms of a body in the equations, `free` if its root moves by unknowns; InputError unless it can be in a tree."""
+def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hinged: bool = False) -> Body:
+    """Terms of a body in the equations, `free` if its root moves by unknowns, `hinged` if by one hinge on the ground
+    alone; InputError unless it can be in a tree.
+    """
     if isinstance(body, RigidBody):
         return body.body
-    if not body.hub_force:
+    if free and not (body.hub_force or hinged):
         fix = "choose FOAM with no axial shapes, which are the same equations with it"
         raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
     if body.damping_ratio is None:
@@ -575,5 +578,6 @@ def terms_of(body: Structure, *, free: bool = False) -> Body:
             turn = np.nan_to_num(body.turns[stations])
         points = PolynomialPoints(places.r0, places.first, second, turn, none)
     if isinstance(equations, Coefficients):
-        return LinearBody(equations, points, carried(equations) if free and body.field is None else None)
+        mean = carried(equations) if free and body.field is None else None
+        return LinearBody(equations, points, mean, body.hub_force)
     return FieldBody(equations, points)
