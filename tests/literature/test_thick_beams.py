@@ -66,7 +66,7 @@ def test_frequencies_are_timoshenkos_from_stout_to_slender(slenderness: int) -> 
     computed = gb.modes(gb.assemble(beam(length), "exact", z=9, shear_z=8))
     np.testing.assert_allclose(computed.frequency[:3], timoshenko(length, 3), rtol=5e-6)
     assert computed.errors is not None and (computed.errors.shapes[:3] < 1e-6).all()
-    assert computed.errors.theory in ("", "plate action")
+    assert computed.errors.causes in ("", "plate action")
 
 
 def test_shear_and_rotary_inertia_are_the_error_that_is_stated_without_them() -> None:

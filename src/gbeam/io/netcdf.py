@@ -80,7 +80,7 @@ def _errors(errors: Errors) -> dict[str, float | str]:
     """Estimated errors, fractions."""
     named = {name: asdict(getattr(errors, name)) for name in ("displacement", "loads", "stress")}
     values = {f"error_{name}_{part}": value for name, parts in named.items() for part, value in parts.items()}
-    return known_attrs({**values, "error_note": errors.note, "error_theory": errors.theory})
+    return known_attrs({**values, "error_note": errors.note, "error_theory": errors.causes})
 
 
 def plan_group(plan: MachinePlan) -> Group:

@@ -68,36 +68,9 @@ class ErrorEstimate(Part):
 @typed_methods
 @dataclass(frozen=True, repr=False, eq=False)
 class Errors(Part):
-    """Estimated errors of a response, or of a static deflection, which takes no time steps."""
-
-    displacement: ErrorEstimate = part("of the tip's displacement", default_factory=ErrorEstimate)
-    loads: ErrorEstimate = part("of the root's force and moment, the larger of both", default_factory=ErrorEstimate)
-    stress: ErrorEstimate = part(
-        "of the largest size of the normal stress over the stations' sections", default_factory=ErrorEstimate
-    )
-    note: str = fact("why something is not estimated, or what the estimate leaves out", default="")
-    theory: str = fact(
-        "causes of the error of the beam theory, and what it assumes",
-        note="such as plate action; assumed: Poisson's ratio 0.3",
-        default="",
-    )
-
-    def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
-        """Return the errors whose total is above a tolerance, by what they are of, in words."""
-        estimates = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
-        return {name: each for name, each in estimates.items() if each.total > tolerance}
-
-    def __repr__(self) -> str:
-        parts = {name: getattr(self, name) for name in ("displacement", "loads", "stress")}
-        lines = [f"{name}: {part}" for name, part in parts.items()]
-        if self.theory:
-            lines.append(f"beam theory: {self.theory}")
-        return "\n  ".join(["Errors", *lines, *([self.note] if self.note else [])])
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class SystemErrors(Part):
-    """Estimated errors of a system's answer, in all and as each of its beams brings them."""
+    """Estimated errors of a response, or of a state of rest, which takes no time steps: in all, and as each of the
+    bodies that are judged brings them.
+    """
 
     displacement: ErrorEstimate = part(
         "of the displacement of a body's points relative to its root, over its largest, the largest of all bodies; of "
@@ -149,16 +122,27 @@ class SystemErrors(Part):
     )
     note: str = fact(UNKNOWN, default="")
 
+    @property
+    def causes(self) -> str:
+        """Causes of the error of the beam theory and what it assumes, of one body or each behind its name."""
+        known = [(name, words) for name, words in zip(self.beams, self.theory, strict=True) if words]
+        return "; ".join(words if len(self.beams) == 1 else f"{name}: {words}" for name, words in known)
+
+    def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
+        """Return the errors whose total is above a tolerance, by what they are of, in words."""
+        estimates = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
+        return {name: each for name, each in estimates.items() if each.total > tolerance}
+
     def __repr__(self) -> str:
-        errors = zip(self.beams, self.by_beam, strict=True)
-        by_beam = (f"{name} {percent(error)}" for name, error in errors if not math.isnan(error))
-        named = ("displacement", "place", "loads", "stress") if self.beams else ("displacement",)
-        lines = [f"{error}: {getattr(self, error)}" for error in named]
-        lines.insert(2, ", ".join(by_beam))
-        theories = zip(self.beams, self.theory, strict=True)
-        lines += [f"beam theory of {name}: {words}" for name, words in theories if words]
+        lines = [f"displacement: {self.displacement}"]
+        if repr(self.place) not in (repr(self.displacement), repr(ErrorEstimate())):
+            errors = zip(self.beams, self.by_beam, strict=True)
+            by_beam = (f"{name} {percent(error)}" for name, error in errors if not math.isnan(error))
+            lines += [f"place: {self.place}", ", ".join(by_beam)]
+        lines += [f"{name}: {getattr(self, name)}" for name in ("loads", "stress") if self.beams]
+        lines += [f"beam theory: {self.causes}"] if self.causes else []
         lines.append(self.note)
-        return "\n  ".join(["SystemErrors", *filter(None, lines)])
+        return "\n  ".join(["Errors", *filter(None, lines)])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -18,10 +18,10 @@ from gbeam.results.errors import (
     IN_GROUND,
     SEVERAL,
     Accelerated,
+    Errors,
     FrequencyErrors,
     Instability,
     Oscillating,
-    SystemErrors,
     accelerated,
     evenly,
 )
@@ -298,9 +298,9 @@ class SystemResponse(_Placed, Driven, Figured[str]):
     integrator: str = fact("integrator", default="gauss")
     step: float = fact("time step", "s", default=math.nan)
     steps: int = fact("number of steps", default=0)
-    errors: SystemErrors = part(
+    errors: Errors = part(
         "of deflections, places, root loads and stress, as fractions of the largest", name="error_",
-        default_factory=SystemErrors,
+        default_factory=Errors,
     )  # fmt: skip
     residual_from: float = fact(
         "start of the residual", "s", optional=True, note="NaN where not given", default=math.nan
@@ -476,9 +476,9 @@ class SystemRest(_Placed, Decided, Figured[str]):
         return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
 
     accelerated: tuple[Accelerated, ...] = accelerated()
-    errors: SystemErrors = part(
+    errors: Errors = part(
         "of deflections, places, root loads and stress, as fractions of the largest", name=None,
-        default_factory=SystemErrors,
+        default_factory=Errors,
     )  # fmt: skip
     assembly: Assembly | None = part(
         "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None

@@ -169,4 +169,5 @@ def errors_of(
     tip, loads, stress = judgement.error(PLACE), judgement.loads(BEAM), judgement.error(STRESS)
     if structure.source is None and structure.exact:
         tip, loads, stress = (replace(error, model=math.nan) for error in (tip, loads, stress))
-    return Errors(tip, loads, stress, unjudged(structure), described(structure, beyond.causes.get(BEAM, {})))
+    theory = (described(structure, beyond.causes.get(BEAM, {})),)
+    return Errors(tip, tip, loads, stress, (BEAM,), theory=theory, note=unjudged(structure))

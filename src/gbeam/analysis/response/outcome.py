@@ -261,7 +261,7 @@ def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSetting
         "model": 'check with model.kind = "exact"',
         "shapes": "raise model.modes, or leave them out",
         "step": _cure_of_step(settings),
-        "beam_theory": f"{errors.theory}; {cure_of_theory(errors.theory)}",
+        "beam_theory": f"{errors.causes}; {cure_of_theory(errors.causes)}",
         "mesh": ROUGH_MESH[1],
     }
     names = {"shapes": "too few shapes", "beam_theory": "the theory of slender beams"}

@@ -108,10 +108,10 @@ class StructureRun(Run):
         posed, settings = self.posed, self.posed.settings
         structure, motion = posed.structure, posed.motion
         tip, root, stress = (ErrorEstimate(step=step) for step in (steps.displacement, steps.loads, steps.stress))
-        errors, doubts = Errors(tip, root, stress, settings.not_estimated), tuple[str, ...]()
+        errors, doubts = Errors(tip, tip, root, stress, note=settings.not_estimated), tuple[str, ...]()
         if settings.estimate and not settings.loads:
             tip, root = (replace(each, total=each.step) for each in (tip, root))
-            errors = Errors(tip, root, note=unjudged(structure))
+            errors = Errors(tip, tip, root, note=unjudged(structure))
         elif settings.estimate:
             system, ground = on_motion(structure, motion, BEAM)
 
@@ -130,8 +130,7 @@ class StructureRun(Run):
             by_step |= {(BEAM, LOADS[2]): steps.stress} if stressed else {}
             peaks = dict(zip(((BEAM, load) for load in LOADS), steps.peaks, strict=False))
             how: Any = {"stride": self.stride, "peaks_by_step": peaks, "starting": starting}
-            found, doubts = system_errors(every, None, by_step, **how, tolerance=settings.tolerance)
-            errors = Errors(found.displacement, found.loads, found.stress, found.note, "".join(found.theory))
+            errors, doubts = system_errors(every, None, by_step, **how, tolerance=settings.tolerance)
         doubts += inaccuracies(structure, errors, settings)
         return errors, doubts + effort(settings, len(self.trajectory.time) - 1, self.stride)
 

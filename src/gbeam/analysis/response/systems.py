@@ -52,7 +52,7 @@ from gbeam.motion.protocol import Motion, level_factor, notes_on
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
-from gbeam.results.errors import StepErrors, SystemErrors
+from gbeam.results.errors import Errors, StepErrors
 from gbeam.results.parts import Loads
 from gbeam.results.system import BeamResponse, Invariants, Loop, SystemResponse
 from gbeam.structure.beam import names_at
@@ -116,7 +116,7 @@ class SystemRun(Run):
         start = started_traced(system, motion, ends.start, settings.begin.state)
         refuse_long(system, ends, step)
         posed = PosedSystem(system, motion, ends, settings, start, step)
-        return _described(cls(posed.integrated(step, corners=posed.commands), step, posed), SystemErrors(), name)
+        return _described(cls(posed.integrated(step, corners=posed.commands), step, posed), Errors(), name)
 
     def described(self, errors: StepErrors, name: str, progress: Progress = None) -> SystemResponse:
         """Return the response, with the errors beyond those of the time steps if the settings ask for an estimate."""
@@ -388,7 +388,7 @@ def _turned_over(system: System, run: Trajectory, inputs: Inputs) -> tuple[str, 
     return ()
 
 
-def _described(run: SystemRun, errors: SystemErrors, name: str, warnings: tuple[str, ...] = ()) -> SystemResponse:
+def _described(run: SystemRun, errors: Errors, name: str, warnings: tuple[str, ...] = ()) -> SystemResponse:
     """Response at all steps; the residual vibration is measured over the flight's times alone."""
     trajectory, stride, system, motion = run.trajectory, run.stride, run.posed.system, run.posed.motion
     settings, flight = run.posed.settings, run.posed.flight

@@ -92,7 +92,7 @@ def _doubtful(errors: Errors) -> tuple[str, ...]:
     if not (above := errors.above(LIMIT)):
         return ()
     worst = max(above.values(), key=lambda error: error.total)
-    cause, cure = cause_and_cure(worst, errors.theory)
+    cause, cure = cause_and_cure(worst, errors.causes)
     sizes = ", ".join(f"the {name} by {percent(error.total)}" for name, error in above.items())
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
 

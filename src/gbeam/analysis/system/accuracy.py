@@ -46,7 +46,7 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import SLIPS
 from gbeam.mechanics.tree.system import System
-from gbeam.results.errors import ErrorEstimate, SystemErrors
+from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.parts import Base
 
 Again = Callable[[System], Solution]  # solution of another system, at the results' times
@@ -94,7 +94,7 @@ def unjudged(
     *,
     rest: float = math.nan,
     note: str = "",
-) -> SystemErrors:
+) -> Errors:
     """Errors by the time steps and the law of friction; `rest` is that of all other causes."""
 
     def error(key: Quantity) -> ErrorEstimate:
@@ -104,7 +104,7 @@ def unjudged(
     place, bent = error(PLACE), [error((name, DEFLECTION)) for name in system.flexible]
     worst_bent = max(bent, key=lambda each: each.step, default=place)
     loads, stress = ([error(key) for key in steps if key[1] in of] for of in (("force", "moment"), ("stress",)))
-    return SystemErrors(
+    return Errors(
         worst_bent if worst_bent.step > 0 else place, place, loads=worst(loads), stress=worst(stress), note=note
     )
 
@@ -120,7 +120,7 @@ def system_errors(
     start: Floats | None = None,
     friction: Mapping[Quantity, float] = MappingProxyType({}),
     tolerance: float = math.inf,
-) -> tuple[SystemErrors, tuple[str, ...]]:
+) -> tuple[Errors, tuple[str, ...]]:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
     of the beams' deflections, root loads and stress; and warnings of masses that a twist, which the model lacks, moves
     by more than a `tolerance`.
@@ -149,7 +149,7 @@ def system_errors(
     least = max(1, math.ceil(count * stride / MOST))  # steps from one that is looked at to the next
     skipped = max(1, min(int(period / PER_PERIOD / (stride * interval)), count // MANY)) if again is None else 1
 
-    def judge(solution: Solution, computed: Reading) -> tuple[SystemErrors, float, Lacking]:
+    def judge(solution: Solution, computed: Reading) -> tuple[Errors, float, Lacking]:
         """Errors by a solution at some of the steps, the frequency, rad/s, of a mode that these do not resolve, and
         what the theory of slender beams lacks.
         """
@@ -263,7 +263,7 @@ def _judged(
     lacking: Lacking,
     mesh: Reading | None,
     lost: str,
-) -> SystemErrors:
+) -> Errors:
     """Errors by what richer systems, thick beams and coarser meshes make of the `computed` readings."""
     judged, time = judged_bodies(solution.system), solution.of.time if len(solution.of.time) > 1 else None
     by_mesh = None if mesh is None else (mesh, computed)
@@ -281,7 +281,7 @@ def _judged(
     bent = of_bodies(lambda name: judgement.error((name, DEFLECTION)))
     loads, stress = of_bodies(judgement.loads), of_bodies(lambda name: judgement.error((name, "stress")))
     deforms = any((name, DEFLECTION) not in known.nothing for name in judged)
-    return SystemErrors(
+    return Errors(
         displacement=worst(bent) if deforms else of_places,
         place=of_places,
         loads=worst(loads),
@@ -298,7 +298,7 @@ def _judged(
     )
 
 
-def _bounded(judged: Mapping[str, Structure], known: _Known) -> SystemErrors | None:
+def _bounded(judged: Mapping[str, Structure], known: _Known) -> Errors | None:
     """Errors too far from the exact model's for an estimate, by a bound on the largest deflection of beams; None of
     other bodies.
     """
@@ -309,10 +309,10 @@ def _bounded(judged: Mapping[str, Structure], known: _Known) -> SystemErrors | N
         size, step = known.sizes[name, DEFLECTION], known.steps.get((name, DEFLECTION), math.nan)
         model = LARGEST * (size / body.length) ** 2
         bounds[name] = ErrorEstimate(step, math.nan, model, total=step + model)
-    return SystemErrors(worst(bounds.values()), note=TOO_FAR)
+    return Errors(worst(bounds.values()), note=TOO_FAR)
 
 
-def _missed(rings: _Rings, known: _Known, errors: SystemErrors, fastest: float) -> float:
+def _missed(rings: _Rings, known: _Known, errors: Errors, fastest: float) -> float:
     """Frequency, rad/s, of the fastest mode, below `fastest`, whose ringing may exceed the stated errors; 0 if none."""
     visible = np.zeros(len(rings.rate), dtype=bool)
     for quantity, amplitude in rings.sizes.items():
@@ -321,7 +321,7 @@ def _missed(rings: _Rings, known: _Known, errors: SystemErrors, fastest: float) 
     return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
 
 
-def doubts(errors: SystemErrors, tolerance: float) -> tuple[str, ...]:
+def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
     """Warnings of errors above a tolerance, with cause and cure, and of answers that are not judged."""
     warnings = [errors.note] if errors.note else []
     for what, size, error, by_beam in (
