@@ -2,6 +2,7 @@
 # make validate: compare with other codes and write docs/validation.md (minutes; what is not installed is left out);
 # make fuzz: the theorems of the tests on new examples, 10,000 malformed inputs, then runs that are interrupted, killed
 # and out of disk (half an hour);
+# make thorough: cases that make test leaves out, for others show the same (minutes);
 # make walk: every verb over every example and more trees, its files read again, its page opened (hours);
 # make docs: the documentation site, in out/docs;
 # make changelog: what the fragments in changes/ tell of the next release;
@@ -26,7 +27,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test web web-check check validate fuzz walk docs changelog benchmark mutants dist wheels lock audit clean
+.PHONY: demo test web web-check check validate fuzz thorough walk docs changelog benchmark mutants dist wheels lock audit clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -77,6 +78,9 @@ fuzz: .venv/dev-installed
 	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/pytest -n 2 --dist loadfile -m hypothesis --hypothesis-profile search
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz
 	OPENBLAS_NUM_THREADS=1 JAX_COMPILATION_CACHE_DIR=$(CACHE) $(BIN)/python -m fuzz.faults
+
+thorough: .venv/dev-installed
+	JAX_COMPILATION_CACHE_DIR=$(CACHE) $(KEEPING) $(BIN)/pytest -n 2 -m thorough
 
 # Some of it: .venv/bin/python -m fuzz.walk robot_arm run
 walk: .venv/dev-installed

@@ -55,6 +55,15 @@ MAPS = Path("/proc/self/maps")
 MOST_MAPS = 30_000  # of the 65,530 memory maps that a process may have by default
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out tests that are thorough, unless the marker or a test's own name asks for them."""
+    if "thorough" in config.getoption("markexpr") or any("::" in name for name in config.args):
+        return
+    rare = [item for item in items if item.get_closest_marker("thorough")]
+    config.hook.pytest_deselected(items=rare)
+    items[:] = [item for item in items if item not in set(rare)]
+
+
 def pytest_collection_finish() -> None:
     """Keep all that was imported and collected, and do not look through it again."""
     gc.collect()

@@ -75,11 +75,23 @@ def test_example_is_done_within_its_tolerance(path: Path) -> None:
     assert len(answer.comparisons) == len(case.tracks)
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_system_is_done_within_its_tolerance(name: str) -> None:
-    case = gbeam.read_scenario(next(p for p in EXAMPLES if p.stem == name))
+# Its 40 s, with richer systems that run beside it in its loop, take 20 s of processor time.
+SHORT = "response.duration=5 s", "response.tolerance=5 %"
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("satellite_two_panels", ()),
+        ("robot_arm", ()),
+        ("pointing_satellite", SHORT),
+        pytest.param("pointing_satellite", (), marks=pytest.mark.thorough),
+    ],
+)
+def test_system_is_done_within_its_tolerance(name: str, changes: tuple[str, ...]) -> None:
+    case = gbeam.read_scenario(next(p for p in EXAMPLES if p.stem == name), changes)
     assert not gbeam.describe(case).warnings
-    answer = run(name)
+    answer = run(name, *changes)
     (response,) = answer.responses.values()
     assert response.outcome == "done" and response.errors.place.total <= case.response.tolerance
     # Of deflections what plate action would change, if clamps hold the strips flat, is above it and warned of.

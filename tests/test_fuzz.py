@@ -17,11 +17,11 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks, with lim
 
 
 def test_malformed_inputs_are_refused_with_their_place() -> None:
-    command = [sys.executable, "-m", "fuzz", "--count", "60", "--seed", "10"]
+    command = [sys.executable, "-m", "fuzz", "--count", "30", "--seed", "10"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == 0 and done.stdout.endswith("no faults\n"), done.stdout + done.stderr
     refused = sum(int(words.split()[0]) for words in done.stdout.replace(":", ",").split(",") if "status 2" in words)
-    assert refused > 40
+    assert refused > 20
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -88,7 +88,7 @@ def test_a_traced_machine_needs_given_times() -> None:
         return simulate(MODEL, machine(arm=arm, **options), duration=DURATION, step=0.02).tip[220, 2]
 
     with pytest.raises(InputError, match='give spin_up and spin_down, or start = "idle"'):
-        jax.grad(tip)(3.3)
+        quickly_compiled(jax.grad(tip))(3.3)
     times = {"spin_up": 3.0, "spin_down": 3.0}
     slope = (tip(3.31, **times) - tip(3.29, **times)) / 0.02
     assert quickly_compiled(jax.grad(lambda arm: tip(arm, **times)))(3.3) == pytest.approx(slope, rel=1e-3)

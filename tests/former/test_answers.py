@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from tests.former.answers import Answers, answers, recorded
+from tests.former.cases import INTEGRATORS, MODELS, MOTIONS, QUESTIONS, SPECIMENS, case
 
+EVERY = 3  # of the seeds, one in so many is tried by every run of the tests, the others by `make thorough`
 EQUAL, ALIKE = 1e-9, 1e-2  # answers, and stated errors
 SLIGHT = 1e-7  # a stated error below is that of rounding
 # Differences that are faults of what was, of stated errors by the theory of slender beams. Thick beams were linearised
@@ -30,9 +32,32 @@ def apart(before: Answers, now: Answers) -> list[str]:
     return sorted(names)
 
 
-@pytest.mark.parametrize("before", recorded(), ids=lambda before: f"{before['seed']}")
+def often(seed: int) -> bool:
+    return seed % EVERY == 0
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        pytest.param(before, id=f"{before['seed']}", marks=() if often(before["seed"]) else pytest.mark.thorough)
+        for before in recorded()
+    ],
+)
 def test_it_is_as_it_was(before: Answers) -> None:
     assert apart(before, answers(before["seed"])) == FAULTS.get(before["seed"], [])
+
+
+def test_every_kind_is_among_those_that_are_tried_often() -> None:
+    """Specimens on every motion, models, integrators, steps and beginnings, and answers and refusals of questions."""
+    tried = [(before, case(before["seed"])) for before in recorded() if often(before["seed"])]
+    motions = [(of.kind, MOTIONS[before["seed"] // len(SPECIMENS) % len(MOTIONS)]) for before, of in tried]
+    assert len(set(motions)) == len(SPECIMENS) * len(MOTIONS)
+    assert {of.structure.kind for _, of in tried} == {*MODELS, "matrices", "rigid", "solid"}
+    assert {of.settings.integrator for _, of in tried} == set(INTEGRATORS)
+    assert {of.settings.step is None for _, of in tried} == {True, False}
+    assert {before["question"] for before, _ in tried if "refused" not in before} == set(QUESTIONS)
+    assert {before["question"] for before, _ in tried if "refused" in before} == {"static", "modes", "critical"}
+    assert {before["found"] for before, _ in tried if "found" in before} == {"done"}
 
 
 def test_a_difference_is_seen() -> None:

@@ -11,6 +11,8 @@ from scipy.linalg import eigh
 
 import gbeam as gb
 
+from ..lagrange import quickly_compiled
+
 WAYS = ("x", "y", "z", "rx", "ry", "rz")
 
 
@@ -61,6 +63,6 @@ def test_a_coupling_has_derivatives() -> None:
         box = gb.System({"box": gb.RigidBody(1.0, (0.1, 0.2, 0.3))}, {"foot": joint})
         return gb.simulate(box, duration=0.1, step=5e-3, estimate=False).signal("foot.rz")[-1]
 
-    slope, difference = jax.grad(aside)(-100.0), (aside(-100.1) - aside(-99.9)) / -0.2
+    slope, difference = quickly_compiled(jax.grad(aside))(-100.0), (aside(-100.1) - aside(-99.9)) / -0.2
     assert slope == pytest.approx(difference, rel=1e-5)
     assert gb.Joint("fixed", "box", coupling={}).holder.coupling is None

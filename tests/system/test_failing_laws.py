@@ -209,4 +209,4 @@ def test_a_law_that_jax_traces_is_named() -> None:
 
     for figure, words in ((angle, "raises NameError.* at 0 s"), (of_arrays, "raises AttributeError.* JAX traces it")):
         with pytest.raises(gb.ComputationError, match=f"controllers.pointing: .* {words}"):
-            jax.grad(figure)(3.0)
+            jax.jit(jax.grad(figure))(3.0)

@@ -112,7 +112,7 @@ def test_laws_that_cannot_be_traced_are_refused(law: Any, words: str) -> None:
         return figure(satellite(50.0, 0.1, gb.Feedback(measure=NAMES, drive=["axis.angle"], **arguments)))
 
     with pytest.raises(gb.InputError, match=words):
-        jax.grad(looped)(0.02)
+        quickly_compiled(jax.grad(looped))(0.02)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_laws_that_cannot_be_traced_are_refused(law: Any, words: str) -> None:
 )
 def test_numbers_that_are_looked_at_cannot_be_traced(question: Any, words: str) -> None:
     with pytest.raises(gb.InputError, match=words):
-        jax.grad(question)(0.1)
+        quickly_compiled(jax.grad(question))(0.1)
 
 
 def test_what_a_traced_beam_carries_cannot_be_measured() -> None:
@@ -138,7 +138,7 @@ def test_what_a_traced_beam_carries_cannot_be_measured() -> None:
         return figure(gb.System({"panel": panel}, {"axis": axis}, controllers={"c": law}))
 
     with pytest.raises(gb.InputError, match=r"has 'panel\.root\.moment_y' of a beam that JAX traces"):
-        jax.grad(looped)(70e9)
+        quickly_compiled(jax.grad(looped))(70e9)
 
 
 def test_a_law_in_continuous_time_is_sampled_by_tustins_rule() -> None:
