@@ -1,8 +1,8 @@
 """The questions that a case answers, each declared once: its function, what it needs, which record it gives.
 
 Sweeps, sensitivities and optimisation take their figures from these answers, by the names in this list; so do the
-command line, the app and the schema of scenarios. To add one, decorate its function, and name it for type checkers in
-:data:`Verb`, its options in :data:`Options`; nothing heavy is imported here.
+command line, the app and the schema of scenarios. To add one, decorate its function, and name it in
+:data:`gbeam.constants.Verb`, its options in :data:`Options`; nothing heavy is imported here.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, get_args, get_origin, get_type_hints
 
+from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.printable import advise
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from gbeam.results.study import Study, SystemStudy
     from gbeam.results.system import SystemModes, SystemRest
 
-Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]
 Varied = Literal["rate", "loads", "acceleration"]
 # Options of all questions by name, as studies take them; quantities are numbers in SI, or texts.
 Options = TypedDict(

@@ -13,18 +13,17 @@ from cyclopts import Parameter
 
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
+from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.questions import QUESTIONS, Needs, Question, differentiable, motion_of, prepared, refuse_rigid
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import AnyCase, Case
-    from gbeam.questions import Verb as Verb
     from gbeam.results.provenance import Provenance
     from gbeam.scenario.load import AnyScenario
 
     _Smooth = Verb
 else:
-    Verb = Literal[tuple(QUESTIONS)]
     _Smooth = Literal[differentiable()]
 
 

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.constants import Verb
 from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
-from gbeam.questions import Options, Verb
+from gbeam.questions import Options
 from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case, SpecimenCase, SystemCase
-from gbeam.constants import Sampler
+from gbeam.constants import Sampler, Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
-from gbeam.questions import Options, Verb
+from gbeam.questions import Options
 from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, may_share, width
