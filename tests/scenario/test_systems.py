@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pickle
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -100,7 +102,7 @@ def test_every_kind_of_joint_is_read() -> None:
 
 def test_a_system_is_that_of_python() -> None:
     case = build(loads(SATELLITE))
-    assert isinstance(case, gb.SystemCase) and case.response.chosen(free=True).integrator == "gauss"
+    assert case.response.chosen(free=True).integrator == "gauss"
     bus = gb.RigidBody(
         50.0, (8.0, 10.0, 12.0),
         points={"right": (0.5, 0.0, 0.0), "left": gb.Place((-0.5, 0.0, 0.0), (0.0, 0.0, np.pi))},
@@ -184,7 +186,6 @@ def _refused(text: str) -> tuple[Diagnostic, ...]:
 MISSING = {
     'kind = "free"\nbody = "bus"\n': ("joints.orbit", "kind is missing"),
     "axes = [[0, 1, 0]]\n": ("joints.hinge_left", "axes is missing"),
-    "damping_ratio = 0.005\n": ("bodies.left.damping_ratio", "is missing, and the response depends on it"),
     'mass = "50 kg"\n': ("bodies.bus", "mass is missing"),
     ", modes = { axial = 0, y = 1, z = 2 }": ("bodies.left.model", "modes is missing"),
 }
@@ -195,6 +196,26 @@ def test_what_is_missing_is_said(left_out: str) -> None:
     at = SATELLITE.rindex(left_out)
     first, *_ = _refused(SATELLITE[:at] + SATELLITE[at + len(left_out) :])
     assert (first.path, first.message) == MISSING[left_out] and first.line is not None
+
+
+def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it(
+    tmp_path: Path, gbeam: Callable[..., Any]
+) -> None:
+    given = "damping_ratio = 0.005\n"
+    file, at = tmp_path / "s.toml", SATELLITE.rindex(given)
+    file.write_text(SATELLITE[:at] + SATELLITE[at + len(given) :], encoding="utf-8")
+    for verb, answer in (
+        ("run", "the response"),
+        ("modes", "that of its modes"),
+        ("linearize", "the state-space model"),
+    ):
+        refused = gbeam(verb, file, "--json")
+        assert refused.status == 2, verb
+        problem = refused.json["error"]["problems"][0]
+        assert problem["path"] == "bodies.left.damping_ratio" and f"is missing, and {answer} depends on it" in str(
+            problem
+        )
+    assert gbeam("static", file).status == 0
 
 
 def test_a_body_that_hangs_on_nothing() -> None:
@@ -208,7 +229,7 @@ def test_a_scenario_without_a_motion_rests_and_a_beam_is_not_run_there() -> None
     text = SPECIMEN + model("FOAM", 1, 1, 1)
     case, moved = build(loads(text)), build(loads(text + SLEW + response("4 s")))
     assert case.response is None and list(case.environments) == ["ground"]
-    at_rest, on_hub = (gb.modes(each.assemble()).frequency for each in (case, moved))
+    at_rest, on_hub = (gb.modes(each.subject).frequency for each in (case, moved))
     assert QUESTIONS["modes"].answer(case).frequency == pytest.approx(at_rest, rel=1e-12)
     assert at_rest == pytest.approx(on_hub, rel=1e-12)
     assert gb.describe(case).duration is None and gb.describe(moved).duration == 4.0

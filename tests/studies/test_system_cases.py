@@ -17,7 +17,7 @@ SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=fal
 SWING = gb.SmoothStep(0.1, 0.5)
 
 
-def satellite() -> gb.SystemCase:
+def satellite() -> gb.Case:
     """The example as if it were made in Python."""
     return replace(gb.read_scenario(SATELLITE, SHORT), title="made")
 
@@ -92,7 +92,7 @@ def test_a_fit_finds_what_was_measured(modal: bool, tmp_path: Path, monkeypatch:
     assert fit.values[0] == pytest.approx(true, rel=1e-4) and fit.before[0] == 100.0
 
 
-def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.SystemCase:
+def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.Case:
     """A panel in a springy clamp on a wheel that is brought to a rate."""
     section, metal = gb.Section.rectangle(width=0.004, thickness=0.03), gb.Material(2700.0, 70e9)
     panel = gb.assemble(gb.Beam(1.0, section, metal, damping_ratio=0.001), "FOAM", y=2)
@@ -101,7 +101,7 @@ def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.SystemCase:
         "clamp": gb.Joint("fixed", "panel", on="wheel.root", stiffness={"rz": clamp}),
     }
     system = gb.System({"wheel": gb.RigidBody(1.0, (1.0, 1.0, 1.0)), "panel": panel}, joints)
-    return gb.SystemCase("swung", system, {}, gb.ResponseSettings(1.5))
+    return gb.Case("swung", system, {}, gb.ResponseSettings(1.5))
 
 
 def test_a_fit_takes_a_system_made_in_python(tmp_path: Path) -> None:
@@ -129,9 +129,7 @@ def test_errors_that_no_figure_needs_are_not_computed() -> None:
     judged, plain = (QUESTIONS["modes"].answer(case, needs=Needs(errors=each)) for each in (True, False))
     np.testing.assert_array_equal(judged.frequency, plain.frequency)
     assert np.isfinite(judged.error_estimate).all() and np.isnan(plain.error_estimate).all()
-    beam = gb.read_scenario(
-        "examples/hubbeam2009_slew_2p8.toml", ["model.modes={ axial = 1, y = 2, z = 0 }"]
-    ).assemble()
+    beam = gb.read_scenario("examples/hubbeam2009_slew_2p8.toml", ["model.modes={ axial = 1, y = 2, z = 0 }"]).subject
     assert gb.modes(beam, errors=False).errors is None and gb.modes(beam).errors is not None
 
 

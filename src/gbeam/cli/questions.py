@@ -137,8 +137,8 @@ def critical_speed(
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:
-        with loaded.placing():
-            loaded.case.one_beam("bodies", "a map of --masses")
+        with naming("--masses"):
+            loaded.case.require_beam()
         chosen = question.chosen(asked(options))
         if "vary" in chosen:
             raise InputError("--masses", f"stands beside --vary {chosen['vary']}", "a map is of hub rates")
@@ -166,7 +166,7 @@ def critical_map(
 ) -> int:
     """Print and write a map of critical speeds; arguments as of :func:`critical_speed`, `upper` in rad/s."""
     name, chosen = loaded.motion(motion, kind="hub")
-    case = loaded.beam
+    case = loaded.case
     kilograms = numbers("--masses", masses, "mass")
     length = case.beam.length
     places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
@@ -233,9 +233,6 @@ def linearize(
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    if rate is not None:
-        with loaded.placing():
-            loaded.case.one_beam("bodies", "--rate")
     for flag, other, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
@@ -246,8 +243,7 @@ def linearize(
 
     from gbeam.analysis.control.linearization import linearize
 
-    with loaded.placing():
-        structure = loaded.case.assemble()
+    structure = loaded.case.subject
     gauges = [gauge for text in strain_at for gauge in _gauges_at(structure, text)]
     options = {
         "order": "--balanced",
@@ -255,6 +251,7 @@ def linearize(
         "inputs": "--inputs",
         "outputs": "--outputs",
         "loop": "--loop",
+        "rate": "--rate",
     }
     with Watch(), loaded.placing(**options):
         system = linearize(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -37,7 +37,7 @@ _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 @typed
 def optimise(
-    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     minimise: str,
     over: Sequence[str],
     *,

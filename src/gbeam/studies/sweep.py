@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.constants import Sampler, Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -36,7 +36,7 @@ Progress = Callable[[int, int, int], None] | bool | None
 
 @typed
 def sweep(
-    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     over: Mapping[str, Any] | Sequence[str] = (),
     measure: Sequence[str] | Mapping[str, Function] = (),
     *,
