@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 import gbeam as gb
 from gbeam.mechanics.tree.joints import KINDS
-from gbeam.questions import QUESTIONS
+from gbeam.questions import QUESTIONS, Needs
 from gbeam.scenario import Diagnostic, ScenarioError, build, load, loads
 
 from ..scenarios import SLEW, SPECIMEN, model, response
@@ -154,8 +152,8 @@ WRONG = {
     "kind": ('kind = "free"', 'kind = "fre"', "joints.orbit.kind", "unknown choice", '"fre"'),
     "inertia": ('"12 kg m^2"]', '"120 kg m^2"]', "bodies.bus.inertia", "has the principal moments", None),
     "two moments": (', "12 kg m^2"]', "]", "bodies.bus.inertia", "has 2 entries", None),
-    "station": ('duration = "20 s"\n', 'duration = "20 s"\nstations = [1]\n', "response.stations", "is of one beam",
-                "stations"),
+    "station": ('duration = "20 s"\n', 'duration = "20 s"\nstations = [1]\n', "response.stations",
+                "is given beside joints", "stations"),
     "stops": ('axes = [[0, 1, 0]]', 'axes = [[0, 1, 0]]\nstops = ["30 deg", "-10 deg"]\nstop_stiffness = "1 kN m/rad"',
               "joints.hinge_left.stops.angle", "is 30 deg, -10 deg", "stops"),
     "gravity": ("[response]", '[system]\ngravity = [0, 0, "-1 g"]' + FLIGHT + "[response]", "system.gravity",
@@ -198,24 +196,19 @@ def test_what_is_missing_is_said(left_out: str) -> None:
     assert (first.path, first.message) == MISSING[left_out] and first.line is not None
 
 
-def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it(
-    tmp_path: Path, gbeam: Callable[..., Any]
-) -> None:
+def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it() -> None:
     given = "damping_ratio = 0.005\n"
-    file, at = tmp_path / "s.toml", SATELLITE.rindex(given)
-    file.write_text(SATELLITE[:at] + SATELLITE[at + len(given) :], encoding="utf-8")
-    for verb, answer in (
-        ("run", "the response"),
-        ("modes", "that of its modes"),
-        ("linearize", "the state-space model"),
+    at = SATELLITE.rindex(given)
+    case = build(loads(SATELLITE[:at] + SATELLITE[at + len(given) :], "s.toml"))
+    for ask, answer in (
+        (gb.study, "the response"),
+        (QUESTIONS["modes"].answer, "that of its modes"),
+        (lambda case: gb.linearize(case.subject), "the state-space model"),
     ):
-        refused = gbeam(verb, file, "--json")
-        assert refused.status == 2, verb
-        problem = refused.json["error"]["problems"][0]
-        assert problem["path"] == "bodies.left.damping_ratio" and f"is missing, and {answer} depends on it" in str(
-            problem
-        )
-    assert gbeam("static", file).status == 0
+        with pytest.raises(gb.InputError, match=f"bodies.left.damping_ratio is missing, and {answer} depends on it"):
+            ask(case)
+    (rest,) = QUESTIONS["static"].answer(case, needs=Needs(errors=False))
+    assert rest.displacement.shape[1] == 3
 
 
 def test_a_body_that_hangs_on_nothing() -> None:

@@ -12,6 +12,8 @@ import pytest
 import gbeam as gb
 from gbeam.questions import QUESTIONS, Needs
 
+from ..scenarios import FLIGHT, SPECIMEN, model, response
+
 SATELLITE = "examples/satellite_two_panels.toml"
 SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=false"]
 SWING = gb.SmoothStep(0.1, 0.5)
@@ -175,3 +177,28 @@ def test_a_system_has_figures_that_are_meant_where_none_is_named() -> None:
         "motions.ground.points.left.tip.displacement_max",
     )
     assert of_file.units == ("m", "m", "N m", "N m")
+
+
+def test_a_strip_on_a_fixed_joint_is_the_beam_and_has_its_slopes(tmp_path: Path) -> None:
+    """By derivatives of the runs themselves, exact, of the strip as of the motion that it feels."""
+    more = FLIGHT + response("0.2 s", step="2 ms")
+    alone, held = tmp_path / "alone.toml", tmp_path / "held.toml"
+    alone.write_text(SPECIMEN + model("FOAM", 0, 1, 2) + more, encoding="utf-8")
+    strip = SPECIMEN.replace("[beam]\n", '[bodies.strip]\nkind = "beam"\n')
+    table = model("FOAM", 0, 1, 2).replace("[model]", "[bodies.strip.model]")
+    joint = '[joints.clamp]\nkind = "fixed"\nbody = "strip"\n'
+    held.write_text(strip + table + joint + more, encoding="utf-8")
+    cases = [gb.read_scenario(each) for each in (alone, held)]
+    assert cases[0].subject == cases[1].subject and cases[1].points == ("tip",)
+    slopes = [
+        gb.sensitivity(
+            file, ["tip.z.max_abs"], [f"{table}.length", f"{table}.section.width", "motion.flight.acceleration.z.level"]
+        )
+        for file, table in ((alone, "beam"), (held, "bodies.strip"))
+    ]
+    assert set(slopes[1].methods) == {"exact"} and (slopes[0].derivatives[0, [0, 2]] != 0).all()
+    np.testing.assert_array_equal(slopes[0].derivatives, slopes[1].derivatives)
+    turned = gb.read_scenario(held, ["joints.clamp.turn=[0, 0, '10 deg']"])
+    assert turned.subject is turned.system and turned.points == ("strip.tip", "strip.root")
+    with pytest.raises(gb.InputError, match="case needs a beam that the base holds by its root, and it is of strip on"):
+        turned.beam  # noqa: B018

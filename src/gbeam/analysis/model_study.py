@@ -112,7 +112,8 @@ def compare_models(
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)
             answers[kind, name] = answer, seconds
-            point = point or (answer.point if isinstance(answer, _Tip) and isinstance(structure, System) else point)
+            if case.system.alone is None and isinstance(answer, _Tip):
+                point = point or answer.point
     rows, direction = [], {}
     for name in case.environments:
         reference = answers[REFERENCE, name][0]

@@ -30,7 +30,6 @@ from gbeam.errors import InputError, naming
 from gbeam.questions import QUESTIONS, Needs, Question
 
 if TYPE_CHECKING:
-    from gbeam.mechanics.structure import Structure
     from gbeam.mechanics.tree.system import System
     from gbeam.results.state_space import Gauge
 
@@ -244,7 +243,7 @@ def linearize(
     from gbeam.analysis.control.linearization import linearize
 
     structure = loaded.case.subject
-    gauges = [gauge for text in strain_at for gauge in _gauges_at(structure, text)]
+    gauges = [gauge for text in strain_at for gauge in _gauges_at(loaded.case.system, text)]
     options = {
         "order": "--balanced",
         "modes": "--modes",
@@ -273,18 +272,17 @@ def linearize(
     return 0
 
 
-def _gauges_at(structure: Structure | System, text: str) -> list[Gauge]:
+def _gauges_at(system: System, text: str) -> list[Gauge]:
     """Gauges of one --strain-at: on two faces of a beam at a position, or along the three axes of a solid's point."""
     from gbeam.analysis.control.linearization import surface_gauges
     from gbeam.guards.checks import choice, index_of
-    from gbeam.mechanics.structure import Structure
     from gbeam.results.state_space import Gauge
 
-    body, name = "", text
-    if not isinstance(structure, Structure):
+    body, name, structure = "", text, system.alone
+    if structure is None:
         body, _, name = text.partition(".")
-        choice("--strain-at", body, structure.flexible)
-        structure = structure.flexible[body]
+        choice("--strain-at", body, system.flexible)
+        structure = system.flexible[body]
     if structure.source is None:
         index_of("--strain-at", name, structure.points)
         return [Gauge(name, along=axis, body=body) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]

@@ -224,9 +224,8 @@ class Neighbourhood:
         return not motion or motion == name or self.case.tracks.get(name) == motion
 
     def _variant(self, case: Case, k: int, name: str) -> Variant:
-        if self.parameters[k].path.startswith("beam."):
-            return case.require_beam(), None
-        return None, case.motions[name]
+        of_motions = [place.startswith("motion.") for place in self.parameters[k].places]
+        return None if all(of_motions) else case.require_beam(), case.motions[name] if any(of_motions) else None
 
     def _enrich(self) -> None:
         """Give the case's model as many shapes as the runs of the study took."""
