@@ -58,11 +58,11 @@ def imitate(case: gb.Case, flight: gb.Response, spun: gb.Response, machine: gb.C
     gb.compare(flight, spun, tolerance_of="moment")  # type: ignore[arg-type]
     gb.plan("machine", machine, accept={"peaks": 0.03})
     gb.plan("machine", machine, accept={"peak": 0.03})  # type: ignore[arg-type]
-    of_case = case.title, case.beam, case.model, case.motions, case.response
+    of_case = case.title, case.system, case.motions, case.response
     gb.Case(*of_case, accept={"machine": {"tip": 0.02, "tolerance_of": "peak", "control": {"tip": 1.0}}})
     gb.Case(*of_case, accept={"machine": {"tipp": 0.02}})  # type: ignore[typeddict-unknown-key]
     gb.Case(*of_case, accept={"machine": {"tolerance_of": "moment"}})  # type: ignore[typeddict-item]
-    placed = case.assemble(), machine.flight, gb.choice_of(machine, turns="any"), gb.ResponseSettings(1.0)
+    placed = case.subject, machine.flight, gb.choice_of(machine, turns="any"), gb.ResponseSettings(1.0)
     gb.place(*placed, {"tip": 1.0, "root-moment": 0.5}, current=machine)
     gb.place(*placed, {"root_moment": 0.5}, current=machine)  # type: ignore[dict-item]
     print(gb.machines["large-15m"].limits, gb.machines["large-15"])  # type: ignore[index]
@@ -127,6 +127,5 @@ def kept(structure: gb.Structure, flight: gb.Response, spun: gb.Response, path: 
     gb.Joint("revolute", "panel", axes=np.array([[0, 1, 0]]), at=np.zeros(3))
     gb.campbell(structure, gb.Hub(radius=0.5), speeds=np.linspace(0, 5, 3), orders=np.arange(1, 3))
     case = gb.read_scenario(path)
-    assert isinstance(case, gb.Case)
     size: float = gb.study(case).responses["flight"].peaks.max_size
     return size

@@ -72,7 +72,9 @@ class Samples:
         np.save(self.matrix, np.eye(2))
         self.record = Path(__file__).parents[1] / "examples" / "data" / "f16_8g_turn.csv"
         self.case = gb.read_scenario(self.fast)
-        self.brief = gb.Case("brief", self.beam, gb.Model("FOAM", y=1, z=1), {"flight": self.still}, self.settings)
+        self.brief = gb.Case.of_beam(
+            "brief", self.beam, gb.Model("FOAM", y=1, z=1), {"flight": self.still}, self.settings
+        )
         self.system = gb.linearize(self.structure, self.hub)
         self.bar = gb.RigidBody(1.0, (1.0, 1.0, 1.0), points={"end": (0.1, 0.0, 0.0)})
         self.law = (np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), -np.ones((1, 1)))
@@ -99,14 +101,6 @@ class Samples:
                 },
             ),
             "Case": (
-                ("case", self.beam, gb.Model("FOAM", z=1), {"flight": self.still}, self.settings),
-                {"tracks": {}, "stations": (0.1,), "accept": {}, "sensors": {"tip": gb.Sensor()}, "read_from": origin},
-            ),
-            "SpecimenCase": (
-                ("case", "strip", self.structure, {"flight": self.still}, self.settings),
-                {"tracks": {}, "accept": {}, "sensors": {"tip": gb.Sensor()}, "read_from": origin},
-            ),
-            "SystemCase": (
                 ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
                 {"tracks": {}, "accept": {}, "sensors": {"bar.root": gb.Sensor()}, "read_from": origin},
             ),
@@ -356,8 +350,6 @@ class Samples:
             gb.SplineProfile(1.0, [0.0] * 12), gb.Sum((gb.constant(1.0), gb.constant(2.0))), comparison.mismatch,
             self.responses[0].errors, gb.System({"bar": self.bar}, {"hinge": self.hinge}),
         ]  # fmt: skip
-        calls = self.calls()
-        every += [getattr(gb, name)(*calls[name][0], **calls[name][1]) for name in ("SpecimenCase", "SystemCase")]
         matrices = gb.Section.of_matrices(np.eye(6), np.diag([0.2, 0.2, 0.2, 2e-5, 1e-5, 1e-5]))
         return {type(each).__name__: each for each in every} | {"Section.matrices": matrices}
 

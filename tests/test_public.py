@@ -14,13 +14,14 @@ import pytest
 
 import gbeam
 from gbeam import constants
+from gbeam.constants import Verb
 from gbeam.integrate.schemes import SCHEMES
 from gbeam.mechanics.models import KINDS as MODELS
 from gbeam.mechanics.tree.joints import KINDS as JOINTS
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.records.units import UNITS
-from gbeam.questions import QUESTIONS, Options, Verb
+from gbeam.questions import QUESTIONS, Options
 from gbeam.results.result import Result
 from gbeam.scenario.schema.scenario import PARAMETERS
 from gbeam.structure.shapes import SHAPES, Dimensions

@@ -167,7 +167,7 @@ def test_a_system_with_a_controller_keeps_its_fields_alone(samples: Samples) -> 
     bodies = {"bar": samples.bar, "panel": samples.structure}
     system = gb.System(bodies, joints, controllers={"law": law})
     settings = gb.ResponseSettings(duration=0.05, step=5e-3, integrator="gauss")
-    case = gb.SystemCase("swing", system, {"flight": samples.still}, settings)
+    case = gb.Case("swing", system, {"flight": samples.still}, settings)
     kept(
         system,
         [

@@ -1,15 +1,13 @@
 """Public names as type checkers see them; :mod:`gbeam` imports each from here when it is first used."""
 
 from gbeam.analysis.case import Case as Case
-from gbeam.analysis.case import SpecimenCase as SpecimenCase
-from gbeam.analysis.case import SystemCase as SystemCase
-from gbeam.analysis.case import describe as describe
 from gbeam.analysis.control.linearization import linearize as linearize
 from gbeam.analysis.control.linearization import nonlinear_system as nonlinear_system
 from gbeam.analysis.control.linearization import surface_gauges as surface_gauges
 from gbeam.analysis.control.reduction import balanced_truncation as balanced_truncation
 from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
 from gbeam.analysis.control.shaping import shape_command as shape_command
+from gbeam.analysis.describe import describe as describe
 from gbeam.analysis.environments import study as study
 from gbeam.analysis.imitation.comparison import compare as compare
 from gbeam.analysis.imitation.place import place as place

@@ -29,5 +29,6 @@ TimeUnit = Literal["s", "ms", "us", "ns", "min", "h", "day"]
 Check = Literal["sampling", "spikes", "unit", "sign", "dropouts", "columns"]  # of a record
 Coordinate = Literal["x", "y", "z", "rx", "ry", "rz", "angle", "displacement", "angle_1", "angle_2"]  # of joints
 Rate = Literal[Coordinate, "wx", "wy", "wz"]
+Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]  # of questions
 Across = Literal["y", "z"]  # the beam
 Direction = Literal["x", "y", "z", "rx", "ry", "rz"]  # the last three components of a rotation vector

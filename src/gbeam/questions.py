@@ -1,8 +1,8 @@
 """The questions that a case answers, each declared once: its function, what it needs, which record it gives.
 
 Sweeps, sensitivities and optimisation take their figures from these answers, by the names in this list; so do the
-command line, the app and the schema of scenarios. To add one, decorate its function, and name it for type checkers in
-:data:`Verb`, its options in :data:`Options`; nothing heavy is imported here.
+command line, the app and the schema of scenarios. To add one, decorate its function, and name it in
+:data:`gbeam.constants.Verb`, its options in :data:`Options`; nothing heavy is imported here.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, get_args, get_origin, get_type_hints
 
+from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.printable import advise
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase
+    from gbeam.analysis.case import Case
     from gbeam.results.comparison import MachinePlan
     from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.modal import Campbell, Modes
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from gbeam.results.study import Study, SystemStudy
     from gbeam.results.system import SystemModes, SystemRest
 
-Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]
 Varied = Literal["rate", "loads", "acceleration"]
 # Options of all questions by name, as studies take them; quantities are numbers in SI, or texts.
 Options = TypedDict(
@@ -121,7 +121,7 @@ class Question:
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of the records that it returns, of a beam and, if it answers for them, of a system."""
+        """Classes of the records that it returns."""
         from gbeam.results.study import KINDS
 
         annotation = self.answer.__annotations__["return"]
@@ -130,28 +130,22 @@ class Question:
         names = (part.strip().removeprefix("tuple[").partition(",")[0] for part in annotation.split("|"))
         return tuple(self.answer.__globals__.get(name) or KINDS[name] for name in names)
 
-    @property
-    def of_systems(self) -> bool:
-        """True if it answers for systems of bodies too."""
-        return bool(self.answer.__annotations__.get("case") == "AnyCase")
-
-    def refuse(self, case: AnyCase, before: str = "") -> None:
-        """Raise InputError if the case is a system, and the question not of systems, or is rigid and must deform."""
-        from gbeam.analysis.case import SystemCase
-
-        if isinstance(case, SystemCase) and not self.of_systems:
-            case.one_beam("bodies", f"{before}{self.name}")
+    def refuse(self, case: Case) -> None:
+        """Raise InputError if nothing of the case deforms, and the question is of what does."""
         if self.deforms:
             refuse_rigid(case, self.name)
 
+    def usual_of(self, case: Case) -> tuple[str, ...]:
+        """Patterns of the figures that studies take where none is named."""
+        return self.usual_of_systems if case.subject is case.system else self.usual
 
-def refuse_rigid(case: AnyCase, verb: str) -> None:
-    """Raise InputError if a specimen is rigid, and so has no coordinates."""
-    from gbeam.analysis.case import SpecimenCase
 
-    if isinstance(case, SpecimenCase) and not case.structure.size:
+def refuse_rigid(case: Case, verb: str) -> None:
+    """Raise InputError if the only body is held and rigid, and so has no coordinates."""
+    body = case.system.alone
+    if body is not None and not body.size:
         fix = "ask for run, which has the load at its corners, or plan; or give it as a solid"
-        raise InputError(f"bodies.{case.name}", f"is rigid, and {verb} is of what deforms", fix)
+        raise InputError(f"bodies.{case.system.order[0]}", f"is rigid, and {verb} is of what deforms", fix)
 
 
 QUESTIONS: dict[str, Question] = {}
@@ -196,7 +190,7 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
     return choice[0]  # if it is of another kind, the question refuses it with a reason
 
 
-def prepared(case: AnyCase, name: str) -> Any:
+def prepared(case: Case, name: str) -> Any:
     """Return a motion prepared for the response's times; None for ground at rest."""
     settings, motion = case.response, case.environments[name]
     if motion is None or settings is None:
@@ -204,31 +198,30 @@ def prepared(case: AnyCase, name: str) -> Any:
     return motion.over(settings.start, settings.start + settings.duration)
 
 
-def reduced(case: AnyCase, needs: Needs) -> AnyCase:
+def reduced(case: Case, needs: Needs) -> Case:
     """Return the case with settings by which only what is needed is computed, with the same digits. A case with
     automatic numbers of shapes, which follow from the errors, is returned as it is.
     """
     if needs.errors or case.automatic:
         return case
-    from gbeam.analysis.case import SystemCase
-
-    compared = isinstance(case, SystemCase) and case.tracks  # comparisons of systems read the loads of their beams
+    compared = case.subject is case.system and case.tracks  # whose comparisons read the loads of its beams
     loads = case.over_time.loads and bool(needs.loads or compared)
     return replace(case, response=replace(case.over_time, estimate=False, loads=loads))
 
 
-def _structure(case: AnyCase, needs: Needs) -> Any:
-    """Structure of a case; if no errors are needed, without the sources by which a steady state would estimate them."""
-    from gbeam.analysis.case import Case
+def _subject(case: Case, needs: Needs) -> Any:
+    """Argument of the analyses; if no errors are needed, without what a steady state would judge them by."""
+    body = case.system.alone
+    if body is None or body.source is None:
+        return case.subject
+    if needs.shapes:
+        length = body.source.beam.length
+        case = case.remade(stations=[length * i / (STATIONS - 1) for i in range(STATIONS)])
+    body = case.require_beam()
+    return body if needs.errors else replace(body, source=None, richer=None, coarser=None)
 
-    if not isinstance(case, Case):
-        return case.assemble()
-    length = case.beam.length
-    structure = case.assemble([length * i / (STATIONS - 1) for i in range(STATIONS)] if needs.shapes else None)
-    return structure if needs.errors else replace(structure, source=None, richer=None, coarser=None)
 
-
-def _time(case: AnyCase, at: float | None) -> float:
+def _time(case: Case, at: float | None) -> float:
     return case.start if at is None else at
 
 
@@ -252,9 +245,7 @@ def _time(case: AnyCase, at: float | None) -> float:
         "comparisons.{limited}.verdict.accepted",
     ),
 )
-def run(
-    case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
-) -> Study | SystemStudy:
+def run(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Study | SystemStudy:
     """Responses in all motions."""
     from gbeam.analysis.environments import study
 
@@ -268,13 +259,13 @@ def run(
     deforms=False,
 )
 def static(
-    case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[Deflection, ...] | tuple[SystemRest, ...]:
     """Deflections at rest in all motions, or one."""
     from gbeam.analysis.steady.static import static
 
-    structure, time = _structure(case, needs), _time(case, at)
-    if getattr(structure, "work", None) is None:  # else the loads of a beam bend it
+    structure, time = _subject(case, needs), _time(case, at)
+    if all(body.work is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
         case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
     return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
@@ -287,7 +278,7 @@ def static(
     usual_of_systems=("modes[0].frequency",),
 )
 def modes(
-    case: AnyCase,
+    case: Case,
     motion: str | None = None,
     at: float | None = None,
     needs: Needs = Needs(),
@@ -299,7 +290,7 @@ def modes(
 
     name, time = motion_of(case.environments, motion), _time(case, at)
     options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": needs.errors, "name": name}
-    structure = _structure(case, replace(needs, errors=True))  # the source has the sections, at whose edges twist shows
+    structure = _subject(case, replace(needs, errors=True))  # the source has the sections, at whose edges twist shows
     return modal.modes(structure, prepared(case, name), time, **options)
 
 
@@ -319,7 +310,7 @@ def _kind_varied(options: Mapping[str, Any]) -> str:
     motion=HUB,
 )
 def critical_speed(
-    case: AnyCase,
+    case: Case,
     motion: str | None = None,
     at: float | None = None,
     needs: Needs = Needs(),
@@ -336,26 +327,26 @@ def critical_speed(
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
     """Lowest rate, factor of the loads, or acceleration of the root, up to `to`, at which the equilibrium is lost."""
-    from gbeam.analysis.case import Case
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
-    from gbeam.mechanics.tree.system import System
 
     if to is not None and not to > 0:
         raise InputError("to", f"is {to:g}", "give a value above zero, where the search ends")
     name, time = motion_of(case.environments, motion, HUB), _time(case, at)
-    base, structure = prepared(case, name), _structure(case, needs)
+    base, structure = prepared(case, name), _subject(case, needs)
     options: dict[str, Any] = {"upper": to, "progress": progress}
-    if isinstance(structure, System):
+    body = case.system.alone
+    if body is None:
         options |= {"motion": base, "time": time}
     else:
         structure = structure.at_time(time)
     if vary == "loads":
-        still = None if isinstance(structure, System) else held_base(base, time)
+        still = None if body is None else held_base(base, time)
         return stability.critical_load(structure, still, **options)
     if vary == "acceleration":
-        if not isinstance(case, Case):
-            raise InputError("--vary", "is acceleration, which pushes one [beam] by its root", "give rate or loads")
+        if body is None:
+            problem = "is acceleration, which pushes one body by its root, and the bodies move on joints"
+            raise InputError("--vary", problem, "give rate or loads")
         return stability.buckling_acceleration(structure, **options)
     options["motion"] = base
     return replace(stability.critical_speed(structure, turning=turning, name=name, **options), motion=name)
@@ -363,7 +354,7 @@ def critical_speed(
 
 @question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None, deforms=False)
 def plan(
-    case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
+    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[MachinePlan, ...]:
     """Plans of all centrifuges, or one."""
     from gbeam.analysis.imitation.plan import plan
@@ -386,13 +377,13 @@ def plan(
     differentiable=False,
     deforms=False,
 )
-def place(case: AnyCase, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
+def place(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
     """Best placement, without the check by simulation, which takes longer: ``run`` at the placement is that check."""
     from gbeam.analysis.imitation.place import place, usual, usual_turns
     from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
-    structure, names = case.assemble(), (case.tracks[name], name)
+    structure, names = case.subject, (case.tracks[name], name)
     choice = choice_of(current, turns=usual_turns(structure))
     return place(structure, current.flight, choice, case.over_time, usual(structure), current=current, names=names)
 
@@ -404,7 +395,7 @@ def place(case: AnyCase, motion: str | None = None, at: float | None = None, nee
     differentiable=False,
 )
 def campbell(
-    case: AnyCase,
+    case: Case,
     motion: str | None = None,
     at: float | None = None,
     needs: Needs = Needs(),
@@ -426,12 +417,12 @@ def campbell(
     if to is None and getattr(base, "free", False):
         raise InputError("to", "is missing: the hub is driven by a torque", 'give the largest speed, such as "5 rad/s"')
     return campbell.campbell(
-        case.assemble(), base, turning=turning, start=from_ or 0.0, end=to, modes=modes,
+        case.subject, base, turning=turning, start=from_ or 0.0, end=to, modes=modes,
         orders=range(1, orders + 1), time=_time(case, at), name=name, progress=progress,
     )  # fmt: skip
 
 
-def machine_of(case: AnyCase, motion: str | None) -> tuple[str, Any]:
+def machine_of(case: Case, motion: str | None) -> tuple[str, Any]:
     """Return name and prepared motion of the centrifuge chosen by `motion`; InputError if that is none."""
     from gbeam.motion import Centrifuge
 

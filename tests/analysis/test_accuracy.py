@@ -304,8 +304,8 @@ def test_shapes_are_added_until_they_are_enough() -> None:
     beam = gb.Beam(0.3, section, gb.Material(2700, 70e9), damping_ratio=0.01, loads=[load])
     flight = {"flight": gb.Flight(z=0.0)}
     settings = gb.ResponseSettings(0.1, integrator="gauss")  # fewer steps
-    few = gb.study(gb.Case("", beam, gb.Model("FOAM", 1, 0, 1), flight, settings)).responses["flight"]
-    enough = gb.study(gb.Case("", beam, gb.Model.of("FOAM"), flight, settings)).responses["flight"]
+    few = gb.study(gb.Case.of_beam("", beam, gb.Model("FOAM", 1, 0, 1), flight, settings)).responses["flight"]
+    enough = gb.study(gb.Case.of_beam("", beam, gb.Model.of("FOAM"), flight, settings)).responses["flight"]
     assert few.q.shape[1] == 2 and few.errors.displacement.shapes > 0.05
     assert any("raise model.modes" in warning for warning in few.warnings)
     assert enough.q.shape[1] > 7 and enough.errors.displacement.shapes < 1e-3 and not enough.warnings
@@ -330,7 +330,7 @@ def test_a_run_without_its_estimate_is_the_same_run_and_says_so() -> None:
     assert 0 < chosen.errors.displacement.step < 1e-3 and np.isnan(chosen.errors.displacement.shapes)
     assert any("shapes and models are not judged: the settings say" in each for each in chosen.warnings)
     settings = gb.ResponseSettings(6.0, estimate=False)
-    case = gb.Case("", appendage(damping_ratio=0.0), gb.Model.of("FOAM"), {"slew": hub}, settings)
+    case = gb.Case.of_beam("", appendage(damping_ratio=0.0), gb.Model.of("FOAM"), {"slew": hub}, settings)
     with pytest.raises(gb.InputError, match=r"model\.modes"):
         gb.study(case)
 

@@ -126,7 +126,7 @@ def test_a_defect_is_named_with_its_traceback_in_a_file(
         raise KeyError(f"no{ESCAPE}such")
 
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.setattr("gbeam.analysis.case.describe", fail)
+    monkeypatch.setattr("gbeam.analysis.describe.describe", fail)
     answer = gbeam("check", fast, "--json")
     assert answer.status == 3 and answer.json["outcome"] == "defect"
     assert "gbeam: defect: KeyError: " in answer.err and "issue" in answer.err and "\x1b" not in answer.err
@@ -146,7 +146,7 @@ def test_too_little_memory_is_an_outcome(gbeam: Call, fast: Path, monkeypatch: p
     def fail(*_: object) -> None:
         raise MemoryError("Unable to allocate 3 TiB")
 
-    monkeypatch.setattr("gbeam.analysis.case.describe", fail)
+    monkeypatch.setattr("gbeam.analysis.describe.describe", fail)
     answer = gbeam("check", fast, "--json")
     assert answer.status == 1 and answer.json["outcome"] == "out of memory"
     assert answer.err == "gbeam: out of memory: the computation needs more than there is (Unable to allocate 3 TiB)\n"

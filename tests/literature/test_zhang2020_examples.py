@@ -98,7 +98,7 @@ def test_example_4_swings_by_its_corner_alone(jerk: int, idle: int, swing: float
     changes = {"motion.flight.acceleration.z.jerk": f"{jerk} g/s", "motion.centrifuge.idle": f"{idle} g"}
     shorter = {"response.duration": "4.5 s", "response.step": "1 ms", "response.estimate": "false"}
     case = read_scenario(EXAMPLE, [f"{key}={value}" for key, value in (changes | shorter).items()])
-    run = simulate(case.assemble(), case.motions["centrifuge"], case.over_time)
+    run = simulate(case.subject, case.motions["centrifuge"], case.over_time)
     plateau = 1 + 10 / jerk + KERNEL
     swings = 1e3 * np.ptp(run.tip[(run.time > plateau) & (run.time < plateau + 0.9), 2]) / 2
     assert swings == pytest.approx(swing, rel=0.004)

@@ -28,7 +28,7 @@ def errors(tmp_path: Path) -> Callable[..., tuple[Diagnostic, ...]]:
             scenario = loads(text, "s.toml", folder=tmp_path)
             assert building, "loads without an error"
             try:
-                build(scenario).assemble()
+                build(scenario)
             except InputError as error:
                 raise placed(scenario, [error]) from None
         assert str(caught.value) == "\n".join(map(str, caught.value.diagnostics))

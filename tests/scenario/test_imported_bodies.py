@@ -48,10 +48,11 @@ def test_standard_input_data_are_a_specimen_and_a_body(folder: Path) -> None:
     """Alone, and on a rigid joint: the body that Python reads, moved alike; computed again without its file."""
     alone = case_of(folder, SID + TURN + RESPONSE)
     read = gb.read_sid(folder / "strip.sid", damping_ratio=0.01)
-    np.testing.assert_array_equal(alone.structure.coefficients.k_ww, read.coefficients.k_ww)
+    np.testing.assert_array_equal(alone.subject.coefficients.k_ww, read.coefficients.k_ww)
     study = gb.study(alone)
     joint = '[joints.foot]\nkind = "fixed"\nbody = "strip"\n'
-    held = gb.study(case_of(folder, SID + joint + TURN + RESPONSE)).responses["turn"]
+    tree = case_of(folder, SID + joint + TURN + RESPONSE)
+    held = gb.simulate(tree.system, tree.motions["turn"], tree.response)
     place = held.place[:, held.points.index("strip.tip")]
     moved = study.responses["turn"]
     z = np.interp(moved.time, held.time, (place - place[0])[:, 2])
@@ -91,13 +92,13 @@ def modal_text(**changes: str) -> str:
 def test_a_modal_test_is_a_specimen(folder: Path) -> None:
     """Two masses move as oscillators under an even load: the first mode as the closed form, the second at rest."""
     case = case_of(folder, modal_text())
-    np.testing.assert_allclose(case.structure.rest[0] / (2 * np.pi), [20.0, 35.0])
-    modes = gb.modes(case.structure, case.motions["turn"])
+    np.testing.assert_allclose(case.subject.rest[0] / (2 * np.pi), [20.0, 35.0])
+    modes = gb.modes(case.subject, case.motions["turn"])
     np.testing.assert_allclose(modes.damping_ratio, [0.01, 0.02], rtol=1e-9)
     response = gb.study(case).responses["turn"]
     assert response.points == ("middle", "tip")
     np.testing.assert_allclose(response.at("middle"), response.tip, atol=1e-12)
-    rest = gb.static(case.structure, acceleration=(0, 0, 10.0))
+    rest = gb.static(case.subject, acceleration=(0, 0, 10.0))
     assert rest.tip[2] == pytest.approx(-10.0 / (40 * np.pi) ** 2, rel=1e-9)
     assert any("no geometric stiffness" in each for each in response.warnings)
 

@@ -44,7 +44,7 @@ def assembled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 def read(folder: Path, text: str = BODY) -> Any:
     (folder / "scenario.toml").write_text(text + FLIGHT, encoding="utf-8")
-    return gb.read_scenario(folder / "scenario.toml").structure
+    return gb.read_scenario(folder / "scenario.toml").subject
 
 
 def files(folder: Path) -> list[Path]:

@@ -10,7 +10,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.mechanics.tree.joints import KINDS
-from gbeam.questions import QUESTIONS
+from gbeam.questions import QUESTIONS, Needs
 from gbeam.scenario import Diagnostic, ScenarioError, build, load, loads
 
 from ..scenarios import SLEW, SPECIMEN, model, response
@@ -100,7 +100,7 @@ def test_every_kind_of_joint_is_read() -> None:
 
 def test_a_system_is_that_of_python() -> None:
     case = build(loads(SATELLITE))
-    assert isinstance(case, gb.SystemCase) and case.response.chosen(free=True).integrator == "gauss"
+    assert case.response.chosen(free=True).integrator == "gauss"
     bus = gb.RigidBody(
         50.0, (8.0, 10.0, 12.0),
         points={"right": (0.5, 0.0, 0.0), "left": gb.Place((-0.5, 0.0, 0.0), (0.0, 0.0, np.pi))},
@@ -152,8 +152,8 @@ WRONG = {
     "kind": ('kind = "free"', 'kind = "fre"', "joints.orbit.kind", "unknown choice", '"fre"'),
     "inertia": ('"12 kg m^2"]', '"120 kg m^2"]', "bodies.bus.inertia", "has the principal moments", None),
     "two moments": (', "12 kg m^2"]', "]", "bodies.bus.inertia", "has 2 entries", None),
-    "station": ('duration = "20 s"\n', 'duration = "20 s"\nstations = [1]\n', "response.stations", "is of one beam",
-                "stations"),
+    "station": ('duration = "20 s"\n', 'duration = "20 s"\nstations = [1]\n', "response.stations",
+                "is given beside joints", "stations"),
     "stops": ('axes = [[0, 1, 0]]', 'axes = [[0, 1, 0]]\nstops = ["30 deg", "-10 deg"]\nstop_stiffness = "1 kN m/rad"',
               "joints.hinge_left.stops.angle", "is 30 deg, -10 deg", "stops"),
     "gravity": ("[response]", '[system]\ngravity = [0, 0, "-1 g"]' + FLIGHT + "[response]", "system.gravity",
@@ -184,7 +184,6 @@ def _refused(text: str) -> tuple[Diagnostic, ...]:
 MISSING = {
     'kind = "free"\nbody = "bus"\n': ("joints.orbit", "kind is missing"),
     "axes = [[0, 1, 0]]\n": ("joints.hinge_left", "axes is missing"),
-    "damping_ratio = 0.005\n": ("bodies.left.damping_ratio", "is missing, and the response depends on it"),
     'mass = "50 kg"\n': ("bodies.bus", "mass is missing"),
     ", modes = { axial = 0, y = 1, z = 2 }": ("bodies.left.model", "modes is missing"),
 }
@@ -195,6 +194,21 @@ def test_what_is_missing_is_said(left_out: str) -> None:
     at = SATELLITE.rindex(left_out)
     first, *_ = _refused(SATELLITE[:at] + SATELLITE[at + len(left_out) :])
     assert (first.path, first.message) == MISSING[left_out] and first.line is not None
+
+
+def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it() -> None:
+    given = "damping_ratio = 0.005\n"
+    at = SATELLITE.rindex(given)
+    case = build(loads(SATELLITE[:at] + SATELLITE[at + len(given) :], "s.toml"))
+    for ask, answer in (
+        (gb.study, "the response"),
+        (QUESTIONS["modes"].answer, "that of its modes"),
+        (lambda case: gb.linearize(case.subject), "the state-space model"),
+    ):
+        with pytest.raises(gb.InputError, match=f"bodies.left.damping_ratio is missing, and {answer} depends on it"):
+            ask(case)
+    (rest,) = QUESTIONS["static"].answer(case, needs=Needs(errors=False))
+    assert rest.displacement.shape[1] == 3
 
 
 def test_a_body_that_hangs_on_nothing() -> None:
@@ -208,7 +222,7 @@ def test_a_scenario_without_a_motion_rests_and_a_beam_is_not_run_there() -> None
     text = SPECIMEN + model("FOAM", 1, 1, 1)
     case, moved = build(loads(text)), build(loads(text + SLEW + response("4 s")))
     assert case.response is None and list(case.environments) == ["ground"]
-    at_rest, on_hub = (gb.modes(each.assemble()).frequency for each in (case, moved))
+    at_rest, on_hub = (gb.modes(each.subject).frequency for each in (case, moved))
     assert QUESTIONS["modes"].answer(case).frequency == pytest.approx(at_rest, rel=1e-12)
     assert at_rest == pytest.approx(on_hub, rel=1e-12)
     assert gb.describe(case).duration is None and gb.describe(moved).duration == 4.0

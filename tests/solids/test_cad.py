@@ -140,7 +140,7 @@ def test_a_scenario_takes_a_shape_and_a_coarser_size(files: dict[str, Path]) -> 
         """,
         encoding="utf-8",
     )
-    structure = gb.read_scenario(scenario).structure
+    structure = gb.read_scenario(scenario).subject
     truth = solid(block("hexahedron20", (20, 4, 2), (0.1, 0.02, 0.005))).reduced(modes=3, damping_ratio=0.01)
     np.testing.assert_allclose(gb.modes(structure).frequency[:3], truth.frequency, rtol=5e-3)
     meshes = [read(files["bar.step"], element_size=size) for size in (4e-3, 8e-3)]

@@ -238,16 +238,29 @@ def test_a_gauge_says_where_it_is() -> None:
     assert all(a <= b for a, b in pairwise(flown()[0].time))
 
 
+# A bar with another body; one that the ground holds alone is answered as [bodies.bar] without joints.
+JOINED = """
+[joints.wall]
+kind = "fixed"
+body = "bar"
+[bodies.speck]
+kind = "rigid"
+mass = "1e-9 kg"
+[joints.speck]
+kind = "fixed"
+body = "speck"
+on = "bar.root"
+"""
+
+
 def test_gauges_of_a_scenario_from_the_command_line(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Three at a point, along its axes; a point that is not there is named."""
     assert main(["linearize", str(scenario), "--strain-at", "gauge"]) == 0
     assert "strain_2 gauge (0, 1, 0)" in " ".join(capsys.readouterr().out.split())
     assert main(["linearize", str(scenario), "--strain-at", "nose"]) == 2
     assert "--strain-at is 'nose'; choose from gauge, tip" in capsys.readouterr().err
-    text = scenario.read_text(encoding="utf-8").replace(
-        "[motion", '[joints.wall]\nkind = "fixed"\nbody = "bar"\n[motion'
-    )
-    scenario.write_text(text, encoding="utf-8")
+    text = scenario.read_text(encoding="utf-8")
+    scenario.write_text(text.replace("[motion", f"{JOINED}[motion"), encoding="utf-8")
     assert main(["linearize", str(scenario), "--strain-at", "bar.gauge"]) == 0
     assert "strain_2 bar, gauge (0, 1, 0)" in " ".join(capsys.readouterr().out.split())
     assert main(["linearize", str(scenario), "--strain-at", "gauge"]) == 2
@@ -260,7 +273,7 @@ def test_a_run_says_what_is_at_its_points(
 ) -> None:
     """Displacement, what an accelerometer reads, stress and strain of a mesh, alone and in a system."""
     at = "bar.gauge" if system else "gauge"
-    joint = '[joints.wall]\nkind = "fixed"\nbody = "bar"\n' if system else ""
+    joint = JOINED if system else ""
     sensor = f'{joint}[sensors."{at}"]\nfrequency = "20 Hz"\n[motion'
     scenario.write_text(scenario.read_text(encoding="utf-8").replace("[motion", sensor), encoding="utf-8")
     run = gb.study(gb.read_scenario(scenario)).responses["flight"]
@@ -324,7 +337,7 @@ def test_limits_of_what_a_system_does_not_have_are_refused() -> None:
     bodies: dict[str, Any] = {"rod": rod}
     joints = {"clamp": gb.Joint("fixed", "rod")}
     for more, accept, words in (
-        ({}, {"stress": 0.1}, "motion.spun.accept.stress is of a stress, and no body is a beam or a mesh"),
+        ({}, {"stress": 0.1}, "motion.spun.accept.stress is of a stress, and rod is rigid"),
         (
             {"strip": beam()},
             {"damage": 2.0, "damage_at": "rod.end"},
@@ -334,4 +347,4 @@ def test_limits_of_what_a_system_does_not_have_are_refused() -> None:
         held = joints | {name: gb.Joint("fixed", name) for name in more}
         system = gb.System(bodies | more, held)
         with pytest.raises(gb.InputError, match=words):
-            gb.SystemCase("", system, {}, gb.ResponseSettings(duration=1.0), accept={"spun": accept})
+            gb.Case("", system, {}, gb.ResponseSettings(duration=1.0), accept={"spun": accept})

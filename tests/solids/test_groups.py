@@ -58,7 +58,7 @@ def test_a_number_of_a_surface_and_a_volume_is_refused(
 
 def test_the_description_says_how_many_nodes_a_clamp_holds(tmp_path: Path) -> None:
     case = gb.read_scenario("examples/bracket.toml")
-    assert gb.describe(case).clamps == {"screwed": "93 of 2,213 nodes"}
+    assert next(iter(gb.describe(case).bodies.values())).clamps == {"screwed": "93 of 2,213 nodes"}
 
 
 def cantilever(repeated: int = 0) -> meshio.Mesh:

@@ -156,7 +156,7 @@ def test_a_scenario_has_links_too(tmp_path: Path) -> None:
     how: dict[str, Any] = {"links": {"face": "end"}, "carried": {"face": BODY}, "springs": springs}
     solid = gb.SolidMesh.read(tmp_path / "arm.inp", materials=STIFF, clamp="wall", unit="m", **how)
     case = gb.read_scenario(tmp_path / "scenario.toml")
-    assert case.structure == solid.reduced(modes=4, damping_ratio=0.01).structure
+    assert case.subject == solid.reduced(modes=4, damping_ratio=0.01).structure
     (tmp_path / "scenario.toml").write_text(SCENARIO.replace("3e-4", "3e-3"))
     with pytest.raises(gb.GbeamError, match=r"bodies.arm.carried.face.inertia: has the principal moments"):
         gb.read_scenario(tmp_path / "scenario.toml")

@@ -164,7 +164,7 @@ def test_the_weight_of_the_example_counts_on_its_bolts(down: int, pulled: float,
     (arm,) = case.motions.values()
     weight, along = 6.5 * G, 6.5 * 3.312 * 5.1622**2
     tipped = (0.052 * along - down * 0.012 * weight) / (2 * 0.28)
-    rest = gb.static(case.structure, arm, time=40.0, name="arm").specimen
+    rest = gb.static(case.subject, arm, time=40.0, name="arm").specimen
     assert rest is not None
     np.testing.assert_allclose(rest.tension[0, ::2], down * weight / 4 + tipped, rtol=1e-9)
     np.testing.assert_allclose(rest.compression[0, 1::2], tipped - down * weight / 4, rtol=1e-9)

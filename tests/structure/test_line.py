@@ -234,7 +234,6 @@ duration = "1 s"
             arguments = arguments.replace('length = "500 mm"\n', "")
         case = build(loads(arguments))
         assert case.beam.line is not None
-        case.assemble()
         return case.beam.line
 
     by_points = line('line = { points = [["0 mm", 0, 0], ["300 mm", 0, 0], ["300 mm", "200 mm", 0]], smooth = false }')

@@ -129,7 +129,7 @@ def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> N
         )
         case = inquiry.case(())
         assert settled(inquiry, case, cases).together == together
-        assert not settled(inquiry, replace(case, model=replace(case.model, automatic=True)), cases).together
+        assert not settled(inquiry, case.remade(model=replace(case.model, automatic=True)), cases).together
 
 
 def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast: Path) -> None:
@@ -155,7 +155,7 @@ WIDTH, RATE = "beam.section.width", "motion.hub.rate.duration"
 
 def panel(drive: str) -> gb.Case:
     """A satellite's panel, whose steps are found automatically."""
-    return gb.Case("A panel", PANEL, gb.Model("FOAM", y=2), {"hub": DRIVES[drive]}, gb.ResponseSettings(12.0))
+    return gb.Case.of_beam("A panel", PANEL, gb.Model("FOAM", y=2), {"hub": DRIVES[drive]}, gb.ResponseSettings(12.0))
 
 
 @pytest.mark.parametrize("drive", DRIVES)

@@ -54,7 +54,7 @@ def written(name: str, heads: str, *columns: Any) -> str:
 def histories(file: Path) -> tuple[Any, Any, Any]:
     """Tip, root moment, and strain at 10 mm on the face towards +z, of the true values."""
     case = true_case(file)
-    run = gb.simulate(case.assemble([0.01, 0.3]), case.motions["flight"], case.response)
+    run = gb.simulate(case.remade(stations=[0.01, 0.3]).subject, case.motions["flight"], case.response)
     assert run.loads is not None
     inertia, at = 0.02 * 0.004**3 / 12, list(run.loads.stations).index(0.01)
     strain = run.loads.section_moment[:, at, 1] * 0.002 / (TRUE[E] * inertia)
@@ -97,7 +97,7 @@ def test_true_values_lie_within_two_sigma_in_trials(released: Path) -> None:
 
 
 def test_frequencies_and_damping_give_the_values_and_their_errors(released: Path) -> None:
-    modes = gb.modes(true_case(released).assemble(), gb.read_scenario(released).motions["flight"])
+    modes = gb.modes(true_case(released).subject, gb.read_scenario(released).motions["flight"])
     data = written(
         "modes.csv", "mode,frequency [Hz],damping_ratio", [1, 2], 1.001 * modes.frequency, modes.damping_ratio
     )
@@ -111,7 +111,7 @@ def test_modes_are_fitted_with_the_options_of_their_question(released: Path, gbe
     """Modes without Coriolis forces, of a hub in the middle of its slew, give the values by the same modes only."""
     hub = Path(__file__).parents[2] / "examples" / "hubbeam2009_slew_3.toml"
     case, plain = gb.read_scenario(hub), {"gyroscopic": False}
-    modes = gb.modes(case.assemble(), case.motions["slew"], 15.0, **plain)
+    modes = gb.modes(case.subject, case.motions["slew"], 15.0, **plain)
     data = written("still.csv", "mode,frequency", np.arange(1, 4), modes.frequency[:3])
     with_options, without = (gb.fit(hub, data, [E], at=15.0, options=each).values[0] for each in (plain, None))
     true = case.beam.metal.youngs_modulus
@@ -125,7 +125,7 @@ def test_modes_are_fitted_with_the_options_of_their_question(released: Path, gbe
 
 def test_errors_and_intervals_of_few_data_are_those_of_linear_least_squares(released: Path) -> None:
     """Every frequency goes as the root of the stiffness: by hand, with n − 1 in the variance and Student's quantile."""
-    frequency = gb.modes(gb.read_scenario(released).assemble(), gb.read_scenario(released).motions["flight"]).frequency
+    frequency = gb.modes(gb.read_scenario(released).subject, gb.read_scenario(released).motions["flight"]).frequency
     measured = frequency * [1.004, 0.999]
     fitted = gb.fit(released, written("modes.csv", "mode,frequency [Hz]", [1, 2], measured), [E])
     weights = 1 / measured  # a frequency's noise is a share of it
@@ -141,7 +141,7 @@ def test_a_step_to_what_the_scenario_refuses_is_taken_back(released: Path) -> No
     """From 500 mm the first step is to 56 mm, where a point is beyond the tip: that was the end, said of the file."""
     point = 'beam.points=[{ name = "gauge", at = "280 mm" }]'
     true = gb.read_scenario(released, ["beam.length=300 mm", point])
-    modes = gb.modes(true.assemble(), true.motions["flight"])
+    modes = gb.modes(true.subject, true.motions["flight"])
     data = written("short.csv", "mode,frequency", [1, 2], modes.frequency)
     fitted = gb.fit(released, data, ["beam.length"], overrides=["beam.length=500 mm", point])
     assert fitted.values[0] == pytest.approx(0.3, rel=1e-6)
@@ -152,7 +152,7 @@ def test_a_value_may_end_at_the_edge_of_what_the_scenario_allows(released: Path,
     """A mass at the tip, and frequencies lower than any place gives: the derivative is of the side that is allowed."""
     at, heavy = "beam.masses[0].at", 'beam.masses=[{{ at = "{} mm", mass = "50 g" }}]'
     true = gb.read_scenario(released, [heavy.format(300)])
-    data = written("tip.csv", "mode,frequency", [1, 2], lower * gb.modes(true.assemble()).frequency[:2])
+    data = written("tip.csv", "mode,frequency", [1, 2], lower * gb.modes(true.subject).frequency[:2])
     fitted = gb.fit(released, data, [at], overrides=[heavy.format(250)])
     assert 0.299 < fitted.values[0] <= 0.3
     assert fitted.at_bound[0] and np.isnan(fitted.errors[0])
@@ -253,7 +253,7 @@ def test_the_values_of_a_loads_profile_are_found(released: Path) -> None:
     released.write_text(loaded, encoding="utf-8")
     level, duration = "beam.loads[0].force.z.level", "beam.loads[0].force.z.duration"
     case = gb.read_scenario(released, [f"{level}=2.3 N", f"{duration}=42 ms"])
-    run = gb.simulate(case.assemble(), case.motions["flight"], case.response)
+    run = gb.simulate(case.subject, case.motions["flight"], case.response)
     data = written("data.csv", "time,tip.z", TIME, CubicSpline(run.time, run.tip[:, 2])(TIME))
     fitted = gb.fit(released, data, [level, duration])
     assert fitted.values == pytest.approx([2.3, 0.042], rel=1e-5) and fitted.units == ("N", "s")

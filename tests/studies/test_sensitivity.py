@@ -64,7 +64,7 @@ def test_exact_derivatives_are_those_of_runs_by_the_same_steps(fast: Path, integ
 
 def _figures(file: Path, overrides: list[str]) -> list[float]:
     case = gb.read_scenario(file, overrides)
-    structure, settings = case.assemble(), replace(case.response, estimate=False)
+    structure, settings = case.subject, replace(case.response, estimate=False)
     flight, spin = (gb.simulate(structure, case.motions[name], settings, name=name) for name in ("flight", "spin"))
     loads = spin.peaks.loads
     assert loads is not None
@@ -79,8 +79,8 @@ def test_derivatives_are_of_as_many_shapes_as_their_run_needs(tolerance: str) ->
     inquiry = Inquiry(ScenarioTemplate(base), "run", None, None)
     about = Neighbourhood(inquiry, [])
     shapes = about.answer.responses["flight"].q.shape[1]
-    assert about.case.assemble().size == shapes
-    assert (shapes > inquiry.case(()).assemble().size) == (tolerance == "0.01 %")
+    assert about.case.subject.size == shapes
+    assert (shapes > inquiry.case(()).subject.size) == (tolerance == "0.01 %")
 
 
 def test_what_tracks_another_motion_feels_its_values_and_only_that(fast: Path) -> None:
@@ -101,7 +101,7 @@ def test_a_free_hub_is_differentiated_through_its_nonlinear_equations(tmp_path: 
         cases = [gb.read_scenario(file, [*step, f"{path}={float(slopes.values[j] + s * h)!r}"]) for s in (1, -1)]
         angles = []
         for case in cases:
-            hub = gb.simulate(case.assemble(), case.motions["slew"], case.response).hub
+            hub = gb.simulate(case.subject, case.motions["slew"], case.response).hub
             assert hub is not None
             angles.append(float(hub.angle[-1]))
         assert slopes.derivatives[0, j] == pytest.approx((angles[0] - angles[1]) / (2 * h), rel=AGREES)
@@ -141,7 +141,7 @@ def test_values_of_a_loads_profile_are_values_like_others(tmp_path: Path) -> Non
         ends = []
         for sign in (1, -1):
             case = gb.read_scenario(file, [*step, f"{path}={float(slopes.values[j] + sign * h)!r}"])
-            peaks = gb.simulate(case.assemble(), case.motions["flight"], case.response).peaks
+            peaks = gb.simulate(case.subject, case.motions["flight"], case.response).peaks
             ends.append(np.array([peaks.max_abs[2], peaks.time_of_max[2]]))
         difference = (ends[0] - ends[1]) / (2 * h)
         assert slopes.methods[j] == "exact"

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import gbeam as gb
 from gbeam.studies.shape import scenario_with
@@ -63,8 +64,67 @@ def test_other_goals_and_times(slewing: Path) -> None:
     assert not angle.to_rate and angle.goal == 0.5 and angle.duration == 8.0
     turned = gb.Hub(radius=0.5, rate=gb.SplineProfile(angle.duration, angle.coefficients)).angle(9.0)
     assert turned == pytest.approx(0.5, abs=1e-9)
-    same = gb.shape_command(case.assemble(()), gb.Hub(radius=0.5), angle=0.5, duration=8.0)
+    same = gb.shape_command(case.subject, gb.Hub(radius=0.5), angle=0.5, duration=8.0)
     assert np.array_equal(same.coefficients, angle.coefficients)
+
+
+MODAL = """
+[bodies.panel]
+kind = "modal-test"
+frequency = ["2 Hz", "3.5 Hz"]
+damping_ratio = ["1 %", "2 %"]
+nodes = [["150 mm", 0, 0], ["300 mm", 0, 0]]
+shapes = [[[0, 1, 0], [0, 1, 0]], [[0, 1, 0], [0, -1, 0]]]
+modal_mass = "0.2 kg"
+masses = ["0.1 kg", "0.1 kg"]
+points = { middle = 0 }
+[motion.hub]
+kind = "hub"
+radius = "200 mm"
+rate = { profile = "smooth-step", level = "0.5 rad/s", duration = "2 s" }
+[response]
+duration = "3 s"
+residual_from = "2 s"
+step = "5 ms"
+estimate = false
+"""
+
+
+def oscillators(rate: Any, times: np.ndarray) -> np.ndarray:
+    """Displacement of the two masses of MODAL across the hub's arm, (t, 2) m: two oscillators in its axes."""
+    shapes, at = np.array([[1.0, 1.0], [1.0, -1.0]]), 0.2 + np.array([0.15, 0.3])
+    omega, damping = 2 * np.pi * np.array([2.0, 3.5]), np.array([0.01, 0.02])
+
+    def slope(t: float, y: np.ndarray) -> np.ndarray:
+        turn, alpha = rate.derivatives(np.array([t]))
+        pushed = -alpha[0] * shapes @ at / 2 - (omega**2 - turn[0] ** 2) * y[:2] - 2 * damping * omega * y[2:]
+        return np.concatenate([y[2:], pushed])
+
+    how: Any = {"t_eval": times, "rtol": 1e-10, "atol": 1e-14}
+    return (solve_ivp(slope, (0.0, times[-1]), np.zeros(4), **how).y[:2].T) @ shapes
+
+
+def test_a_modal_test_on_a_hub_is_shaped_and_swept_together_as_oscillators_move(slewing: Path, gbeam: Call) -> None:
+    slewing.write_text(MODAL, encoding="utf-8")
+    smooth, times = gb.SmoothStep(0.5, 2.0), np.linspace(0.0, 4.0, 4001)
+    answer = gbeam("shape", slewing, "--json").json
+    left = {name: each["residual_amplitude"] for name, each in answer["commands"].items()}
+    after = oscillators(smooth, times)[times > 2.0, 1]
+    assert (
+        left["smooth-step"] == pytest.approx(np.ptp(after) / 2, rel=0.02)
+        and left["shaped"] < 1e-5 * left["smooth-step"]
+    )
+    levels = [0.2, 0.5, 0.8]
+    over = {"motion.hub.rate.level": levels}
+    swept = gb.sweep(slewing, over, ["tip.y.max_abs"], histories=["middle.y"], times=4)
+    for k, level in enumerate(levels):
+        moved = oscillators(gb.SmoothStep(level, 2.0), np.linspace(0.0, 3.0, 3001))
+        assert swept.measures["tip.y.max_abs"][k] == pytest.approx(np.abs(moved[:, 1]).max(), rel=2e-3)
+        assert swept.histories["middle.y"][k][1] == pytest.approx(moved[1000, 0], rel=5e-3)
+    refused = gbeam("sweep", slewing, "--over", "motion.hub.radius=0.1 m, 0.2 m", "--history", "root_moment.y")
+    assert refused.status == 2 and "is no history; write MOTION.QUANTITY.AXIS of middle, tip" in refused.err
+    refused = gbeam("shape", slewing, "--check", "exact")
+    assert refused.status == 2 and "no body is a beam, whose model could be another" in refused.err
 
 
 def test_what_it_refuses(slewing: Path, gbeam: Call) -> None:
@@ -144,4 +204,6 @@ def test_what_it_refuses_of_systems(slewing: Path, gbeam: Call) -> None:
     slewing.write_text(PANEL + shaken, encoding="utf-8")
     assert "motion.flight shakes or turns the system" in gbeam("shape", slewing, "--angle", "1 rad").err
     slewing.write_text(SLEWING, encoding="utf-8")
-    assert "of one beam" in gbeam("shape", slewing, "--joint", "axis.angle").err
+    assert (
+        "beam is on a hub, without joints; name it by --motion" in gbeam("shape", slewing, "--joint", "axis.angle").err
+    )

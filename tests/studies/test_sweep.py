@@ -66,7 +66,7 @@ def test_frequencies_of_twist_are_measured(fast: Path) -> None:
         fast, {"beam.length": [0.15, 0.3]}, ["modes[3].frequency"], verb="modes", motion="flight", overrides=twisting
     )
     case = gb.read_scenario(fast, twisting)
-    alone = gb.modes(case.assemble(), case.motions["flight"])
+    alone = gb.modes(case.subject, case.motions["flight"])
     assert alone.direction[3] == "twist" and swept.measures["modes[3].frequency"][1] == alone.frequency[3]
     # GJ/(ρ I_p) is that of the section: a frequency is as one over the length.
     assert swept.measures["modes[3].frequency"][0] == pytest.approx(2 * alone.frequency[3], rel=1e-2)

@@ -12,12 +12,14 @@ import pytest
 import gbeam as gb
 from gbeam.questions import QUESTIONS, Needs
 
+from ..scenarios import FLIGHT, SPECIMEN, model, response
+
 SATELLITE = "examples/satellite_two_panels.toml"
 SHORT = ["response.duration=0.5 s", "response.step=5 ms", "response.estimate=false"]
 SWING = gb.SmoothStep(0.1, 0.5)
 
 
-def satellite() -> gb.SystemCase:
+def satellite() -> gb.Case:
     """The example as if it were made in Python."""
     return replace(gb.read_scenario(SATELLITE, SHORT), title="made")
 
@@ -92,7 +94,7 @@ def test_a_fit_finds_what_was_measured(modal: bool, tmp_path: Path, monkeypatch:
     assert fit.values[0] == pytest.approx(true, rel=1e-4) and fit.before[0] == 100.0
 
 
-def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.SystemCase:
+def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.Case:
     """A panel in a springy clamp on a wheel that is brought to a rate."""
     section, metal = gb.Section.rectangle(width=0.004, thickness=0.03), gb.Material(2700.0, 70e9)
     panel = gb.assemble(gb.Beam(1.0, section, metal, damping_ratio=0.001), "FOAM", y=2)
@@ -101,7 +103,7 @@ def swung(clamp: float = 900.0, rate: Any = SWING) -> gb.SystemCase:
         "clamp": gb.Joint("fixed", "panel", on="wheel.root", stiffness={"rz": clamp}),
     }
     system = gb.System({"wheel": gb.RigidBody(1.0, (1.0, 1.0, 1.0)), "panel": panel}, joints)
-    return gb.SystemCase("swung", system, {}, gb.ResponseSettings(1.5))
+    return gb.Case("swung", system, {}, gb.ResponseSettings(1.5))
 
 
 def test_a_fit_takes_a_system_made_in_python(tmp_path: Path) -> None:
@@ -129,9 +131,7 @@ def test_errors_that_no_figure_needs_are_not_computed() -> None:
     judged, plain = (QUESTIONS["modes"].answer(case, needs=Needs(errors=each)) for each in (True, False))
     np.testing.assert_array_equal(judged.frequency, plain.frequency)
     assert np.isfinite(judged.error_estimate).all() and np.isnan(plain.error_estimate).all()
-    beam = gb.read_scenario(
-        "examples/hubbeam2009_slew_2p8.toml", ["model.modes={ axial = 1, y = 2, z = 0 }"]
-    ).assemble()
+    beam = gb.read_scenario("examples/hubbeam2009_slew_2p8.toml", ["model.modes={ axial = 1, y = 2, z = 0 }"]).subject
     assert gb.modes(beam, errors=False).errors is None and gb.modes(beam).errors is not None
 
 
@@ -177,3 +177,28 @@ def test_a_system_has_figures_that_are_meant_where_none_is_named() -> None:
         "motions.ground.points.left.tip.displacement_max",
     )
     assert of_file.units == ("m", "m", "N m", "N m")
+
+
+def test_a_strip_on_a_fixed_joint_is_the_beam_and_has_its_slopes(tmp_path: Path) -> None:
+    """By derivatives of the runs themselves, exact, of the strip as of the motion that it feels."""
+    more = FLIGHT + response("0.2 s", step="2 ms")
+    alone, held = tmp_path / "alone.toml", tmp_path / "held.toml"
+    alone.write_text(SPECIMEN + model("FOAM", 0, 1, 2) + more, encoding="utf-8")
+    strip = SPECIMEN.replace("[beam]\n", '[bodies.strip]\nkind = "beam"\n')
+    table = model("FOAM", 0, 1, 2).replace("[model]", "[bodies.strip.model]")
+    joint = '[joints.clamp]\nkind = "fixed"\nbody = "strip"\n'
+    held.write_text(strip + table + joint + more, encoding="utf-8")
+    cases = [gb.read_scenario(each) for each in (alone, held)]
+    assert cases[0].subject == cases[1].subject and cases[1].points == ("tip",)
+    slopes = [
+        gb.sensitivity(
+            file, ["tip.z.max_abs"], [f"{table}.length", f"{table}.section.width", "motion.flight.acceleration.z.level"]
+        )
+        for file, table in ((alone, "beam"), (held, "bodies.strip"))
+    ]
+    assert set(slopes[1].methods) == {"exact"} and (slopes[0].derivatives[0, [0, 2]] != 0).all()
+    np.testing.assert_array_equal(slopes[0].derivatives, slopes[1].derivatives)
+    turned = gb.read_scenario(held, ["joints.clamp.turn=[0, 0, '10 deg']"])
+    assert turned.subject is turned.system and turned.points == ("strip.tip", "strip.root")
+    with pytest.raises(gb.InputError, match="case needs a beam that the base holds by its root, and it is of strip on"):
+        turned.beam  # noqa: B018

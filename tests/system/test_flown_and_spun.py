@@ -97,7 +97,10 @@ material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa", yield_strength 
 OF_BEAM = f'[beam]{BEAM}\n[model]\nkind = "FOAM"\nmodes = {{ axial = 0, y = 1, z = 2 }}'
 OF_SYSTEM = (
     f'[bodies.strip]\nkind = "beam"{BEAM}\nmodel = {{ kind = "FOAM", modes = {{ axial = 0, y = 1, z = 2 }} }}\n'
-    '[joints.clamp]\nkind = "fixed"\nbody = "strip"'
+    '[joints.clamp]\nkind = "fixed"\nbody = "strip"\n'
+    # A strip alone would be the one body of a [beam].
+    '[bodies.speck]\nkind = "rigid"\nmass = "1e-9 kg"\n'
+    '[joints.speck]\nkind = "fixed"\nbody = "speck"\non = "strip.root"'
 )
 
 
@@ -167,9 +170,11 @@ def test_the_machine_of_a_system_is_planned_as_that_of_the_beam(tmp_path: Path) 
 
 def test_a_sweep_of_a_case_made_in_python_is_judged() -> None:
     structure = gb.assemble(STRIP, "FOAM", axial=0, y=1, z=2)
-    system = gb.System({"strip": structure}, {"clamp": gb.Joint("fixed", "strip")})
+    bodies = {"strip": structure, "speck": gb.RigidBody(1e-9)}
+    joints = {"clamp": gb.Joint("fixed", "strip"), "speck": gb.Joint("fixed", "speck", on="strip.root")}
     motions, settings = {"flight": TURN, "spun": MACHINE}, gb.ResponseSettings(**OPTIONS)
-    case = gb.SystemCase("swept", system, motions, settings, {"spun": "flight"}, {"spun": {"tip": 0.005}})
+    more: Any = {"tracks": {"spun": "flight"}, "accept": {"spun": {"tip": 0.005}}}
+    case = gb.Case("swept", gb.System(bodies, joints), motions, settings, **more)
     over = {"bodies.strip.length": [0.28, 0.3]}  # peaks differ by 0.9 and 0.0 %
     assert gb.sweep(case, over).measures["comparisons.spun.verdict.accepted"].tolist() == [0.0, 1.0]
     assert gb.sweep(replace(case, accept={}), over).measures["comparisons.spun.verdict.followed"].tolist() == [1.0, 1.0]

@@ -90,7 +90,7 @@ def tip(folder: Path, text: str) -> np.ndarray:
     path.write_text(text, encoding="utf-8")
     case: Any = read_scenario(path)
     (motion,) = case.motions.values()
-    return simulate(case.assemble(), motion, case.response).tip
+    return simulate(case.subject, motion, case.response).tip
 
 
 PLAIN = {key: next(iter(SIZES[kind])) for key, (kind, _) in VALUES.items()}

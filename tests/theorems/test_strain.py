@@ -123,14 +123,14 @@ def test_strains_of_linear_models_of_fits_and_of_loads_agree(
     across = (gb.Sum((gb.constant(each), swing)) for each in a[1:])
     flight = gb.Flight(gb.constant(a[0]), *across)
     settings = gb.ResponseSettings(2 * period, step=period / 40, integrator="gauss", estimate=False)
-    case = gb.Case("strain", beam, gb.Model("FOAM", 1, 2, 2, "adapted"), {"flight": flight}, settings)
+    case = gb.Case.of_beam("strain", beam, gb.Model("FOAM", 1, 2, 2, "adapted"), {"flight": flight}, settings)
     time = np.linspace(0.0, 2 * period, 81)
     data = tmp_path_factory.mktemp("strain") / "data.csv"
     heads = [f"strain.{FACES[k % 4]}@{x!r} m" for k, x in enumerate(at)]
     np.savetxt(data, np.column_stack([time, *np.ones((len(at), len(time)))]), delimiter=",", comments="",
                header=",".join(["time", *heads]))  # fmt: skip
     measurement = read_measurement(data, case)
-    run = gb.simulate(measurement.instrumented(case).assemble(), flight, settings)
+    run = gb.simulate(measurement.instrumented(case).subject, flight, settings)
     assert run.outcome == "done" and run.loads is not None and run.qdd is not None
     of_fit = measurement.read(case, gb.Study("strain", {"flight": run}, ())).reshape(len(at), -1)
 
@@ -139,7 +139,7 @@ def test_strains_of_linear_models_of_fits_and_of_loads_agree(
     carried = run.loads.section_force[:, which], run.loads.section_moment[:, which]
     of_loads = [by_hand(beam, gauge, *(x[:, k] for x in carried)) for k, gauge in enumerate(gauges)]
 
-    system = strains(gb.linearize(case.assemble(), flight, gauges=gauges))
+    system = strains(gb.linearize(case.subject, flight, gauges=gauges))
     state = np.concatenate([run.q, run.qd], axis=1) - system.state
     drive = np.concatenate([run.base.a_WO_B, run.base.alpha_WB_B], axis=1) - system.input[:6]
     of_plant = system.output[:, None] + system.c @ state.T + system.d[:, :6] @ drive.T

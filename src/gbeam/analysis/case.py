@@ -1,31 +1,22 @@
-"""Cases: one beam in one model, another specimen, or a system of bodies, the environments it is put into, and how its
-response is computed.
-"""
+"""Cases: a system of bodies, the environments it is put into, and how its response is computed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import InitVar, dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, overload
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike
-
+from gbeam.analysis.one_body import OneBody, points_of, refuse_no_point, structure_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import kinds
-from gbeam.mechanics.assembly import assemble
-from gbeam.mechanics.fields.basis import FAMILIES, quadrature
 from gbeam.mechanics.models import Model
-from gbeam.mechanics.plausibility import input_warnings
-from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.joints import GROUND, Joint
-from gbeam.mechanics.tree.system import RigidBody, System
-from gbeam.motion import Flight
-from gbeam.motion.protocol import Motion, notes_on
+from gbeam.mechanics.tree.joints import GROUND
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
 from gbeam.results.criteria import (
     AT_POINTS,
     DISPLACEMENT,
@@ -35,53 +26,160 @@ from gbeam.results.criteria import (
     refuse_lacking,
     refuse_unknown,
 )
-from gbeam.results.description import (
-    BodyOfSystem,
-    ControllerOfSystem,
-    Description,
-    ForceOfSystem,
-    JointOfSystem,
-    SpecimenDescription,
-    SystemDescription,
-)
-from gbeam.results.provenance import Provenance
+from gbeam.results.provenance import Provenance, ScenarioText
 from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
     from gbeam.results.response import Sensor
-    from gbeam.scenario.load import AnyScenario
-    from gbeam.scenario.schema.scenario import Scenario
-    from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
 
-class _InEnvironments(Value):
-    """A beam, another specimen or a system that is put into environments."""
+@kinds(accept={"*": KINDS_OF_LIMITS})
+@typed
+@dataclass(frozen=True, eq=False, repr=False)
+class Case(OneBody, Value):
+    """Objects that a scenario describes.
+
+    Parameters
+    ----------
+    title : str
+    system : System
+        The bodies; of one on the base :meth:`System.of`, of one beam :meth:`of_beam`.
+    motions : mapping of str to motion
+        Of the base, by name, in the scenario's order; it rests without any.
+    response : ResponseSettings or None
+        None where nothing is computed over time.
+    tracks : mapping of str to str
+        Name of the flight that each centrifuge tracks.
+    accept : mapping of str to mapping
+        By the centrifuge's name, the limits that decide whether it is accepted, ``tolerance`` and ``tolerance_of``, and
+        of several bodies ``point``, whose displacement is compared: see :func:`gbeam.compare`.
+    provenance : Provenance, optional
+        Of the scenario; results of the whole case have it.
+    sensors : mapping of str to Sensor
+        Accelerometers by the names of points, whose readings results have.
+    read_from : ScenarioText, optional
+        The text that these are the objects of.
+
+    Attributes
+    ----------
+    scenario : ScenarioText or None
+        The text it was read from; None of a case that is made, or changed, in Python.
+    beam, model, stations
+        Of the only body, where it is a beam that the base holds.
+
+    Raises
+    ------
+    InputError
+        If gravity is given beside a motion, which carries its own, a hub that turns freely carries several bodies or a
+        rigid one, a point of `sensors` or `accept` is not there, or a limit is of what the bodies do not have.
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
+    >>> list(case.motions)
+    ['flight', 'centrifuge']
+    >>> case.tracks["centrifuge"]
+    'flight'
+    >>> gb.read_scenario("examples/satellite_two_panels.toml").system.order
+    ('bus', 'right', 'left')
+    """
 
     title: str
+    system: System
     motions: Mapping[str, Motion]
     response: ResponseSettings | None
-    accept: Mapping[str, Acceptance]
-    no_beam: ClassVar[tuple[str, str]] = ("", "")  # problem and fix of the error of `one_beam`
+    tracks: Mapping[str, str] = field(default_factory=dict)
+    accept: Mapping[str, Acceptance] = field(default_factory=dict)
+    provenance: Provenance | None = None
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)
+    read_from: InitVar[ScenarioText | None] = None
+    scenario: ScenarioText | None = field(default=None, init=False, repr=False, compare=False)
 
-    def __post_init__(self, read_from: AnyScenario | None) -> None:
-        if read_from is not None and not hasattr(type(read_from), "model_fields"):  # pydantic's, not imported for it
+    @classmethod
+    @typed
+    def of_beam(
+        cls,
+        title: str,
+        beam: Beam,
+        model: Model,
+        motions: Mapping[str, Motion],
+        response: ResponseSettings | None,
+        tracks: Mapping[str, str] | None = None,
+        *,
+        stations: Numbers = (),
+        accept: Mapping[str, Acceptance] | None = None,
+        sensors: Mapping[str, Sensor] | None = None,
+    ) -> Case:
+        """Make the case of one beam, whose root the base holds.
+
+        Parameters
+        ----------
+        title, motions, response, tracks, accept, sensors
+            As of the class.
+        beam : Beam
+        model : Model
+        stations : tuple of float
+            Positions of output from the root besides the tip, m.
+
+        Raises
+        ------
+        InputError
+            If the beam does not fit its model, with its place in the scenario.
+
+        Examples
+        --------
+        >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+        >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+        >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
+        >>> gb.Case.of_beam("A strip", beam, gb.Model("FOAM", 1, 2, 2), {"turn": turn}, gb.ResponseSettings(6.0))
+        Case('A strip', FOAM, {turn: flight}, 6 s)
+        """
+        system = System.of(structure_of(beam, model, tuple(stations)), BEAM)
+        return cls(title, system, motions, response, tracks or {}, accept or {}, sensors=sensors or {})
+
+    def __post_init__(self, read_from: ScenarioText | None) -> None:
+        if not isinstance(read_from, ScenarioText | None):
             fix = "leave it out: read_scenario gives it"
             raise InputError("read_from", f"is of type {type(read_from).__name__}", fix)
         for name, limits in self.accept.items():
             refuse_unknown(f"motion.{name}.accept", limits)
+        for name, motion in self.motions.items():
+            self._refuse_motion(f"motion.{name}", name, motion)
+        for error in refusals(self.system, self.accept, self.sensors):
+            raise error
         # By another name than the field's, so that dataclasses.replace leaves it behind.
         object.__setattr__(self, "scenario", read_from)
 
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {motion.kind}" if motion else name for name, motion in self.environments.items())
-        subject = self.model.kind if isinstance(self, Case) else repr(self.assemble())  # type: ignore[attr-defined]
+        body = self.system.alone
+        subject = repr(self.subject) if body is None or body.source is None else body.kind
         duration = "" if self.response is None else f", {self.response.duration:g} s"
         return f"{type(self).__name__}({self.title!r}, {subject}, {{{motions}}}{duration})"
 
+    def _refuse_motion(self, where: str, name: str, motion: Motion) -> None:
+        """Raise InputError for a motion of the base that the system cannot have."""
+        body = self.system.alone
+        if motion.free and body is None:
+            fix = "give it as a body on a revolute joint"
+            raise InputError(where, "is a hub that turns freely, and carries a system", fix)
+        if motion.free and body is not None and not body.size:
+            fix = "give the hub a rate: the motion of a rigid specimen follows from it alone"
+            raise InputError(where, "is a hub that turns freely, and carries a rigid specimen", fix)
+        if self.system.gravity is not None:
+            fix = f"leave one out: {name} carries its own, as specific force"
+            raise InputError("system.gravity", "is given beside a motion of the ground", fix)
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Names of the points that results have: ``tip`` of a body alone on the base, else ``body.point``."""
+        return points_of(self.system)
+
     @property
     def automatic(self) -> bool:
-        """True if the numbers of shapes are chosen by the errors."""
-        return False
+        """True if a study chooses the numbers of shapes of the only beam by the errors that they leave."""
+        body = self.system.alone
+        return body is not None and body.source is not None and body.source.automatic
 
     @property
     def environments(self) -> Mapping[str, Motion | None]:
@@ -95,7 +193,7 @@ class _InEnvironments(Value):
 
     @property
     def over_time(self) -> ResponseSettings:
-        """Settings of the response; InputError where no duration is given, or nothing moves one structure's base."""
+        """Settings of the response; InputError where no duration is given, or nothing moves what is on the base."""
         self.require_motion()
         if self.response is None:
             raise InputError("response", "duration is missing", 'no record gives one: add duration = "16 s"')
@@ -104,420 +202,74 @@ class _InEnvironments(Value):
     @property
     def extent(self) -> dict[str, Any]:
         """Argument of :func:`gbeam.plan` that says where the specimen is."""
-        return extent_of(self.beam if isinstance(self, Case) else self.assemble())  # type: ignore[attr-defined]
+        return extent_of(self.system)
 
     def require_motion(self) -> None:
-        """Raise InputError where nothing moves the base of one structure."""
-        if not self.motions and not isinstance(self, SystemCase):
+        """Raise InputError where a body is held by a base that nothing moves."""
+        if not self.motions and self.system.alone is not None:
             fix = 'add what the base does, each [motion.NAME], such as kind = "flight"; `gbeam new` shows how'
             raise InputError("motion", "is missing", fix)
 
-    def _stress_limits(self, lacking: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-        """Yield place in the scenario and point of every limit on stress; InputError for limits on what is lacking."""
-        for name, limits in self.accept.items():
-            where = f"motion.{name}.accept"
-            refuse_lacking(where, limits, lacking)
-            yield from ((f"{where}.{key}", limits[key]) for key in AT_POINTS if limits.get(key) is not None)
 
-    def one_beam(self, where: str, what: str) -> Case:
-        """Return the case if it is of one beam; else raise InputError at `where`: the answer `what` needs a beam."""
-        problem, fix = self.no_beam
-        raise InputError(where, f"{problem}, and {what} is of one beam", fix)
+BEAM = "beam"  # name of the body of a case of one beam
 
 
-@kinds(accept={"*": KINDS_OF_LIMITS})
-@typed
-@dataclass(frozen=True, eq=False, repr=False)
-class Case(_InEnvironments):
-    """Objects that a scenario describes.
-
-    Parameters
-    ----------
-    title : str
-    beam : Beam
-    model : Model
-    motions : mapping of str to motion
-        By name, in the scenario's order; the base rests without any.
-    response : ResponseSettings or None
-        None where nothing is computed over time.
-    tracks : mapping of str to str
-        Name of the flight that each centrifuge tracks.
-    stations : tuple of float
-        Positions of output from the root besides the tip, m.
-    accept : mapping of str to mapping
-        By the centrifuge's name, the limits that decide whether it is accepted, and ``tolerance`` and ``tolerance_of``:
-        see :func:`gbeam.compare`.
-    provenance : Provenance, optional
-        Of the scenario; results of the whole case have it.
-    sensors : mapping of str to Sensor
-        Accelerometers by the names of points, whose readings results have.
-    read_from : Scenario, optional
-        The scenario that these are the objects of.
-
-    Attributes
-    ----------
-    scenario : Scenario or None
-        What it was read from; None of a case that is made, or changed, in Python.
-
-    Examples
-    --------
-    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
-    >>> list(case.motions)
-    ['flight', 'centrifuge']
-    >>> case.tracks["centrifuge"]
-    'flight'
-    """
-
-    title: str
-    beam: Beam
-    model: Model
-    motions: Mapping[str, Motion]
-    response: ResponseSettings | None
-    tracks: Mapping[str, str] = field(default_factory=dict)
-    stations: Numbers = ()
-    accept: Mapping[str, Acceptance] = field(default_factory=dict)
-    provenance: Provenance | None = None
-    sensors: Mapping[str, Sensor] = field(default_factory=dict)
-    read_from: InitVar[Scenario | None] = None
-    scenario: Scenario | None = field(default=None, init=False, repr=False, compare=False)
-
-    def assemble(self, stations: ArrayLike | None = None) -> Structure:
-        """Put the beam into its model.
-
-        Parameters
-        ----------
-        stations : (s,), optional
-            Positions of output from the root besides the tip, m; by default the case's own.
-
-        Raises
-        ------
-        InputError
-            If the beam does not fit its model, with its place in the scenario.
-        """
-        try:
-            return assemble(self.beam, self.model, self.stations if stations is None else stations)
-        except InputError as error:
-            raise error.within("response" if error.where.startswith("stations") else "beam") from None
-
-    @property
-    def automatic(self) -> bool:
-        return self.model.automatic
-
-    def one_beam(self, where: str, what: str) -> Case:
-        return self
+def refusals(system: System, accept: Mapping[str, Acceptance], sensors: Mapping[str, Sensor]) -> Iterator[InputError]:
+    """Yield an error for each point of a sensor or limit, and for each limit, that the system does not have."""
+    for point in sensors:
+        yield from _refused(refuse_no_point, system, f"sensors.{point}", point)
+    lacking = _lacking(system)
+    for name, limits in accept.items():
+        where, settings = f"motion.{name}.accept", dict[str, Any](limits)
+        yield from _refused(refuse_lacking, where, limits, lacking)
+        for point in settings.get("control", ()):
+            yield from _refused(refuse_no_point, system, f"{where}.control.{point}", point)
+        for key in ("point", *AT_POINTS):
+            refuse = refuse_no_point if key == "point" or STRESS in lacking else _refuse_unstressed
+            if settings.get(key) is not None:
+                yield from _refused(refuse, system, f"{where}.{key}", settings[key])
 
 
-@kinds(accept={"*": KINDS_OF_LIMITS})
-@typed
-@dataclass(frozen=True, eq=False, repr=False)
-class SystemCase(_InEnvironments):
-    """Objects that a scenario of a system of bodies describes.
-
-    Parameters
-    ----------
-    title : str
-    system : System
-    motions : mapping of str to motion
-        Of the ground, by name; without any it rests.
-    response : ResponseSettings or None
-        None where nothing is computed over time.
-    tracks : mapping of str to str
-        Name of the flight that each centrifuge tracks.
-    accept : mapping of str to mapping
-        As of a :class:`Case`, and ``point``, whose displacement is compared.
-    provenance : Provenance, optional
-        Of the scenario; results of the whole case have it.
-    sensors : mapping of str to Sensor
-        Accelerometers by the names of points, whose readings results have.
-    read_from : SystemScenario, optional
-        The scenario that these are the objects of.
-
-    Attributes
-    ----------
-    scenario : SystemScenario or None
-        What it was read from; None of a case that is made, or changed, in Python.
-
-    Raises
-    ------
-    InputError
-        If gravity is given beside a motion, which carries its own, a motion is a hub that turns freely, or a point of
-        `accept` is not there.
-
-    Examples
-    --------
-    >>> case = gb.read_scenario("examples/satellite_two_panels.toml")
-    >>> case.system.order
-    ('bus', 'right', 'left')
-    """
-
-    title: str
-    system: System
-    motions: Mapping[str, Motion]
-    response: ResponseSettings | None
-    tracks: Mapping[str, str] = field(default_factory=dict)
-    accept: Mapping[str, Acceptance] = field(default_factory=dict)
-    provenance: Provenance | None = None
-    sensors: Mapping[str, Sensor] = field(default_factory=dict)
-    read_from: InitVar[SystemScenario | None] = None
-    scenario: SystemScenario | None = field(default=None, init=False, repr=False, compare=False)
-    no_beam = (
-        "make a system",
-        "ask for run, static, modes, campbell, critical-speed or linearize, or sweep these; or give one [beam]",
-    )
-
-    def __post_init__(self, read_from: AnyScenario | None) -> None:
-        super().__post_init__(read_from)
-        for name, motion in self.motions.items():
-            if motion.free:
-                fix = "give it as a body on a revolute joint"
-                raise InputError(f"motion.{name}", "is a hub that turns freely, and carries a system", fix)
-            if self.system.gravity is not None:
-                fix = f"leave one out: {name} carries its own, as specific force"
-                raise InputError("system.gravity", "is given beside a motion of the ground", fix)
-        for point in self.sensors:
-            self.system.point(f"sensors.{point}", point)
-        for name, limits in self.accept.items():
-            if limits.get("point") is not None:
-                self.system.point(f"motion.{name}.accept.point", limits["point"])
-            for point in limits.get("control", ()):
-                self.system.point(f"motion.{name}.accept.control.{point}", point)
-        flexible = self.system.flexible.items()
-        stressed = [key for key, body in flexible if body.sections is not None or body.recovery is not None]
-        for where, point in self._stress_limits({} if stressed else {STRESS: "no body is a beam or a mesh"}):
-            body, _ = self.system.point(where, point)
-            if body not in stressed:
-                fix = f"choose a point of {', '.join(stressed)}"
-                raise InputError(where, f"is on {body}, which is no beam and no mesh", fix)
-
-    def assemble(self, stations: ArrayLike | None = None) -> System:
-        """Return the system; it has no stations.
-
-        Parameters
-        ----------
-        stations : ignored
-            Of beams.
-        """
-        return self.system
+def _refused(ask: Callable[..., Any], *args: Any) -> list[InputError]:
+    try:
+        ask(*args)
+    except InputError as error:
+        return [error]
+    return []
 
 
-@kinds(accept={"*": KINDS_OF_LIMITS})
-@typed
-@dataclass(frozen=True, eq=False, repr=False)
-class SpecimenCase(_InEnvironments):
-    """Objects that a scenario of one specimen that is no beam describes: a solid, matrices, or a rigid box.
-
-    Parameters
-    ----------
-    title : str
-    name : str
-        Of the specimen.
-    structure : Structure
-    motions : mapping of str to motion
-        By name, in the scenario's order; the base rests without any.
-    response : ResponseSettings or None
-        None where nothing is computed over time.
-    tracks : mapping of str to str
-        Name of the flight that each centrifuge tracks.
-    accept : mapping of str to mapping
-        As of a :class:`Case`.
-    provenance : Provenance, optional
-        Of the scenario; results of the whole case have it.
-    sensors : mapping of str to Sensor
-        Accelerometers by the names of points, whose readings results have.
-    read_from : SpecimenScenario, optional
-        The scenario that these are the objects of.
-
-    Attributes
-    ----------
-    scenario : SpecimenScenario or None
-        What it was read from; None of a case that is made, or changed, in Python.
-
-    Raises
-    ------
-    InputError
-        If a motion is a hub that turns freely, and the specimen is rigid; or a limit is of what it does not have.
-
-    Examples
-    --------
-    >>> case = gb.read_scenario("examples/bracket.toml")
-    >>> case.name, case.structure
-    ('bracket', Structure(solid, 19 coordinates, 0.251 kg))
-    """
-
-    title: str
-    name: str
-    structure: Structure
-    motions: Mapping[str, Motion]
-    response: ResponseSettings | None
-    tracks: Mapping[str, str] = field(default_factory=dict)
-    accept: Mapping[str, Acceptance] = field(default_factory=dict)
-    provenance: Provenance | None = None
-    sensors: Mapping[str, Sensor] = field(default_factory=dict)
-    read_from: InitVar[SpecimenScenario | None] = None
-    scenario: SpecimenScenario | None = field(default=None, init=False, repr=False, compare=False)
-    no_beam = (
-        "is no beam",
-        "ask for run, static, modes, campbell, critical-speed, linearize, plan or fit, or sweep these; or give a beam",
-    )
-
-    def __post_init__(self, read_from: AnyScenario | None) -> None:
-        super().__post_init__(read_from)
-        for name, motion in self.motions.items():
-            if motion.free and not self.structure.size:
-                fix = "give the hub a rate: the motion of a rigid specimen follows from it alone"
-                raise InputError(f"motion.{name}", "is a hub that turns freely, and carries a rigid specimen", fix)
-        rigid, recovery = not self.structure.size, self.structure.recovery
-        lacking = {STRESS: f"{self.name} is {'rigid' if rigid else 'no mesh'}"} if rigid or recovery is None else {}
-        lacking |= {DISPLACEMENT: f"{self.name} is rigid"} if rigid else {}
-        for where, point in self._stress_limits(lacking):
-            with naming(where):
-                if recovery is not None:
-                    recovery.strain(point, (1.0, 0.0, 0.0))
-
-    def assemble(self, stations: ArrayLike | None = None) -> Structure:
-        """Return the structure, which needs no assembly; its output stations are its named points.
-
-        Parameters
-        ----------
-        stations : ignored
-            Accepted as the cases of beams do.
-        """
-        return self.structure
-
-    def one_beam(self, where: str, what: str) -> Case:
-        return super().one_beam(f"{where}.{self.name}", what)
+def _lacking(system: System) -> dict[str, str]:
+    """Quantities that no response of the system has, each with the reason."""
+    names, rigid = ", ".join(system.order), not any(body.size for body in system.flexible.values())
+    of_rigid = f"{names} {'are' if len(system.order) > 1 else 'is'} rigid"
+    lacking = {} if _stressed(system) else {STRESS: of_rigid if rigid else "no body is a beam or a mesh"}
+    return lacking | ({} if len(system.tree.free) else {DISPLACEMENT: of_rigid})
 
 
-AnyCase = Case | SpecimenCase | SystemCase
+def _stressed(system: System) -> list[str]:
+    """Names of the bodies that have a stress: beams and meshes."""
+    deforming = ((name, body) for name, body in system.flexible.items() if body.size)
+    return [name for name, body in deforming if body.sections is not None or body.recovery is not None]
 
 
-def extent_of(specimen: Beam | Structure | System) -> dict[str, Any]:
-    """Argument of :func:`gbeam.plan` for the extent of an undeformed specimen; none for matrices, which have none."""
-    if isinstance(specimen, Beam):
-        return {"beam": specimen}
-    if isinstance(specimen, System):
-        return {"envelope": specimen.undeformed}
-    return {} if specimen.recovery is None else {"envelope": specimen.recovery.envelope}
-
-
-MODES = 6  # natural frequencies at most
-
-
-@overload
-def describe(case: Case) -> Description: ...
-@overload
-def describe(case: SpecimenCase) -> SpecimenDescription: ...
-@overload
-def describe(case: SystemCase) -> SystemDescription: ...
-@typed
-def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDescription | SystemDescription:
-    """Describe a case: the beam's mass, its frequencies at rest, or bodies and joints; motions, records, and settings.
-
-    Parameters
-    ----------
-    case : Case, SpecimenCase or SystemCase
-        From :func:`gbeam.read_scenario`, or made by hand.
-
-    Returns
-    -------
-    Description, SpecimenDescription or SystemDescription
-
-    Raises
-    ------
-    InputError
-        If the beam does not fit its model, with its place in the scenario.
-
-    Examples
-    --------
-    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
-    >>> description = gb.describe(case)
-    >>> print(f"{description.mass:.4f} kg, {description.duration} s, {description.counts}")
-    0.0648 kg, 15.99 s, {'axial': 1, 'y': 3, 'z': 3}
-    """
-    if isinstance(case, SystemCase):
-        system, doubts = case.system, [case.system.warnings]
-        return SystemDescription(
-            bodies={name: _body(system, name) for name in system.order},
-            joints={name: _joint(joint) for name, joint in system.joints.items()},
-            forces={name: ForceOfSystem(force.on, force.follower) for name, force in system.forces.items()},
-            controllers={
-                name: ControllerOfSystem(tuple(law.measure), tuple(law.drive), law.sample, law.delay)
-                for name, law in system.controllers.items()
-            },
-            gravity=None if system.gravity is None else tuple(map(float, system.gravity)),  # type: ignore[arg-type]
-            **_described(case, doubts),
+def _refuse_unstressed(system: System, where: str, point: str) -> None:
+    """Raise InputError unless a point has a stress."""
+    name, on = refuse_no_point(system, where, point)
+    if name not in (stressed := _stressed(system)):
+        raise InputError(
+            where, f"is on {name}, which is no beam and no mesh", f"choose a point of {', '.join(stressed)}"
         )
-    structure, settings = case.assemble(), case.response
-    span = case.start, case.start + (0.0 if settings is None else settings.duration)
-    doubts = [input_warnings(structure, motion, name=name, span=span) for name, motion in case.motions.items()]
-    doubts = doubts or [input_warnings(structure)]
-    if isinstance(case, SpecimenCase):
-        total, *moment = (float(value) for value in structure.coefficients.rigid[:4])
-        return SpecimenDescription(
-            name=case.name,
-            kind=structure.kind,
-            mass=total,
-            centre=np.array(moment) / total,
-            coordinates=structure.size,
-            points=structure.points,
-            clamps={} if structure.recovery is None else structure.recovery.clamps,
-            frequency=np.asarray(structure.rest[0])[: min(MODES, structure.resolved)] / (2 * np.pi),
-            **_described(case, doubts),
-        )
-    beam = case.beam
-    frequencies, modes = structure.rest
-    # A mode bends along the axis of the group of coordinates that moves most.
-    groups = np.repeat(FAMILIES, structure.counts)
-    rule = quadrature(beam.length, 4, beam.section.stations)
-    return Description(
-        length=beam.length,
-        mass=beam.density * float(np.sum(beam.section.at(rule.node).area * rule.weight)),
-        bodies=tuple((body.at, body.mass) for body in beam.masses),
-        model=case.model.kind,
-        counts={name: n for name, n in zip(FAMILIES, case.model.counts, strict=True) if n or name in FAMILIES[:3]},
-        frequency=np.asarray(frequencies)[:MODES] / (2 * np.pi),
-        direction=tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
-        **_described(case, doubts),
-    )
+    recovery = system.flexible[name].recovery
+    if recovery is not None:
+        with naming(where):
+            recovery.strain(system.points_of(name)[on], (1.0, 0.0, 0.0))
 
 
-def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]:
-    """Parts of a description that every case has."""
-    free = isinstance(case, SystemCase) or any(motion.free for motion in case.motions.values())
-    settings = None if case.response is None else case.response.chosen(free=free)
-    over_time: dict[str, Any] = {}
-    if settings is not None:
-        over_time = {key: getattr(settings, key) for key in ("start", "duration", "step", "integrator")}
-        doubts = (*doubts, settings.warnings)
-    return dict(
-        title=case.title,
-        motions={name: motion.kind for name, motion in case.motions.items()},
-        tracks=dict(case.tracks),
-        scales={
-            name: motion.level_factor
-            for name, motion in case.motions.items()
-            if isinstance(motion, Flight) and motion.level_factor is not None
-        },
-        records={
-            name: motion.record
-            for name, motion in case.motions.items()
-            if isinstance(motion, Flight) and motion.record is not None
-        },
-        **over_time,
-        notes=notes_on(case.motions),
-        warnings=tuple(dict.fromkeys(warning for warnings in doubts for warning in warnings)),
-    )
-
-
-def _body(system: System, name: str) -> BodyOfSystem:
-    body, points = system.bodies[name], system.points_of(name)
-    if isinstance(body, RigidBody):
-        return BodyOfSystem("rigid", body.mass, 0, points, {})
-    clamps = {} if body.recovery is None else body.recovery.clamps
-    return BodyOfSystem(body.kind, float(body.mass.sum()), body.size, points, clamps)
-
-
-def _joint(joint: Joint) -> JointOfSystem:
-    driven, prescribed = tuple(joint.efforts), tuple(joint.rates)
-    moving = (kind for kind in joint.rate_names if kind not in (*driven, *prescribed))
-    return JointOfSystem(joint.kind, joint.body, joint.on, tuple(moving), driven, prescribed)
+def extent_of(system: System) -> dict[str, Any]:
+    """Argument of :func:`gbeam.plan` for the extent of what is undeformed; none for matrices, which have none."""
+    body = system.alone
+    if body is None:
+        return {"envelope": system.undeformed}
+    if body.source is not None:
+        return {"beam": body.source.beam}
+    return {} if body.recovery is None else {"envelope": body.recovery.envelope}

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
@@ -28,17 +28,13 @@ from gbeam.results.system import SystemResponse
 ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are automatic
 
 
-@overload
-def study(case: Case | SpecimenCase, progress: Progress = None) -> Study: ...
-@overload
-def study(case: SystemCase, progress: Progress = None) -> SystemStudy: ...
 @typed
-def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> Study | SystemStudy:
+def study(case: Case, progress: Progress = None) -> Any:
     """Compute the response in every environment of a case and compare each centrifuge with its flight.
 
     Parameters
     ----------
-    case : Case, SpecimenCase or SystemCase
+    case : Case
         From :func:`gbeam.read_scenario`, or made by hand.
     progress : callable or bool, optional
         Called with what is being done and the fraction of it done; True shows a bar.
@@ -46,7 +42,7 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
     Returns
     -------
     Study or SystemStudy
-        Of a beam or another specimen, or of a system.
+        Of one body that its base alone moves, or of a system.
 
     Raises
     ------
@@ -68,18 +64,16 @@ def study(case: Case | SpecimenCase | SystemCase, progress: Progress = None) -> 
         fix = "give it, or leave response.estimate out"
         raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
     responses, failures = _answers(case, progress)
-    while isinstance(case, Case) and case.automatic and _lacks_shapes(responses, settings):
+    while case.automatic and _lacks_shapes(responses, settings):
         richer = case.model.richer()
         if richer is None:
             break
-        case = replace(case, model=richer)
+        case = case.remade(model=richer)
         responses, failures = _answers(case, progress)
     return study_of(case, responses, failures)
 
 
-def study_of(
-    case: AnyCase, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})
-) -> Any:
+def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})) -> Any:
     """Study made of responses by name, with a comparison for each centrifuge and its flight that are both done."""
     if not responses:
         first = next(iter(failures.values()))
@@ -99,7 +93,7 @@ def study_of(
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    kind = SystemStudy if isinstance(case, SystemCase) else Study
+    kind = SystemStudy if case.subject is case.system else Study
     said = {key: each_once({n: getattr(run, key) for n, run in responses.items()}) for key in ("warnings", "notes")}
     return kind(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance, **said)
 
@@ -126,9 +120,9 @@ def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]
     return Readings(tuple(sensors), np.stack(readings, axis=1), peaks)
 
 
-def _answers(case: AnyCase, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:
+def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:
     """Responses by environment, and the failures of those that have no start to run from."""
-    structure: Any = case.assemble()
+    structure: Any = case.subject
 
     def answer(name: str) -> Response | SystemResponse:
         motion = case.environments[name]

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from gbeam.analysis.case import Case, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.system.histories import deflection
@@ -50,7 +50,7 @@ def counterpart(model: Model, kind: ModelKind) -> Model:
 
 @typed
 def compare_models(
-    case: Case | SystemCase,
+    case: Case,
     kinds: Sequence[ModelKind] = get_args(ModelKind),
     progress: Progress = None,
     *,
@@ -60,7 +60,7 @@ def compare_models(
 
     Parameters
     ----------
-    case : Case or SystemCase
+    case : Case
         Its own kind of model is one among them; the others have as many shapes, exact and fourth-order at least 3 of
         strain and 6 of rotation. All beams of a system are of the same model.
     kinds : sequence of str
@@ -96,16 +96,12 @@ def compare_models(
     for kind in kinds:
         if kind not in KINDS:
             raise InputError("kinds", f"has {kind!r}", f"choose from {', '.join(KINDS)}")
-    if isinstance(case, SystemCase):
-        point = _refused(case.system, point)
-    elif point is not None:
-        raise InputError("point", f"is {point!r}, and the case is of one beam", "leave it out: its tip is compared")
+    _refuse(case, point)
+    case.subject.require_damping("the response")
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
     answers: dict[tuple[str, str], tuple[_Tip | Failure, float]] = {}
     for i, kind in enumerate(chosen):
-        structure = _structure(case, kind)
-        if isinstance(structure, Structure):
-            structure.require_damping("the response")
+        structure = _subject(case, kind)
         for name, motion in case.environments.items():
 
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
@@ -116,7 +112,8 @@ def compare_models(
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)
             answers[kind, name] = answer, seconds
-            point = point or (answer.point if isinstance(answer, _Tip) and isinstance(structure, System) else point)
+            if case.system.alone is None and isinstance(answer, _Tip):
+                point = point or answer.point
     rows, direction = [], {}
     for name in case.environments:
         reference = answers[REFERENCE, name][0]
@@ -140,21 +137,22 @@ class _Tip(NamedTuple):
     hub_angle: float = float("nan")
 
 
-def _refused(system: System, point: str | None) -> str | None:
-    """The point, which may be None; InputError if it is not in the system, or no body is a beam."""
-    if not any(body.source for body in system.flexible.values()):
+def _refuse(case: Case, point: str | None) -> None:
+    """Raise InputError where no body is a beam, or a point is named that is not there or of a beam alone."""
+    if not any(body.source for body in case.system.flexible.values()):
         raise InputError("bodies", "have no beam, whose model could be another", "ask for run")
-    if point is not None:
-        system.point("point", point)
-    return point
+    if point is None:
+        return
+    if case.system.alone is not None:
+        fix = "leave it out: the tip of a beam alone on its base is compared"
+        raise InputError("point", f"is {point!r}, and {case.system.order[0]} is the only body", fix)
+    case.system.point("point", point)
 
 
-def _structure(case: Case | SystemCase, kind: ModelKind) -> Structure | System | Failure:
-    """Structure or system of a case by a kind of model, or the reason why there is none."""
+def _subject(case: Case, kind: ModelKind) -> Structure | System | Failure:
+    """What a case is computed as by a kind of model, or the reason why it cannot be."""
     try:
-        if isinstance(case, Case):
-            return replace(case, model=counterpart(case.model, kind)).assemble()
-        return of_kind(case.system, kind)
+        return replace(case, system=of_kind(case.system, kind)).subject
     except InputError as error:
         return Failure("cannot", str(error))
 

@@ -60,7 +60,7 @@ def described(text: str, folder: Path, *, distributions: bool = True) -> dict[st
         data = parse(NAME, text)
         document["form"] = form(data)
         records(data, folder)
-        from gbeam.analysis.case import describe
+        from gbeam.analysis.describe import describe
         from gbeam.report.description import text as in_words
 
         document["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder, distributions=distributions))))

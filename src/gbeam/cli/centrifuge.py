@@ -163,7 +163,7 @@ def place(
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
 
-    structure = loaded.case.assemble()
+    structure = loaded.case.subject
     weights = analysis.usual(structure) if weights is None else weights
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):

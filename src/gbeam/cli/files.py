@@ -28,7 +28,7 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
         refuse_unwritable(out)
     loaded = read("check", scenario, overrides)
 
-    from gbeam.analysis.case import describe
+    from gbeam.analysis.describe import describe
     from gbeam.report import description as report
     from gbeam.results.facts import facts_of
 

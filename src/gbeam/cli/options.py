@@ -13,18 +13,17 @@ from cyclopts import Parameter
 
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
+from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.questions import QUESTIONS, Needs, Question, differentiable, motion_of, prepared, refuse_rigid
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase, Case
-    from gbeam.questions import Verb as Verb
+    from gbeam.analysis.case import Case
     from gbeam.results.provenance import Provenance
     from gbeam.scenario.load import AnyScenario
 
     _Smooth = Verb
 else:
-    Verb = Literal[tuple(QUESTIONS)]
     _Smooth = Literal[differentiable()]
 
 
@@ -158,7 +157,7 @@ class Input:
     """A scenario as read, and the case that it describes."""
 
     scenario: AnyScenario
-    case: AnyCase
+    case: Case
 
     @contextmanager
     def placing(self, **options: str) -> Iterator[None]:
@@ -171,11 +170,6 @@ class Input:
             from gbeam.scenario import placed
 
             raise placed(self.scenario, [error]) from None
-
-    @property
-    def beam(self) -> Case:
-        """The case, which is of one beam; InputError if it is not."""
-        return self.case.one_beam("bodies", "this")
 
     def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Any]:
         """Name and prepared motion chosen by ``--motion``, or for None the only one, of a kind if one is named."""
@@ -214,11 +208,10 @@ def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, An
 
 
 _MOVING = ("run", "place")  # verbs that need the plans of all machines
-_ANY = ("check", "models")  # verbs that take beams and systems, besides questions
 
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
-    """Load and build the scenario of a verb; InputError if the verb does not take such a specimen."""
+    """Load and build the scenario of a verb; InputError if the verb is of what deforms, and nothing does."""
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
@@ -227,11 +220,9 @@ def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     loaded = Input(scenario, replace(case, provenance=provenance(scenario, command())))
     with loaded.placing():
         if verb in QUESTIONS:
-            QUESTIONS[verb].refuse(case, "gbeam ")
+            QUESTIONS[verb].refuse(case)
         elif verb == "linearize":
             refuse_rigid(case, verb)
-        elif verb not in _ANY:
-            case.one_beam("bodies", f"gbeam {verb}")
     return loaded
 
 

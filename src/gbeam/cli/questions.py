@@ -30,7 +30,6 @@ from gbeam.errors import InputError, naming
 from gbeam.questions import QUESTIONS, Needs, Question
 
 if TYPE_CHECKING:
-    from gbeam.mechanics.structure import Structure
     from gbeam.mechanics.tree.system import System
     from gbeam.results.state_space import Gauge
 
@@ -137,8 +136,8 @@ def critical_speed(
     if masses is None and positions is not None:
         raise InputError("--positions", "stands without --masses", 'add --masses "0.1 kg, 0.5 kg"')
     if masses is not None:
-        with loaded.placing():
-            loaded.case.one_beam("bodies", "a map of --masses")
+        with naming("--masses"):
+            loaded.case.require_beam()
         chosen = question.chosen(asked(options))
         if "vary" in chosen:
             raise InputError("--masses", f"stands beside --vary {chosen['vary']}", "a map is of hub rates")
@@ -166,7 +165,7 @@ def critical_map(
 ) -> int:
     """Print and write a map of critical speeds; arguments as of :func:`critical_speed`, `upper` in rad/s."""
     name, chosen = loaded.motion(motion, kind="hub")
-    case = loaded.beam
+    case = loaded.case
     kilograms = numbers("--masses", masses, "mass")
     length = case.beam.length
     places = [length * i / 8 for i in range(1, 9)] if positions is None else numbers("--positions", positions, "length")
@@ -233,9 +232,6 @@ def linearize(
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    if rate is not None:
-        with loaded.placing():
-            loaded.case.one_beam("bodies", "--rate")
     for flag, other, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
@@ -246,15 +242,15 @@ def linearize(
 
     from gbeam.analysis.control.linearization import linearize
 
-    with loaded.placing():
-        structure = loaded.case.assemble()
-    gauges = [gauge for text in strain_at for gauge in _gauges_at(structure, text)]
+    structure = loaded.case.subject
+    gauges = [gauge for text in strain_at for gauge in _gauges_at(loaded.case.system, text)]
     options = {
         "order": "--balanced",
         "modes": "--modes",
         "inputs": "--inputs",
         "outputs": "--outputs",
         "loop": "--loop",
+        "rate": "--rate",
     }
     with Watch(), loaded.placing(**options):
         system = linearize(
@@ -276,18 +272,17 @@ def linearize(
     return 0
 
 
-def _gauges_at(structure: Structure | System, text: str) -> list[Gauge]:
+def _gauges_at(system: System, text: str) -> list[Gauge]:
     """Gauges of one --strain-at: on two faces of a beam at a position, or along the three axes of a solid's point."""
     from gbeam.analysis.control.linearization import surface_gauges
     from gbeam.guards.checks import choice, index_of
-    from gbeam.mechanics.structure import Structure
     from gbeam.results.state_space import Gauge
 
-    body, name = "", text
-    if not isinstance(structure, Structure):
+    body, name, structure = "", text, system.alone
+    if structure is None:
         body, _, name = text.partition(".")
-        choice("--strain-at", body, structure.flexible)
-        structure = structure.flexible[body]
+        choice("--strain-at", body, system.flexible)
+        structure = system.flexible[body]
     if structure.source is None:
         index_of("--strain-at", name, structure.points)
         return [Gauge(name, along=axis, body=body) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]

@@ -93,12 +93,10 @@ def models(
     folder = output.folder(scenario)
     loaded = read("models", scenario, output.overrides)
 
-    from gbeam.analysis.case import SystemCase
     from gbeam.analysis.model_study import compare_models
 
-    case = loaded.case if isinstance(loaded.case, SystemCase) else loaded.beam
     with Watch() as watch, loaded.placing(point="--point"):
-        study = compare_models(case, progress=watch, point=point)
+        study = compare_models(loaded.case, progress=watch, point=point)
     deliver(study, "models", folder, output, listed=False)
     for row in study.rows:
         if row.model == study.reference and row.outcome != "done":

@@ -204,9 +204,10 @@ def shape(
 
     from gbeam.scenario.build import read_scenario
 
-    case, name, hub = driven_of(read_scenario(scenario, output.overrides), motion, joint)
-    straight = slides(name)
-    bound = optional("--limit", limit, DRIVES[hub.free, straight][1])
+    case = read_scenario(scenario, output.overrides)
+    command = driven_of(case, motion, joint)
+    straight = slides(command.name)
+    bound = optional("--limit", limit, DRIVES[command.hub.free, straight][1])
     with Watch() as watch:
         answer = compute(
             case,

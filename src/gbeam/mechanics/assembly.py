@@ -98,7 +98,7 @@ def assemble(
     nodes = len(rule.node)
     refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
     families = adapted_shapes(beam, rule, counts) if adapted else None
-    return assembled(beam, model.kind, counts, rule, at, families, model.shapes)
+    return assembled(beam, model.kind, counts, rule, at, families, model.shapes, automatic=model.automatic)
 
 
 def assembled(
@@ -109,9 +109,11 @@ def assembled(
     at: Array,
     families: Families | None,
     shapes: Shapes,
+    *,
+    automatic: bool = False,
 ) -> Structure:
     """Put a beam into a kind of model, with a quadrature `rule` and stations of output `at` (s,) m, the tip last. The
-    functions of its shapes are `families`, or unless given those of :func:`forms_of`.
+    functions of its shapes are `families`, or unless given those of :func:`forms_of`; `automatic` marks their numbers.
     """
     row = KINDS[kind]
     bodies = [m.at for m in beam.masses]
@@ -177,7 +179,7 @@ def assembled(
         load_values=None if history is None else history(np.zeros(())),
         damping_ratio=ratio,
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
-        source=None if is_jax(c.mass) else Source(beam, shapes),
+        source=None if is_jax(c.mass) else Source(beam, shapes, automatic),
     )
 
 
@@ -203,7 +205,14 @@ def model_of(structure: Structure) -> Model:
     assert structure.source is not None
     kind: Any = structure.kind
     axial, y, z, *others = structure.counts
-    return Model(kind, axial, y, z, structure.source.shapes, False, *others)
+    return Model(kind, axial, y, z, structure.source.shapes, structure.source.automatic, *others)
+
+
+def stations_asked(structure: Structure) -> tuple[float, ...]:
+    """Return the stations of output of a beam's structure, m, beside its named points and the tip."""
+    assert structure.source is not None
+    named = [*structure.source.beam.named_points.values()]
+    return tuple(float(at) for at in structure.stations[:-1] if at not in named)
 
 
 def remade(structure: Structure, model: Model, stations: ArrayLike) -> Structure:

@@ -85,10 +85,11 @@ class Recovery(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Source(Value):
-    """The beam that a structure was made of, and which shapes its model has."""
+    """The beam that a structure was made of, and its model's shapes, whose numbers a study chooses if `automatic`."""
 
     beam: Beam
     shapes: Shapes
+    automatic: bool = False
 
 
 @typed_methods

@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.printable import level_words
 from gbeam.report.words import tidy
-from gbeam.results.description import (
-    Curves,
-    Described,
-    Description,
-    RecordSummary,
-    SpecimenDescription,
-    SystemDescription,
-    Vector,
-)
+from gbeam.results.description import BodyDescription, Curves, Description, RecordSummary, Vector
 from gbeam.results.result import part_words
 
 
-def text(case: Described) -> str:
+def text(case: Description) -> str:
     """Description on a few lines."""
-    lines = [case.title or "(no title)", *_structure(case)]
+    lines = [case.title or "(no title)", *_bodies(case)]
     motions = []
     for name, kind in case.motions.items():
         described = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
@@ -42,52 +35,46 @@ def text(case: Described) -> str:
     return "\n".join([*lines, "Scenario valid."])
 
 
-def _structure(case: Described) -> list[str]:
-    if isinstance(case, SystemDescription):
-        return _system(case)
-    if isinstance(case, SpecimenDescription):
-        return _specimen(case)
-    assert isinstance(case, Description)
-    return _beam(case)
-
-
 def _listed(head: str, lines: Sequence[str]) -> list[str]:
     return [f"  {'' if i else head:<9} {line}" for i, line in enumerate(lines)]
 
 
-def _beam(case: Description) -> list[str]:
-    added = f", {case.total_mass:.4g} kg with {len(case.bodies)} added" if case.bodies else ""
-    counts = ", ".join(f"{count} {name}" for name, count in case.counts.items())
-    modes = ", ".join(f"{f:.4g} ({d})" for f, d in zip(case.frequency, case.direction, strict=True))
-    return [
-        f"  beam      {1e3 * case.length:.4g} mm, {case.mass:.4g} kg{added}",
-        f"  model     {case.model}, coordinates: {counts}",
-        f"  modes     at rest, Hz: {modes}",
-    ]
+def _bodies(case: Description) -> list[str]:
+    """Lines on the bodies, joints, forces, controllers and gravity; a body alone on the base is told in full."""
+    if len(case.bodies) == 1 and not case.joints:
+        ((name, body),) = case.bodies.items()
+        return [*_listed(name, list(_facts(body))), *_listed("modes", _modes(body, "at rest, Hz: ")), *_acting(case)]
+    bodies = [f"{name}: {'; '.join((*_facts(each), *_modes(each, 'held at rest, Hz: ')))}" for name, each in
+              case.bodies.items()]  # fmt: skip
+    return [*_listed("bodies", [f"{case.mass:.4g} kg, {_centre(case.centre)} at the start", *bodies]), *_acting(case)]
 
 
-def _specimen(case: SpecimenDescription) -> list[str]:
-    centre = ", ".join(f"{1e3 * each:.4g}" for each in tidy(case.centre, max(map(abs, case.centre))))
-    lines = [f"  {case.name:<9} {case.kind}, {case.mass:.4g} kg, centre of mass at ({centre}) mm"]
-    if case.coordinates:
-        modes = ", ".join(f"{each:.4g}" for each in case.frequency)
-        lines.append(f"  {'':<9} {case.coordinates} coordinates; points {', '.join(case.points)}")
-        lines += [f"  {'':<9} {words}" for words in _clamped(case.clamps)]
-        lines.append(f"  modes     at rest, Hz: {modes}")
-    return lines
+def _facts(body: BodyDescription) -> Iterator[str]:
+    """Yield words on a body's kind, size and mass, its coordinates and points, and what clamps hold."""
+    length = "" if body.length is None else f"{1e3 * body.length:.4g} mm, "
+    added = f", {body.mass:.4g} kg with {len(body.masses)} added" if body.masses else ""
+    centre = _centre(body.centre) if body.length is None else ""
+    yield ", ".join(filter(None, (body.kind, f"{length}{body.bare:.4g} kg{added}", centre)))
+    counted = ", ".join(f"{count} {way}" for way, count in body.counts.items())
+    of_shapes = f": {counted}" if counted else ""
+    coordinates = f"{body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}{of_shapes}; "
+    yield f"{coordinates if body.coordinates else ''}points {', '.join(body.points)}"
+    yield from (f"clamp {name} holds {nodes}" for name, nodes in body.clamps.items())
 
 
-def _clamped(clamps: Mapping[str, str]) -> list[str]:
-    return [f"clamp {name} holds {nodes}" for name, nodes in clamps.items()]
+def _modes(body: BodyDescription, before: str) -> list[str]:
+    ways = [""] * len(body.frequency) if body.direction is None else [f" ({each})" for each in body.direction]
+    frequencies = [f"{each:.4g}{way}" for each, way in zip(body.frequency, ways, strict=True)]
+    return [before + ", ".join(frequencies)] if frequencies else []
 
 
-def _system(case: SystemDescription) -> list[str]:
-    """Lines on the bodies, joints, forces, controllers and gravity of a system."""
-    bodies = []
-    for name, body in case.bodies.items():
-        counted = f", {body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}" if body.coordinates else ""
-        words = f"{body.kind}, {body.mass:.4g} kg{counted}; points {', '.join(body.points)}"
-        bodies.append("; ".join([f"{name}: {words}", *_clamped(body.clamps)]))
+def _centre(centre: Any) -> str:
+    tidied = ", ".join(f"{1e3 * each:.4g}" for each in tidy(centre, max(map(abs, centre)), scale=1.0))
+    return f"centre of mass at ({tidied}) mm"
+
+
+def _acting(case: Description) -> list[str]:
+    """Lines on the joints, forces, controllers and gravity."""
     joints = []
     for name, joint in case.joints.items():
         ways = {"free": joint.free, "driven": joint.driven, "prescribed": joint.prescribed}
@@ -100,7 +87,7 @@ def _system(case: SystemDescription) -> list[str]:
         for name, each in case.controllers.items()
     ]
     gravity = () if case.gravity is None else (", ".join(f"{each:.4g}" for each in case.gravity) + " m/s²",)
-    parts = {"bodies": bodies, "joints": joints, "forces": forces, "control": controllers, "gravity": gravity}
+    parts = {"joints": joints, "forces": forces, "control": controllers, "gravity": gravity}
     return [line for head, lines in parts.items() for line in _listed(head, lines)]
 
 

@@ -1,5 +1,5 @@
-"""Description of a case: frozen records of its beam and model, or its bodies and joints, its motions, flights' records
-and settings before any run.
+"""Description of a case: frozen records of its bodies and joints, its motions, flights' records and settings before any
+run.
 """
 
 from __future__ import annotations
@@ -90,11 +90,71 @@ class RecordSummary(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Body(Part):
-    """A mass on the beam."""
+class MassOnBeam(Part):
+    """A mass on a beam."""
 
     at: float = entry("m", "position from the root")
     mass: float = entry("kg", "mass")
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class BodyDescription(Part):
+    """A body, its root held."""
+
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
+
+    kind: str = fact("rigid, solid, matrices, or the kind of a beam's model")
+    mass: float = fact("mass, of a beam with what it carries", "kg")
+    centre: Floats = entry("m", "centre of mass from the root, undeformed", "axis", frame="body")
+    coordinates: int = fact("number of its own coordinates: none of a rigid body")
+    points: tuple[str, ...] = fact("names of its points")
+    clamps: Mapping[str, str] = fact("nodes that each group of a mesh's clamp holds, by name", default_factory=dict)
+    length: float | None = fact("length of a beam", "m", optional=True, default=None)
+    masses: tuple[MassOnBeam, ...] = rows("masses on a beam", "mass", default=())
+    counts: Mapping[str, int] = fact(
+        "numbers of a beam's shapes: axial, along y and along z, and those of twist and shear that the model has",
+        key="shapes",
+        default_factory=dict,
+    )
+    frequency: Floats = entry("Hz", "lowest natural frequencies on a base at rest", "mode", empty=True)
+    direction: tuple[str, ...] | None = entry(
+        "", "of a beam's frequencies: axial, y, z, twist or shear", "mode", optional=True, default=None
+    )
+
+    @property
+    def bare(self) -> float:
+        """Mass of a beam without what it carries, kg."""
+        return self.mass - sum(each.mass for each in self.masses)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class JointDescription(Part):
+    """A joint."""
+
+    kind: str = fact("kind of the joint")
+    body: str = fact("name of the body that it holds")
+    on: str = fact("what it hangs on: ground, or a point of a body")
+    free: tuple[str, ...] = fact("coordinates that move freely")
+    driven: tuple[str, ...] = fact("coordinates with a drive")
+    prescribed: tuple[str, ...] = fact("coordinates whose rates are prescribed")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ForceDescription(Part):
+    """A force and a moment on a point."""
+
+    on: str = fact("the point")
+    follower: bool = fact("whether the components turn with the point")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ControllerDescription(Part):
+    """A controller in the loop."""
+
+    measure: tuple[str, ...] = fact("what it samples")
+    drive: tuple[str, ...] = fact("what it drives")
+    sample: float = fact("time between samples", "s")
+    delay: float = fact("time from a sample until its efforts act", "s")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -107,10 +167,21 @@ class Kind(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
-class Described(Part):
-    """Base of the meaning of a case; where a value has a distribution, the rest is said of its centre."""
+class Description(Part):
+    """Meaning of a case; where a value has a distribution, the rest is said of its centre."""
 
     title: str = fact("title of the scenario")
+    mass: float = fact("mass of all bodies", "kg")
+    centre: Floats = entry("m", "centre of mass of all bodies at the start, undeformed", "axis", frame="ground")
+    bodies: Mapping[str, BodyDescription] = rows("bodies, by name", "body")
+    joints: Mapping[str, JointDescription] = rows(
+        "joints, by name, but those that hold a body's root on the ground as it is", "joint", default_factory=dict
+    )
+    forces: Mapping[str, ForceDescription] = rows("forces on points, by name", "force", default_factory=dict)
+    controllers: Mapping[str, ControllerDescription] = rows(
+        "controllers in the loop, by name", "controller", default_factory=dict
+    )
+    gravity: Floats | None = entry("m/s^2", "acceleration of free fall", "axis", frame="ground", default=None)
     motions: Mapping[str, str] = fact("kind of each motion, by name", key=None)
     start: float | None = fact(
         "start of the response; None where none is asked for", "s", key="response.start", optional=True, default=None
@@ -134,97 +205,3 @@ class Described(Part):
     @declared("s", "time step, or auto", role="fact", key="response.step", optional=True)
     def step_or_auto(self) -> float | str | None:
         return None if self.duration is None else self.step or "auto"
-
-
-@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
-class Description(Described):
-    """Meaning of a case of one beam; where a value has a distribution, the rest is said of its centre."""
-
-    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
-
-    length: float = fact("length of the beam", "m", key="beam.length")
-    mass: float = fact("mass of the beam without its bodies", "kg", key="beam.mass")
-    bodies: tuple[tuple[float, float], ...] = fact("position, m, and mass, kg, of each body", key=None)
-    model: str = fact("kind of the model", key="model.kind")
-    counts: Mapping[str, int] = fact(
-        "numbers of shapes: axial, along y and along z, and those of twist and shear that the model has",
-        key="model.modes",
-    )
-    frequency: Floats = entry("Hz", "lowest natural frequencies of the beam on a base at rest", "mode")
-    direction: tuple[str, ...] = entry("", "axial, y or z", "mode")
-
-    @declared("", "bodies on the beam", "body", role="rows", key="beam.masses")
-    def masses(self) -> tuple[Body, ...]:
-        return tuple(Body(at, mass) for at, mass in self.bodies)
-
-    @declared("kg", "mass of the beam with its bodies", key="beam.total_mass")
-    def total_mass(self) -> float:
-        return self.mass + sum(mass for _, mass in self.bodies)
-
-
-@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
-class SpecimenDescription(Described):
-    """Meaning of a case of a specimen that is no beam."""
-
-    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
-
-    name: str = fact("name of the specimen", key="specimen.name")
-    kind: str = fact("solid, matrices or rigid", key="specimen.kind")
-    mass: float = fact("mass of the specimen", "kg", key="specimen.mass")
-    centre: Floats = entry("m", "centre of mass from the root, undeformed", "axis", key="specimen.centre")
-    coordinates: int = fact("number of its coordinates: none of a rigid specimen", key="specimen.coordinates")
-    points: tuple[str, ...] = fact("names of its points", key="specimen.points")
-    clamps: Mapping[str, str] = fact("nodes that each group of a mesh's clamp holds, by name", key="specimen.clamps")
-    frequency: Floats = entry("Hz", "lowest natural frequencies on a base at rest", "mode")
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class BodyOfSystem(Part):
-    """A body of a system."""
-
-    kind: str = fact("rigid, or the kind of the beam's model")
-    mass: float = fact("mass", "kg")
-    coordinates: int = fact("number of its own coordinates: none of a rigid body")
-    points: tuple[str, ...] = fact("names of its points")
-    clamps: Mapping[str, str] = fact("nodes that each group of a mesh's clamp holds, by name")
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class JointOfSystem(Part):
-    """A joint of a system."""
-
-    kind: str = fact("kind of the joint")
-    body: str = fact("name of the body that it holds")
-    on: str = fact("what it hangs on: ground, or a point of a body")
-    free: tuple[str, ...] = fact("coordinates that move freely")
-    driven: tuple[str, ...] = fact("coordinates with a drive")
-    prescribed: tuple[str, ...] = fact("coordinates whose rates are prescribed")
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class ForceOfSystem(Part):
-    """A force and a moment on a point."""
-
-    on: str = fact("the point")
-    follower: bool = fact("whether the components turn with the point")
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class ControllerOfSystem(Part):
-    """A controller in the loop."""
-
-    measure: tuple[str, ...] = fact("what it samples")
-    drive: tuple[str, ...] = fact("what it drives")
-    sample: float = fact("time between samples", "s")
-    delay: float = fact("time from a sample until its efforts act", "s")
-
-
-@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
-class SystemDescription(Described):
-    """Meaning of a case of a system of bodies."""
-
-    bodies: Mapping[str, BodyOfSystem] = rows("bodies, by name", "body")
-    joints: Mapping[str, JointOfSystem] = rows("joints, by name", "joint")
-    forces: Mapping[str, ForceOfSystem] = rows("forces on points, by name", "force")
-    controllers: Mapping[str, ControllerOfSystem] = rows("controllers in the loop, by name", "controller")
-    gravity: Vector | None = entry("m/s^2", "acceleration of free fall", "axis", frame="ground")

@@ -17,6 +17,26 @@ from gbeam.results.result import Part
 
 
 @dataclass(frozen=True)
+class ScenarioText:
+    """Text of a scenario with its changes, and the folder that file names in it are relative to.
+
+    Parameters
+    ----------
+    name : str
+        Of its file, for messages.
+    text : str
+    folder : str
+    overrides : tuple of str
+        The ``key=value`` changes made to it, in order.
+    """
+
+    name: str
+    text: str
+    folder: str
+    overrides: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class RecordFile(Part):
     """A flight's record, or another file that a scenario names, as it was read."""
 

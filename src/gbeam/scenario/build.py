@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.printable import advise
-from gbeam.results.criteria import AT_POINTS, RULES, Acceptance
+from gbeam.results.criteria import RULES, Acceptance
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
-from gbeam.scenario.load import Collector, change, load, placed, provenance
+from gbeam.scenario.load import Collector, load, loads, placed, provenance, text_of
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import AnyCase
+    from gbeam.analysis.case import Case
     from gbeam.analysis.response.settings import ResponseSettings
+    from gbeam.mechanics.tree.system import System
     from gbeam.motion import Centrifuge, Motion
     from gbeam.results.description import RecordSummary
     from gbeam.scenario.load import AnyScenario
 
 
 @typed
-def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> AnyCase:
+def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Case:
     """Read a scenario file and make its objects.
 
     Parameters
@@ -35,8 +35,8 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
     Returns
     -------
-    Case, SpecimenCase or SystemCase
-        Beam and model, another specimen, or a system of bodies; motions by name and response settings; SI.
+    Case
+        Bodies, motions by name and response settings; SI.
 
     Raises
     ------
@@ -52,66 +52,75 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
     return build(load(path, overrides))
 
 
-def build(scenario: AnyScenario, *, ahead: bool = False) -> AnyCase:
-    """Make the objects of a scenario; `ahead` plans its centrifuges' motions now rather than when they are used."""
-    from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+def build(scenario: AnyScenario, *, ahead: bool = False, system: System | None = None) -> Case:
+    """Make the objects of a scenario; `ahead` plans its centrifuges' motions now rather than when they are used. A
+    `system` that was built from the same tables is taken as it is.
+    """
+    from gbeam.analysis.case import Case, refusals
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
-    make: Callable[..., AnyCase] = Case
-    if isinstance(scenario, schema.Scenario):
-        structure: dict[str, Any] = {
-            "beam": beam_of(parts, "beam", scenario.beam),
-            "model": model_of(parts, "model", scenario.model),
-            "stations": scenario.response.stations or (),
-        }
-    else:
-        from gbeam.scenario.build_system import specimen_of, system_of
-        from gbeam.scenario.schema.system import SpecimenScenario
-
-        if isinstance(scenario, SpecimenScenario):
-            make = SpecimenCase
-            structure = {"name": scenario.specimen[0], "structure": specimen_of(parts, scenario)}
-        else:
-            make = SystemCase
-            structure = {"system": system_of(parts, scenario)}
+    system = system or _system(parts, scenario)
     motions = flights_and_hubs(parts, scenario)
     response = _response(parts, scenario.response, motions)
     if response is not None:
         span = (response.start, response.start + response.duration)
         motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
-    accept = _acceptance(parts, scenario, points := _points(structure))
-    sensors = _sensors(parts, scenario.sensors, points)
-    if parts.errors or None in structure.values():
+    accept, sensors = _acceptance(parts, scenario), _sensors(parts, scenario.sensors)
+    if system is not None:
+        parts.errors += refusals(system, accept, sensors)
+    if parts.errors or system is None:
         raise placed(scenario, parts.errors)
     case = parts.attempt(
         "",
-        make,
+        Case,
         title=scenario.heading(),
+        system=system,
         motions={name: motions[name] for name in scenario.motion},
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
         accept=accept,
         provenance=provenance(scenario),
         sensors=sensors,
-        read_from=scenario,
-        **structure,
+        read_from=text_of(scenario),
     )
     if case is None:
         raise placed(scenario, parts.errors)
     return case
 
 
+def _system(parts: Collector, scenario: schema.Environments) -> System | None:
+    """The bodies of a scenario; None if they cannot be made, with the reasons in `parts`."""
+    if isinstance(scenario, schema.Scenario):  # whose modules are fewer
+        return parts.attempt("", _of_beam, parts, scenario)
+    from gbeam.scenario.build_system import system_of
+
+    return system_of(parts, scenario)  # type: ignore[arg-type]
+
+
+def _of_beam(parts: Collector, scenario: schema.Scenario) -> System | None:
+    from gbeam.analysis.case import BEAM
+    from gbeam.analysis.one_body import structure_of
+    from gbeam.mechanics.tree.system import System
+
+    beam, model = beam_of(parts, "beam", scenario.beam), model_of(parts, "model", scenario.model)
+    if beam is None or model is None:
+        return None
+    return System.of(structure_of(beam, model, scenario.response.stations or ()), BEAM)
+
+
 def scenario_of(
-    case: str | os.PathLike[str] | AnyCase, overrides: Iterable[str] = (), *, distributions: bool = False
+    case: str | os.PathLike[str] | Case, overrides: Iterable[str] = (), *, distributions: bool = False
 ) -> AnyScenario:
     """Validated scenario of a file, or of the file that a case was read from, with changes; else InputError."""
     if isinstance(case, (str, os.PathLike)):
         return load(case, overrides, distributions=distributions)
-    if case.scenario is None or case.scenario.source is None:
+    text = case.scenario
+    if text is None:
         fix = "give the file, or what read_scenario makes of it; changes as overrides"
         raise InputError("scenario", "is a case that was not read from a file, or was changed since", fix)
-    return change(case.scenario.source, overrides)
+    changes = (*text.overrides, *overrides)
+    return loads(text.text, text.name, changes, folder=text.folder, distributions=distributions)
 
 
 def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
@@ -138,28 +147,13 @@ def build_extent(scenario: schema.Environments) -> dict[str, Any]:
     if type(scenario) is schema.Environments:
         return {}
     parts = Collector()
-    if isinstance(scenario, schema.Scenario):
-        structure: Any = beam_of(parts, "beam", scenario.beam)
-    else:
-        from gbeam.scenario.build_system import specimen_of, system_of
-        from gbeam.scenario.schema.system import SpecimenScenario
-
-        build_structure: Any = specimen_of if isinstance(scenario, SpecimenScenario) else system_of
-        structure = build_structure(parts, scenario)
-    if parts.errors:
+    system = _system(parts, scenario)
+    if parts.errors or system is None:
         raise placed(scenario, parts.errors)
-    return extent_of(structure)
+    return extent_of(system)
 
 
-def _points(structure: Mapping[str, Any]) -> tuple[str, ...]:
-    """Names of the points of a beam or a specimen; empty if it is a system, or was refused."""
-    beam, specimen = structure.get("beam"), structure.get("structure")
-    if beam is not None:
-        return tuple(beam.named_points)
-    return () if specimen is None else tuple(specimen.points)
-
-
-def _acceptance(parts: Collector, scenario: schema.Environments, points: tuple[str, ...] = ()) -> dict[str, Acceptance]:
+def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, Acceptance]:
     """Limits of acceptance and their settings, by the name of the centrifuge; `parts` collects what is wrong."""
     machines = {name: table for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)}
     by_machine = ((name, table.limits_of_acceptance) for name, table in machines.items())
@@ -168,24 +162,15 @@ def _acceptance(parts: Collector, scenario: schema.Environments, points: tuple[s
         for key, limit in limits.items():
             if key in RULES:
                 parts.attempt(f"motion.{name}.accept", RULES[key].checked, limit)
-        named = {f"control.{point}": point for point in limits.get("control", ())}
-        named |= {key: limits[key] for key in ("point", *AT_POINTS) if key in limits}
-        parts.errors += [
-            InputError(f"motion.{name}.accept.{key}", f"is no point: {point!r}", advise(point, points))
-            for key, point in named.items()
-            if points and point not in points
-        ]
     return limited
 
 
-def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor], points: tuple[str, ...]) -> dict[str, Any]:
-    """Accelerometers by the names of their points, which are checked here unless the points are not known."""
+def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor]) -> dict[str, Any]:
+    """Accelerometers by the names of their points."""
     if not tables:
         return {}
     from gbeam.results.response import Sensor
 
-    unknown = [each for each in tables if points and each not in points]
-    parts.errors += [InputError(f"sensors.{each}", f"is no point: {each!r}", advise(each, points)) for each in unknown]
     return {each: parts.attempt(f"sensors.{each}", Sensor, **dict(table)) for each, table in tables.items()}
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from gbeam.errors import InputError, placing_within
 from gbeam.io.models.arrays import read_state_space
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import Feedback, gains, in_series, lead_lag, notch, pid
 from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.system import PointForce, System
@@ -20,8 +19,13 @@ from gbeam.scenario.schema.fields import fields_of
 from gbeam.scenario.schema.profile import Smoothed
 
 
-def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | None:
+def system_of(parts: Collector, scenario: schema.SystemScenario | schema.SpecimenScenario) -> System | None:
     """The system of a scenario; None if it cannot be made, with the reasons in `parts`."""
+    if isinstance(scenario, schema.SpecimenScenario):
+        name, table = scenario.specimen
+        kind = OF_TABLE[type(table)]
+        body = (kind.alone or kind.build)(parts, f"bodies.{name}", table)
+        return None if body is None else System.of(body, name)
     before = len(parts.errors)
     bodies = {name: OF_TABLE[type(body)].build(parts, f"bodies.{name}", body) for name, body in scenario.bodies.items()}
     joints = {name: _joint(parts, f"joints.{name}", table) for name, table in scenario.joints.items()}
@@ -30,14 +34,6 @@ def system_of(parts: Collector, scenario: schema.SystemScenario) -> System | Non
     if len(parts.errors) > before:
         return None
     return parts.attempt("", System, bodies, joints, forces, gravity=scenario.system.gravity, controllers=controllers)
-
-
-def specimen_of(parts: Collector, scenario: schema.SpecimenScenario) -> Structure | None:
-    """The specimen of a scenario; None if it cannot be made, with the reasons in `parts`."""
-    name, table = scenario.specimen
-    kind = OF_TABLE[type(table)]
-    structure: Structure | None = (kind.alone or kind.build)(parts, f"bodies.{name}", table)
-    return structure
 
 
 def _joint(parts: Collector, where: str, table: Any) -> Joint | None:

@@ -26,7 +26,7 @@ from gbeam.scenario.text.source import Source, parse, read_text
 from gbeam.scenario.values import Distribution, find_distributions, from_table, parse_path, path_text
 
 if TYPE_CHECKING:
-    from gbeam.results.provenance import Provenance, RecordFile
+    from gbeam.results.provenance import Provenance, RecordFile, ScenarioText
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
     from gbeam.scenario.text.source import Mark
 
@@ -46,6 +46,16 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
     if source.distributions:  # in whose place `data` has their centres
         data, _ = override(_parsed(source.name, source.text), source.name, changes)
     return Provenance(source.text, changes, fingerprint(data), records, command)
+
+
+def text_of(scenario: Environments) -> ScenarioText | None:
+    """Text that a scenario was read from, by which it is read again; None of one that was made without."""
+    from gbeam.results.provenance import ScenarioText
+
+    source = scenario.source
+    if source is None:
+        return None
+    return ScenarioText(source.name, source.text, os.fspath(source.folder), tuple(c.text for c in source.overrides))
 
 
 def _files(scenario: Environments) -> Iterator[tuple[str, str]]:

@@ -71,16 +71,18 @@ class Neighbourhood:
         self.edges = set[int]()  # parameters on one side of whose value the scenario refuses a step
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
-        self.case: Any = self._built(None, 0.0)
-        # Runs of one beam are differentiated themselves, all other answers by differences.
-        self.runs = inquiry.verb == "run" and isinstance(self.case, Case)
+        self.case: Case = self._built(None, 0.0)
+        # Runs of a beam alone are differentiated themselves, all other answers by differences: shapes of a reduced mesh
+        # follow its values, and joints move the frames of what hangs on them.
+        body = self.case.system.alone
+        self.runs = inquiry.verb == "run" and body is not None and body.source is not None
         self.answer: Any
         if self.runs:
             if grids is None:
                 self.answer = study(self.case, self.progress)
                 self._enrich()
             else:
-                structure = self.case.assemble()
+                structure = self.case.require_beam()
                 runs = {name: self._differentiated(structure, name, grid).unvaried() for name, grid in grids.items()}
                 self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in runs.items()})
         else:
@@ -120,7 +122,7 @@ class Neighbourhood:
 
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
-        return Grid.of(self.case.assemble(), self.case.motions[name], self.case.over_time, self.done(name))
+        return Grid.of(self.case.require_beam(), self.case.motions[name], self.case.over_time, self.done(name))
 
     def _differentiated(self, structure: Structure, name: str, grid: Grid) -> Differentiated:
         motion, settings = self.case.motions[name], self.case.over_time
@@ -129,7 +131,7 @@ class Neighbourhood:
 
     def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
         """Slopes of runs: all parameters along which the jumps stay are right-hand sides of one solution."""
-        done, structure = {name: self.done(name) for name in motions}, self.case.assemble()
+        done, structure = {name: self.done(name) for name in motions}, self.case.require_beam()
         for name in motions:
             if name not in self._by_motion:
                 self._differentiated(structure, name, self.grid(name))
@@ -201,7 +203,7 @@ class Neighbourhood:
             raise InputError(
                 "--with", f"{problem} ({str(error).splitlines()[0]})", "leave it out, or move it off its bound"
             ) from None
-        return replace(case, model=self.case.model) if isinstance(case, Case) else case
+        return in_model_of(self.case, case)
 
     def _built(self, k: int | None, step: float) -> Any:
         """The case with parameter `k` more by `step`; reduced meshes are kept on disk of the unchanged case only."""
@@ -222,18 +224,17 @@ class Neighbourhood:
         return not motion or motion == name or self.case.tracks.get(name) == motion
 
     def _variant(self, case: Case, k: int, name: str) -> Variant:
-        if self.parameters[k].path.startswith("beam."):
-            return case.assemble(), None
-        return None, case.motions[name]
+        of_motions = [place.startswith("motion.") for place in self.parameters[k].places]
+        return None if all(of_motions) else case.require_beam(), case.motions[name] if any(of_motions) else None
 
     def _enrich(self) -> None:
         """Give the case's model as many shapes as the runs of the study took."""
         sizes = {response.q.shape[1] for response in self.answer.responses.values()}
-        while self.case.model.automatic and self.case.assemble().size < max(sizes):
+        while self.case.automatic and self.case.require_beam().size < max(sizes):
             richer = self.case.model.richer()
             if richer is None:
                 break
-            self.case = replace(self.case, model=richer)
+            self.case = self.case.remade(model=richer)
 
 
 class Quantities:
@@ -301,7 +302,12 @@ class Quantities:
 
     def _shaped(self, case: Any) -> Any:
         case = self._adapt(case)
-        return case if self._start is None else replace(case, model=self._start.case.model)
+        return case if self._start is None else in_model_of(self._start.case, case)
+
+
+def in_model_of(like: Case, case: Case) -> Case:
+    """The case with as many shapes as another, where both are of a beam alone and their numbers are automatic."""
+    return case.remade(model=like.model) if like.automatic and case.model != like.model else case
 
 
 def _possible(structure: Structure, response: Response) -> Response:
@@ -314,7 +320,7 @@ def _possible(structure: Structure, response: Response) -> Response:
 
 def _runs(case: Case, steps: Mapping[str, float]) -> Study:
     """Study of the motions in `steps`, run by these time steps, s, without estimates of errors."""
-    structure, responses = case.assemble(), {}
+    structure, responses = case.require_beam(), {}
     for name, step in steps.items():
         settings = replace(case.over_time, step=step, estimate=False)
         responses[name] = simulate(structure, case.motions[name], settings, name=name)

@@ -15,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case
+from gbeam.analysis.case import Case
 from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
-from gbeam.errors import ComputationError, GbeamError
+from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.questions import Needs, question_of, reduced
 from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
@@ -82,11 +83,11 @@ class Inquiry:
         loads = any(map(of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
         return Needs(errors, loads)
 
-    def case(self, overrides: Sequence[str]) -> AnyCase:
+    def case(self, overrides: Sequence[str]) -> Case:
         """The objects of one case."""
         return self.template.changed(overrides).built()
 
-    def facts(self, case: AnyCase) -> Facts:
+    def facts(self, case: Case) -> Facts:
         """Facts of the verb's answer to a case."""
         question = question_of(self.verb)
         question.refuse(case)
@@ -102,7 +103,7 @@ class Inquiry:
             return without_figures(number, self.width, error)
         return self.measured(number, case, facts)
 
-    def measured(self, number: int, case: AnyCase, facts: Facts) -> Row:
+    def measured(self, number: int, case: Case, facts: Facts) -> Row:
         """Row of a built case with the facts of the verb's answer to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys]
@@ -116,7 +117,7 @@ class Inquiry:
         return Row(number, tuple(values), outcome, message or problem)
 
 
-def _measured(functions: Sequence[Function], case: AnyCase) -> tuple[list[float], str]:
+def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
     """Values of functions of a case, NaN of those that fail, and the reasons; raises the last one if all fail."""
     values, problems, last = [], [], Exception()
     for k, function in enumerate(functions):
@@ -179,7 +180,7 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
     return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
 
 
-def settled(inquiry: Inquiry, case: AnyCase, cases: int) -> Inquiry:
+def settled(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
     """Inquiry whose `together` stays true only if a case like this one gains by being integrated with the others.
 
     Automatic steps take several runs, which pay for many cases only; automatic numbers of shapes exclude it.
@@ -188,7 +189,8 @@ def settled(inquiry: Inquiry, case: AnyCase, cases: int) -> Inquiry:
     if settings is None or not inquiry.together:
         return inquiry
     enough = settings.step is not None or cases >= TOGETHER
-    able = isinstance(case, Case) and not settings.estimate and not case.automatic
+    body = case.system.alone
+    able = body is not None and body.size > 0 and not settings.estimate and not case.automatic
     return replace(inquiry, together=enough and able)
 
 
@@ -203,18 +205,26 @@ def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
     """Rows of cases, computed many at a time; neighbours with equal settings are integrated together."""
     while many := list(islice(tasks, MANY)):
         posed: list[Posed] = []
-        structures: dict[tuple[str, ...], Structure] = {}
+        systems: dict[tuple[str, ...], System] = {}
         for number, overrides in many:
             try:
-                case = inquiry.case(overrides).one_beam("bodies", "a batch")
                 key = tuple(each for each in overrides if not each.startswith("motion."))  # motions share a structure
-                structure = structures[key] = structures.get(key) or case.assemble()
-                posed.append((number, case, structure))
+                case = inquiry.template.changed(overrides).built(systems.get(key))
+                systems[key] = case.system
+                posed.append((number, case, _alone(case)))
             except Exception as error:
                 yield without_figures(number, inquiry.width, error)
         # Settings differ where a motion's record ends at another time.
         for _, group in groupby(posed, key=lambda each: each[1].response):
-            yield from _answered(inquiry, list(group), one_structure=set(structures) == {()})
+            yield from _answered(inquiry, list(group), one_structure=set(systems) == {()})
+
+
+def _alone(case: Case) -> Structure:
+    """Structure of a case that is integrated with others; InputError where it is a system, unlike the first one."""
+    body = case.system.alone
+    if body is None:
+        raise InputError("bodies", "are joined to a system, and the first case's is alone", "sweep these apart")
+    return body
 
 
 def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, reduce
 from operator import getitem
@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gbeam.analysis.system.histories import beams_of
 from gbeam.errors import InputError
 from gbeam.printable import advise, closest
 from gbeam.questions import question_of
 from gbeam.results.result import Floats
 from gbeam.scenario.values import path_text
-from gbeam.structure.attachments import TIP
 from gbeam.studies.template import Template
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import SystemCase
+    from gbeam.analysis.case import Case
     from gbeam.results.facts import Entry
     from gbeam.results.response import Response
     from gbeam.results.study import Study, SystemStudy
@@ -153,21 +153,22 @@ def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, 
 
     These begin with what the verdict is on: limits of acceptance, or the largest load where there is none.
     """
-    question = question_of(verb)
-    limited = [name for name, accepts in template.imitations.items() if accepts]
-    patterns = question.usual_of_systems if template.of_system else question.usual
+    case = template.built()
+    patterns = question_of(verb).usual_of(case)
+    limited = [name for name in case.tracks if case.accept.get(name)]
     figures = [each for each in patterns if "{judged}" in each]  # the flight alone is in all cases of a machine
-    figures += [each.replace("{motion}", name) for name in template.motions for each in patterns if "{motion}" in each]
+    names = tuple(case.environments)
+    figures += [each.replace("{motion}", name) for name in names for each in patterns if "{motion}" in each]
     figures += [each for each in patterns if "{motion}" not in each]
-    limits = ((name, limit) for name, limits in template.imitations.items() for limit in limits or ("largest_load",))
-    names_by_key = {
-        "{beam}": template.beams,
-        "{machine}": template.imitations,
+    limits = ((name, limit) for name in case.tracks for limit in case.accept.get(name) or ("largest_load",))
+    names_by_key: dict[str, Sequence[str]] = {
+        "{beam}": tuple(beams_of(case.system)),
+        "{machine}": tuple(case.tracks),
         "{limited}": limited,
         "{judged}": [f"{name}.verdict.{limit}" for name, limit in limits],
     }
-    for key, names in names_by_key.items():
-        figures = [each.replace(key, name) for each in figures for name in (names if key in each else ("",))]
+    for key, words in names_by_key.items():
+        figures = [each.replace(key, name) for each in figures for name in (words if key in each else ("",))]
     return tuple(dict.fromkeys(each for each in figures if judged or not each.startswith("comparisons.")))
 
 
@@ -275,9 +276,28 @@ def _at(history: tuple[Floats, Floats] | None, times: Floats) -> Floats:
     return np.where(inside, CubicSpline(time, values)(times), math.nan)
 
 
-def read_system_history(text: str, case: SystemCase, where: str = HISTORY, chosen: str | None = None) -> SystemHistory:
-    """Read a history such as ``strip.tip.place_z``, after the motion's name and a dot where there are several."""
-    from gbeam.analysis.system.histories import beams_of
+def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History | SystemHistory:
+    """Read a history of a case: ``flight.tip.z`` of a body alone on its base, of others a signal such as
+    ``strip.tip.place_z``; the motion's name and a dot may be left out where there is only one, or it is `chosen`.
+    """
+    if case.subject is case.system:
+        return _read_signal(text, case, where, chosen)
+    *before, quantity, axis = ["", "", *text.split(".")]
+    motion = ".".join(part for part in before if part)
+    quantities = (*case.points, *(_LOADS if beams_of(case.system) else ()))
+    if axis not in ("x", "y", "z") or quantity not in quantities:
+        fix = f"write MOTION.QUANTITY.AXIS of {', '.join(quantities)}"
+        raise InputError(where, f"{text!r} is no history", fix)
+    if not motion:
+        if len(case.motions) > 1:
+            raise InputError(where, f"{text!r} leaves the motion out", f"write {next(iter(case.motions))}.{text}")
+        motion = next(iter(case.motions))
+    if motion not in case.motions:
+        raise InputError(where, f"{text!r} names no motion", advise(motion, case.motions))
+    return History(text, motion, quantity, "xyz".index(axis))
+
+
+def _read_signal(text: str, case: Case, where: str, chosen: str | None) -> SystemHistory:
     from gbeam.mechanics.tree.signals import signals_of
 
     units, names = signals_of(case.system), list(case.environments)
@@ -296,19 +316,3 @@ def component(response: Response, quantity: str, axis: int) -> Floats:
     """Component over time (t,) of the displacement of a named point, or of the root's force or moment."""
     values = getattr(response.loads, quantity) if quantity in _LOADS else response.at(quantity)
     return np.asarray(values[:, axis])
-
-
-def read_history(text: str, motions: Collection[str], points: Collection[str] = (TIP,)) -> History:
-    """Read a history such as ``flight.tip.z``; the motion may be left out where there is only one."""
-    *before, quantity, axis = ["", "", *text.split(".")]
-    motion = ".".join(part for part in before if part)
-    if axis not in ("x", "y", "z") or quantity not in (*points, *_LOADS):
-        fix = f"write MOTION.QUANTITY.AXIS of {', '.join((*points, *_LOADS))}"
-        raise InputError(HISTORY, f"{text!r} is no history", fix)
-    if not motion:
-        if len(motions) > 1:
-            raise InputError(HISTORY, f"{text!r} leaves the motion out", f"write {next(iter(motions))}.{text}")
-        motion = next(iter(motions))
-    if motion not in motions:
-        raise InputError(HISTORY, f"{text!r} names no motion", advise(motion, motions))
-    return History(text, motion, quantity, "xyz".index(axis))

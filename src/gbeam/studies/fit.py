@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
@@ -31,7 +31,7 @@ _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 @typed
 def fit(
-    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     data: str | os.PathLike[str],
     free: Sequence[str],
     *,
@@ -50,7 +50,7 @@ def fit(
 
     Parameters
     ----------
-    scenario : path, Case, SpecimenCase or SystemCase
+    scenario : path or Case
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
         Its values are where the search starts.
     data : path
@@ -113,9 +113,10 @@ def fit(
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
+    body = case.system.alone
     start = (
         None
-        if measurement.modal or not isinstance(case, Case)
+        if measurement.modal or body is None or body.source is None
         else Neighbourhood(inquiry, parameters, adapt=partial(reduced, needs=Needs(errors=False)), progress=progress)
     )
     model = Quantities(

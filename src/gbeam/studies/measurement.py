@@ -6,24 +6,25 @@ import math
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.analysis.control.linearization import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity
 from gbeam.io.table import Table
+from gbeam.mechanics.structure import Structure
 from gbeam.motion.records.text import read_text
 from gbeam.printable import advise
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.structure.beam import fibre_strain
-from gbeam.studies.figures import SystemHistory, component, read_system_history
+from gbeam.studies.figures import SystemHistory, component, read_history
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")
@@ -102,24 +103,22 @@ class Measurement:
             weights.append(1 / (noise * size))
         return np.concatenate(weights)
 
-    def instrumented(self, case: Any) -> Any:
-        """The case; of a beam with the positions of strain gauges among its stations."""
-        if isinstance(case, (SystemCase, SpecimenCase)):
-            return case
-        gauges = {float(each.at) for each in self.columns if each.face and float(each.at) > 0}
-        return replace(case, stations=tuple(sorted({*case.stations, *gauges}))) if gauges else case
+    def instrumented(self, case: Case) -> Case:
+        """The case; of a beam alone with the positions of strain gauges among its stations."""
+        gauges = {at for each in self.columns if isinstance(at := each.at, float) and at > 0}
+        return case.remade(stations=sorted({*case.stations, *gauges})) if gauges else case
 
-    def read(self, case: AnyCase, answer: Any) -> Floats:
+    def read(self, case: Case, answer: Any) -> Floats:
         """Values (m,) of the measured quantities in an answer to a case, in the order of `values`."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
-        if isinstance(case, SystemCase):
+        if case.subject is case.system:
             histories = [SystemHistory(each.name, each.motion, each.quantity, each.unit) for each in self.columns]
             return np.concatenate([history.at(answer["study"], self.at) for history in histories])
         study = answer if isinstance(answer, Study) else answer["study"]
         return np.concatenate([self._history(case, study, each) for each in self.columns])
 
-    def _history(self, case: Case | SpecimenCase, answer: Study, column: Measured) -> Floats:
+    def _history(self, case: Case, answer: Study, column: Measured) -> Floats:
         from scipy.interpolate import CubicSpline
 
         response = answer.responses[column.motion]
@@ -127,7 +126,7 @@ class Measurement:
         return np.asarray(CubicSpline(response.time, values)(self.at))
 
 
-def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | None = None) -> Measurement:
+def read_measurement(path: str | os.PathLike[str], case: Case, motion: str | None = None) -> Measurement:
     """Read measured histories (a column ``time``) or modes (a column ``mode``) from a text file: see :func:`fit`.
 
     ``strain.z@10 mm`` is on the face towards +z, ``strain.-z@...`` towards −z; of a solid ``strain.x@fillet`` is along
@@ -140,7 +139,7 @@ def read_measurement(path: str | os.PathLike[str], case: AnyCase, motion: str | 
         raise error.at(where) from None
 
 
-def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
+def _read(path: str, case: Case, motion: str | None) -> Measurement:
     """The measurement in a file; InputError unless it has a clock, time or mode, and further columns."""
     table = read_text(path)
     names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
@@ -158,7 +157,7 @@ def _read(path: str, case: AnyCase, motion: str | None) -> Measurement:
     return Measurement(path, at, modal, columns)
 
 
-def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
+def _check_clock(at: Floats, path: str, modal: bool, case: Case) -> None:
     """Raise InputError unless times increase within the response, or modes are numbered once each."""
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
@@ -175,15 +174,16 @@ def _check_clock(at: Floats, path: str, modal: bool, case: AnyCase) -> None:
         raise InputError(OPTION, problem, "give response.duration the data's, or cut the data")
 
 
-def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, motion: str | None) -> Measured:
+def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion: str | None) -> Measured:
     """A column of the file in SI, with its quantity and the motion that its name or `motion` says."""
     values = table.numbers("file", name)
     if modal:
         if name not in _MODAL:
             raise InputError(OPTION, f"has the column {name!r}", advise(name, _MODAL))
         return Measured(name, motion or "", name, values * _factor(unit, _MODAL[name], name), _si(_MODAL[name]))
-    if isinstance(case, SystemCase):
-        signal = read_system_history(name, case, OPTION, motion)
+    body = case.system.alone
+    if body is None:
+        signal = read_history(name, case, OPTION, motion)
         factor = _factor(unit, _KIND_OF[signal.unit], name)
         return Measured(name, signal.motion, signal.quantity, values * factor, signal.unit)
     first, _, rest = name.partition(".")
@@ -191,16 +191,13 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: AnyCase, moti
     if run not in case.motions:
         raise InputError("--motion", f"is {run!r}", f"the scenario has {', '.join(case.motions)}")
     strain = _STRAIN.fullmatch(quantity)
-    if strain is not None and (isinstance(case, SpecimenCase) or not strain[1].endswith("x")):
+    if strain is not None and (body.source is None or not strain[1].endswith("x")):
         factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
-        if isinstance(case, SpecimenCase):
-            at: float | str = _gauged(strain[2], strain[1], case)
-        else:
-            at = _position(strain[2], strain[1], case)
+        of_gauge = _gauged if body.source is None else _position
+        at: float | str = of_gauge(strain[2], strain[1], body)
         return Measured(name, run, "strain", values * factor, unit="", at=at, face=strain[1])
     point, _, axis = quantity.partition(".")
-    points = case.structure.points if isinstance(case, SpecimenCase) else case.beam.named_points
-    if axis in tuple("xyz") and point in points:
+    if axis in tuple("xyz") and point in case.points:
         return Measured(name, run, quantity, values * _factor(unit, "length", name), _si("length"))
     if quantity not in _KINDS:
         raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
@@ -219,9 +216,9 @@ def _factor(unit: str, kind: str, name: str) -> float:
     return read_quantity(OPTION, f"1 {unit}" if unit else "1", kind, f"has the column {name!r} in {unit!r}: ")
 
 
-def _gauged(text: str, axis: str, case: SpecimenCase) -> str:
+def _gauged(text: str, axis: str, solid: Structure) -> str:
     """Return the gauge's point, stripped; InputError unless the solid has a strain there along `axis`."""
-    name, recovery = text.strip(), case.structure.recovery
+    name, recovery = text.strip(), solid.recovery
     if recovery is None:
         raise InputError(OPTION, f"has a gauge at {name!r}, on no mesh", "leave it out")
     try:
@@ -235,18 +232,20 @@ def _way(axis: str) -> Floats:
     return np.eye(3)["xyz".index(axis[-1])]
 
 
-def _position(text: str, face: str, case: Case) -> float:
+def _position(text: str, face: str, structure: Structure) -> float:
     """Position of a gauge on a face of the beam, m."""
-    at = case.beam.named_points.get(text.strip())
+    assert structure.source is not None
+    beam = structure.source.beam
+    at = beam.named_points.get(text.strip())
     at = read_quantity(OPTION, text.strip(), "length", f"has a gauge at {text!r}: ") if at is None else at
     try:
-        surface_gauge(case.beam, at, face)
+        surface_gauge(beam, at, face)
     except InputError as error:
         raise InputError(OPTION, f"has a gauge that {error.problem}", error.fix) from None
-    return at
+    return float(at)
 
 
-def _only_motion(case: Case | SpecimenCase, name: str) -> str:
+def _only_motion(case: Case, name: str) -> str:
     if len(case.motions) > 1:
         choice = " or ".join(f"{motion}.{name}" for motion in case.motions)
         raise InputError(OPTION, f"has the column {name!r}, and the scenario several motions", f"name it {choice}")
@@ -260,7 +259,7 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
     return float(modes[mode - 1][quantity])
 
 
-def _values(case: Case | SpecimenCase, response: Response, column: Measured) -> Floats:
+def _values(case: Case, response: Response, column: Measured) -> Floats:
     """History, at the response's own times, of the quantity that a column measures."""
     kind, _, axis = column.quantity.partition(".")
     if kind == "hub":
@@ -268,10 +267,10 @@ def _values(case: Case | SpecimenCase, response: Response, column: Measured) -> 
         return np.asarray(getattr(response.hub, axis))
     if not column.face:
         return component(response, kind, "xyz".index(axis))
-    if isinstance(case, SpecimenCase):
-        return response.strain_at(str(column.at), _way(column.face).tolist())
+    if isinstance(column.at, str):
+        return response.strain_at(column.at, _way(column.face).tolist())
     assert response.loads is not None
-    loads, gauge = response.loads, surface_gauge(case.beam, float(column.at), column.face)
-    k = int(np.argmin(np.abs(loads.stations - float(column.at))))
+    loads, gauge = response.loads, surface_gauge(case.beam, column.at, column.face)
+    k = int(np.argmin(np.abs(loads.stations - column.at)))
     carried = loads.section_force[:, k], loads.section_moment[:, k]
     return np.asarray(fibre_strain(case.beam, gauge.at, *carried, gauge.y, gauge.z))

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
+from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity
 from gbeam.progress import Progress
-from gbeam.questions import Options, Verb
+from gbeam.questions import Options
 from gbeam.results.criteria import BROKEN
 from gbeam.results.result import Floats
 from gbeam.results.searches import Optimum, Requirement
@@ -36,7 +37,7 @@ _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 @typed
 def optimise(
-    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     minimise: str,
     over: Sequence[str],
     *,

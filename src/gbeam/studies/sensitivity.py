@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SpecimenCase, SystemCase
+from gbeam.analysis.case import Case
+from gbeam.constants import Verb
 from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.progress import Progress
-from gbeam.questions import Options, Verb
+from gbeam.questions import Options
 from gbeam.results.cases import Sensitivity
 from gbeam.results.result import Flags, Floats
 from gbeam.results.study import Study
@@ -35,7 +36,7 @@ _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|pa
 
 @typed
 def sensitivity(
-    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     of: Sequence[str] = (),
     parameters: Sequence[str] = (),
     *,

@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.analysis.control.plants import DRIVES, driven, movable
 from gbeam.analysis.control.shaping import profile_of, shape_command
-from gbeam.analysis.model_study import counterpart, of_kind
+from gbeam.analysis.model_study import of_kind
 from gbeam.constants import ModelKind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -40,8 +40,8 @@ _AFTER = 1.25  # least duration of a scenario with the command, over the command
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
     """Two truths about the command that arguments ask for: it is an effort; its coordinate is a displacement."""
     case = template_of(arguments["scenario"], arguments.get("overrides", ())).built()
-    _, name, hub = driven_of(case, arguments.get("motion"), arguments.get("joint"))
-    return hub.free, slides(name)
+    command = driven_of(case, arguments.get("motion"), arguments.get("joint"))
+    return command.hub.free, slides(command.name)
 
 
 @kinds(
@@ -50,7 +50,7 @@ def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
 )
 @typed
 def shape_hub_command(
-    scenario: str | os.PathLike[str] | Case | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     *,
     angle: float | None = None,
     rate: float | None = None,
@@ -71,7 +71,7 @@ def shape_hub_command(
 
     Parameters
     ----------
-    scenario : path, Case or SystemCase
+    scenario : path or Case
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
     angle, rate, distance : float, optional
         To turn by, rad, to reach, rad/s, or of what slides m/s, or to move by, m; by default what the scenario's own
@@ -112,50 +112,60 @@ def shape_hub_command(
     >>> gb.shape_hub_command(hub, duration=20.0).outcome
     'done'
     """
-    case, name, hub = driven_of(template_of(scenario, overrides).built(), motion, joint)
-    if isinstance(case, SystemCase):
-        structure: Any = _grounded(case, motion)
-        turned: Any = name
-    else:
-        structure, turned = case, driven(hub, constant(0.0))  # mounted as it is: free, or at rate zero
-    where = f"joints.{name}" if isinstance(case, SystemCase) else f"motion.{name}"
+    command = driven_of(template_of(scenario, overrides).built(), motion, joint)
+    case, name, hub, where = command.case, command.name, command.hub, command.where
     if case.automatic:
         raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")
     if check and check not in KINDS:
         raise InputError("--check", f"is {check!r}", advise(check, KINDS))
+    if check and not any(body.source for body in case.system.flexible.values()):
+        raise InputError(
+            "--check", f"is {check!r}, and no body is a beam, whose model could be another", "leave it out"
+        )
     if angle is None and rate is None and distance is None:
         angle, rate = _goal(hub, where)
         if slides(name):
             angle, distance = None, angle
     if duration is None:
         duration = _end(hub, where)
-    if isinstance(case, Case):
-        structure = case.assemble(())
-        tested: Any = replace(case, model=counterpart(case.model, check)).assemble(()) if check else None
-    else:
-        tested = of_kind(structure, check) if check else None
+    tested = replace(case, system=of_kind(case.system, check)).subject if check else None
     try:
         shaped = shape_command(
-            structure, turned, angle=angle, rate=rate, distance=distance, duration=duration, limit=limit,
+            case.subject, command.drive, angle=angle, rate=rate, distance=distance, duration=duration, limit=limit,
             robust=robust, check=tested, point=point, progress=progress,
         )  # fmt: skip
     except InputError as error:
-        if error.where != "gravity":
-            raise
-        if isinstance(case, SystemCase) and case.motions:
-            raise error.at(f"motion.{motion_of(case.motions, motion)}") from None
-        raise error.within("system" if isinstance(case, SystemCase) else where) from None
-    return replace(shaped, motion=name, notes=notes_on(case.motions), provenance=case.provenance)
+        raise error.at(command.gravity) if error.where == "gravity" else error from None
+    return replace(shaped, motion=name, notes=command.notes, provenance=case.provenance)
 
 
-def driven_of(case: AnyCase, motion: str | None, joint: str | None) -> tuple[Case | SystemCase, str, Hub]:
-    """The case, the name of what a command drives (a joint's coordinate or a hub), and a hub with its rate, or free."""
-    if isinstance(case, SystemCase):
-        return case, *driven_joint(case, joint)
-    case = case.one_beam("bodies", "gbeam shape")
+@dataclass(frozen=True)
+class Driven:
+    """What a command drives: the hub or the joint's coordinate of a name, as `drive`, in the case as it is computed."""
+
+    name: str
+    hub: Hub  # with the rate of the scenario's own command, or free
+    drive: Hub | str
+    where: str  # place of the command in the scenario
+    gravity: str  # place of what says gravity
+    case: Case
+    notes: tuple[str, ...]
+
+
+def driven_of(case: Case, motion: str | None, joint: str | None) -> Driven:
+    """Hub that turns a body alone, or coordinate of a joint, that a command drives."""
+    notes = notes_on(case.motions)
+    if case.system.alone is None:
+        name, hub = driven_joint(case.system, joint)
+        gravity = f"motion.{motion_of(case.motions, motion)}" if case.motions else "system.gravity"
+        grounded = replace(case, system=_grounded(case, motion), motions={}, tracks={}, accept={})
+        return Driven(name, hub, name, f"joints.{name}", gravity, grounded, notes)
     if joint is not None:
-        raise InputError("--joint", f"is {joint!r}, and the scenario is of one beam", "name its hub by --motion")
-    return case, *hub_of(case, motion)
+        fix = "name it by --motion"
+        raise InputError("--joint", f"is {joint!r}, and {case.system.order[0]} is on a hub, without joints", fix)
+    name, hub = hub_of(case, motion)
+    turned = driven(hub, constant(0.0))  # mounted as it is: free, or at rate zero
+    return Driven(name, hub, turned, f"motion.{name}", f"motion.{name}.gravity", case, notes)
 
 
 def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
@@ -169,11 +179,11 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
     return chosen, hubs[chosen]
 
 
-def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
+def driven_joint(system: System, name: str | None) -> tuple[str, Hub]:
     """Coordinate of a system that a command moves, `name` or the only one driven, and a hub with its rate, or free."""
     commands = {
         f"{owner}.{coordinate}": joint.rates.get(coordinate)
-        for owner, joint in case.system.joints.items()
+        for owner, joint in system.joints.items()
         for coordinate in (*joint.rates, *joint.efforts)
     }
     if name is None:
@@ -185,7 +195,7 @@ def driven_joint(case: SystemCase, name: str | None) -> tuple[str, Hub]:
             )
             raise InputError("--joint", "is missing: it says what moves", fix)
         name = next(iter(commands))
-    choice("--joint", name, movable(case.system))
+    choice("--joint", name, movable(system))
     rate = commands.get(name)
     return name, Hub(radius=0.0, inertia=1.0) if rate is None else Hub(radius=0.0, rate=rate)
 
@@ -196,7 +206,7 @@ def slides(coordinate: str) -> bool:
     return bool(joint) and moved in SLIDES
 
 
-def _grounded(case: SystemCase, name: str | None) -> System:
+def _grounded(case: Case, name: str | None) -> System:
     """The system on the ground, under gravity that equals the constant load of the motion that carries it.
 
     InputError unless that motion has a constant acceleration and does not turn.
@@ -236,7 +246,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 
 
 def scenario_with(
-    command: ShapedCommand, scenario: str | os.PathLike[str] | Case | SystemCase, overrides: Sequence[str] = ()
+    command: ShapedCommand, scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = ()
 ) -> str:
     """Return a scenario, as JSON, in which the shaped command, as a table, drives the hub or joint."""
     base = scenario_of(scenario, overrides)

@@ -9,16 +9,15 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, SystemCase
+from gbeam.analysis.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import NO_FACTS, Inquiry, Row, ended, settled, width, without_figures
 from gbeam.studies.evaluate import rows as computed
-from gbeam.studies.figures import find, node_at, read_history, read_system_history, unit_at
+from gbeam.studies.figures import find, node_at, read_history, unit_at
 from gbeam.studies.template import Template
 
 _FEW = 8  # cases, at most, whose joint computation is timed
@@ -36,19 +35,13 @@ class OverTime:
     names: tuple[str, ...] = ()
     count: int = 0
 
-    def of(self, inquiry: Inquiry, case: AnyCase) -> Inquiry:
+    def of(self, inquiry: Inquiry, case: Case) -> Inquiry:
         """Return the inquiry with these histories, at times over the response of `case`."""
         if not self.names:
             return inquiry
         settings = case.over_time
         times = np.linspace(settings.start, settings.start + settings.duration, self.count)
-        histories: tuple[Any, ...]
-        if isinstance(case, SystemCase):
-            histories = tuple(read_system_history(each, case) for each in self.names)
-        else:
-            points = list(case.one_beam("bodies", "a history").beam.named_points)
-            histories = tuple(read_history(each, case.motions, points) for each in self.names)
-        return replace(inquiry, histories=histories, times=times)
+        return replace(inquiry, histories=tuple(read_history(each, case) for each in self.names), times=times)
 
 
 NO_HISTORIES = OverTime()

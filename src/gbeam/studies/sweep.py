@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.case import Case, SpecimenCase, SystemCase
-from gbeam.constants import Sampler
+from gbeam.analysis.case import Case
+from gbeam.constants import Sampler, Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
-from gbeam.questions import Options, Verb
+from gbeam.questions import Options
 from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, may_share, width
@@ -36,7 +36,7 @@ Progress = Callable[[int, int, int], None] | bool | None
 
 @typed
 def sweep(
-    scenario: str | os.PathLike[str] | Case | SpecimenCase | SystemCase,
+    scenario: str | os.PathLike[str] | Case,
     over: Mapping[str, Any] | Sequence[str] = (),
     measure: Sequence[str] | Mapping[str, Function] = (),
     *,

@@ -15,23 +15,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.analysis.case import AnyCase, Case, SpecimenCase, SystemCase
-from gbeam.analysis.system.histories import beams_of
+from gbeam.analysis.case import BEAM, Case
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.kinds import KINDS, Kinds, below, kind_of_argument, only
 from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion.protocol import notes_on
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
-from gbeam.scenario.bodies.beam import BeamBody
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change, provenance
-from gbeam.scenario.schema import Centrifuge
 from gbeam.scenario.schema.fields import kind_of, quantities
 from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
@@ -53,28 +49,6 @@ class ScenarioTemplate:
     def title(self, varied: Collection[str] = ()) -> str:
         """Title of all cases, between which the values at some paths are `varied`."""
         return self.scenario.heading(varied)
-
-    @property
-    def of_system(self) -> bool:
-        """True if the cases are systems of bodies."""
-        return "joints" in type(self.scenario).model_fields
-
-    @property
-    def motions(self) -> tuple[str, ...]:
-        """Names of the motions, or of the ground at rest where there is none."""
-        return tuple(self.scenario.motion) or (GROUND,)
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        """Names of the bodies of a system that are beams."""
-        bodies = getattr(self.scenario, "bodies", {})
-        return tuple(name for name, body in bodies.items() if isinstance(body, BeamBody))
-
-    @property
-    def imitations(self) -> dict[str, tuple[str, ...]]:
-        """Centrifuges that track a flight, by name, each with what its limits of acceptance are on."""
-        machines = {name: each for name, each in self.scenario.motion.items() if isinstance(each, Centrifuge)}
-        return {name: tuple(each.limits_of_acceptance) for name, each in machines.items() if each.tracks}
 
     @property
     def table(self) -> SweepTable | None:
@@ -110,9 +84,9 @@ class ScenarioTemplate:
         assert self.scenario.source is not None
         return ScenarioTemplate(change(self.scenario.source, changes)) if changes else self
 
-    def built(self) -> AnyCase:
-        """The case, with its objects."""
-        return build(self.scenario)
+    def built(self, system: System | None = None) -> Case:
+        """The case, with its objects; with a `system` that was built from the same tables in place of its own."""
+        return build(self.scenario, system=system)
 
     def quantities(self) -> dict[str, tuple[float, str]]:
         """Value in SI and kind (a key of KINDS) of every quantity, by path."""
@@ -150,28 +124,12 @@ class _BeamBody:
 class CaseTemplate:
     """A case made in Python, with the members of a ScenarioTemplate; its values are arguments of its objects, in SI."""
 
-    case: AnyCase
+    case: Case
 
     table = None
 
-    @property
-    def of_system(self) -> bool:
-        return isinstance(self.case, SystemCase)
-
     def title(self, varied: Collection[str] = ()) -> str:
         return self.case.title
-
-    @property
-    def motions(self) -> tuple[str, ...]:
-        return tuple(self.case.environments)
-
-    @property
-    def beams(self) -> tuple[str, ...]:
-        return tuple(beams_of(self.case.system)) if isinstance(self.case, SystemCase) else ()
-
-    @property
-    def imitations(self) -> dict[str, tuple[str, ...]]:
-        return {name: tuple(self.case.accept.get(name, ())) for name in self.case.tracks}
 
     @property
     def distributions(self) -> Mapping[str, Distribution]:
@@ -188,8 +146,12 @@ class CaseTemplate:
 
     @property
     def identity(self) -> dict[str, Any]:
+        case, body = self.case, self.case.system.alone
+        # Of a beam what its structure is made of: numbers that are computed may differ on another machine.
+        system: Any = case.system if body is None or body.source is None else case.stations
+        others = case.title, case.tracks, case.accept, case.sensors
         try:
-            content = pickle.dumps(self.case)
+            content = pickle.dumps((system, self._tree, *others))
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             fix = "define its classes at the top level of a module, or leave the store out"
             raise InputError("store", f"cannot know the case again, which cannot be pickled ({error})", fix) from None
@@ -198,13 +160,11 @@ class CaseTemplate:
     @property
     def _tree(self) -> dict[str, Any]:
         """Objects of the case by the tables of a scenario, in which paths are looked up."""
-        case = self.case
+        case, system = self.case, self.case.system
         common = {"motion": case.motions, "response": case.response}
-        if isinstance(case, Case):
-            return {"beam": case.beam, "model": case.model} | common
-        if isinstance(case, SpecimenCase):  # which does not hold what its structure was reduced from
-            return common
-        system = case.system
+        if system.alone is not None:
+            beam = {} if system.alone.source is None else {BEAM: case.beam, "model": case.model}
+            return beam | common
         bodies: dict[str, Any] = {}
         for name, body in system.bodies.items():
             if isinstance(body, RigidBody):
@@ -235,15 +195,12 @@ class CaseTemplate:
         for machine, flight in self.case.tracks.items():
             if motions.get(flight) is not self.case.motions.get(flight):
                 motions[machine] = motions[machine].altered(flight=motions[flight])
-        if isinstance(self.case, SystemCase):
-            system = self.case.system
-            bodies = {name: getattr(body, "structure", body) for name, body in parts.pop("bodies").items()}
-            gravity = parts.pop("system").get("gravity")
-            others = {name: parts.pop(name) for name in ("joints", "forces", "controllers")}
-            parts["system"] = System({**system.bodies, **bodies}, gravity=gravity, **others)
-        return CaseTemplate(replace(self.case, **parts, motions=motions))
+        case = replace(self.case, response=parts.pop("response"), motions=motions)
+        if case.system.alone is None:
+            return CaseTemplate(replace(case, system=_joined(case.system, parts)))
+        return CaseTemplate(case.remade(**parts) if parts.keys() & wanted.keys() else case)
 
-    def built(self) -> AnyCase:
+    def built(self, system: System | None = None) -> Case:
         return self.case
 
     def quantities(self) -> dict[str, tuple[float, str]]:
@@ -260,14 +217,21 @@ class CaseTemplate:
         return KINDS[kind].unit if (kind := only(kinds)) else ""
 
 
+def _joined(system: System, parts: dict[str, Any]) -> System:
+    """The system with other bodies, gravity, joints, forces and controllers."""
+    bodies = {name: getattr(body, "structure", body) for name, body in parts.pop("bodies").items()}
+    gravity = parts.pop("system").get("gravity")
+    return System({**system.bodies, **bodies}, gravity=gravity, **parts)
+
+
 Template = ScenarioTemplate | CaseTemplate
 
 
 def template_of(
-    scenario: str | os.PathLike[str] | AnyCase, overrides: Sequence[str] = (), *, distributions: bool = False
+    scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = (), *, distributions: bool = False
 ) -> Template:
     """Return the template of a scenario's file, or of a case, after the changes `overrides`."""
-    if isinstance(scenario, AnyCase) and scenario.scenario is None:
+    if isinstance(scenario, Case) and scenario.scenario is None:
         return CaseTemplate(scenario).changed(tuple(overrides))
     return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 

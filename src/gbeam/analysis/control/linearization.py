@@ -351,7 +351,12 @@ def linearize(
     [  36.56  183.55  229.04 1139.77 4243.13]
     """
     tell(progress, "equilibrium and slopes", 0.0)
+    structure.require_damping("the state-space model")
     if isinstance(structure, System):
+        if rate is not None:
+            raise InputError(
+                "rate", "is of a hub, and a system turns on its joints", "give a time, or a joint its rate"
+            )
         drives = signal_names(structure.controllers, "drive")
         if loop != "open" and not drives:
             raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
@@ -376,7 +381,6 @@ def linearize(
     choice("loop", loop, ("open",))
     motion = Flight(z=0.0) if motion is None else motion
     structure.require_coordinates()
-    structure.require_damping("the state-space model")
     if rate is None:
         point = operating_point(structure, motion, time, q, qd)
     else:

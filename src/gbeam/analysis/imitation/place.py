@@ -187,12 +187,12 @@ def place(
     >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
     >>> flight, machine = case.motions["flight"], case.motions["centrifuge"]
     >>> choice = gb.choice_of(machine)
-    >>> placement = gb.place(case.assemble(), flight, choice, case.response, {"tip": 1.0}, current=machine)
+    >>> placement = gb.place(case.subject, flight, choice, case.response, {"tip": 1.0}, current=machine)
     >>> print(f"{1e3 * placement.best.control_point:.0f} mm from the root")
     220 mm from the root
     """
     check_weights(weights)
-    if isinstance(structure, Structure) and (check or "vibration" in weights):
+    if check or "vibration" in weights:
         structure.require_damping("the vibration")
     trials = _Trials(structure, flight, choice, settings, weights, along, np.asarray(current.place), progress)
     for width in reversed(choice.widths):  # the widest first, see Answers

@@ -147,6 +147,7 @@ def modes(
     """
     tell(progress, "equilibrium", 0.0)
     if isinstance(structure, System):
+        structure.require_damping("that of its modes")
         state = settled(structure, Drive(motion, time))
         moving = state.vibrations(gyroscopic=gyroscopic)
         of_system = decided(system_modes(state, moving, time, name), state.bend)

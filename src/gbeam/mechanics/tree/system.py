@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
 from gbeam.mechanics.equations.linear import Coefficients
@@ -41,6 +41,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.printable import advise
 
 ROOT = "root"
+CLAMP = "clamp"  # joint of a system of one body
 
 
 @typed
@@ -247,6 +248,26 @@ class System(Value):
         names = ", ".join(self.order)
         return f"System({names}; {len(self.tree.free)} unknown coordinates)"
 
+    @classmethod
+    @typed
+    def of(cls, body: RigidBody | Structure, name: str = "body") -> System:
+        """A system of one body, which the ground holds by its root.
+
+        Parameters
+        ----------
+        body : RigidBody or Structure
+        name : str
+            Of the body.
+
+        Examples
+        --------
+        >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+        >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+        >>> gb.System.of(gb.assemble(beam, "FOAM", axial=1, y=2, z=2), "strip")
+        System(strip; 5 unknown coordinates)
+        """
+        return cls({name: body}, {CLAMP: Joint("fixed", name)})
+
     def _ordered(self) -> tuple[str, ...]:
         """Names of the bodies, each after the one that it hangs on."""
         for name, joint in self.joints.items():
@@ -340,6 +361,20 @@ class System(Value):
     def flexible(self) -> dict[str, Structure]:
         """Bodies that deform, by name."""
         return {name: body for name, body in self.bodies.items() if isinstance(body, Structure)}
+
+    @property
+    def alone(self) -> Structure | None:
+        """The only body, where it is a structure that the ground holds by its root as it is, and nothing else acts."""
+        if len(self.bodies) > 1 or self.forces or self.controllers or self.gravity is not None:
+            return None
+        (joint,) = self.joints.values()
+        return None if joint.steps else self.flexible.get(joint.body)
+
+    def require_damping(self, answer: str) -> None:
+        """Raise InputError where a body has no damping ratio and an `answer` depends on it."""
+        for name, body in self.flexible.items():
+            with naming(f"bodies.{name}.damping_ratio"):
+                body.require_damping(answer)
 
     @property
     def floating(self) -> tuple[str, ...]:
@@ -456,11 +491,15 @@ class System(Value):
         return xp.concatenate(q), xp.concatenate(qd)
 
     @property
+    def at_start(self) -> State:
+        """Frames of the bodies on a ground at rest, with the joints at the start and bodies undeformed."""
+        q, zero, still = self.start[0], np.zeros(3), np.zeros(self.tree.size)
+        return State(self.tree, q, still, still, Frame(np.eye(3), zero, zero, zero, zero, zero))
+
+    @property
     def undeformed(self) -> Floats:
         """Places of all points, (points, 3) m, with the joints at the start and bodies undeformed."""
-        q, zero, still = self.start[0], np.zeros(3), np.zeros(self.tree.size)
-        ground = Frame(np.eye(3), zero, zero, zero, zero, zero)
-        return np.stack([frame.p for frame in State(self.tree, q, still, still, ground).every_point])
+        return np.stack([frame.p for frame in self.at_start.every_point])
 
     def corners(self, step: float) -> Floats:
         """Return the times that steps should not pass unseen, s.
@@ -556,9 +595,6 @@ def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hing
     if free and not (body.hub_force or hinged):
         fix = "choose FOAM with no axial shapes, which are the same equations with it"
         raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
-    if body.damping_ratio is None:
-        fix = "give a ratio of critical damping, such as 0.01, or 0 for none"
-        raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
     return terms_of(body, free=free)
 
 

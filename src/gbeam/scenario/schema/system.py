@@ -323,15 +323,19 @@ class SystemScenario(Environments, Tree):
         return data
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """Errors of keys that a body in a system must not have or lacks, and of [response] keys for one beam only."""
+        """Errors of keys that a body in a system must not have or lacks, and of [response] keys beside joints."""
         for name, body in self.bodies.items():
             for place, error in OF_TABLE[type(body)].among(body):
                 yield ("bodies", name, *place), error
-        beam_only: list[Loc] = [("response", "stations")] if self.response.stations is not None else []
-        initial = self.response.initial
-        beam_only += [("response", "initial", key) for key in initial.settings if key != "state"]
-        for place in beam_only:
-            yield place, wrong("is of one beam", "leave it out: output is at the points of the bodies", mark="key")
+        if self.response.stations is not None:
+            hint = "give them to a beam: [bodies.NAME] stations = [...]; other output is at the points of the bodies"
+            yield ("response", "stations"), wrong("is given beside joints", hint, mark="key")
+        for key in self.response.initial.settings.keys() - {"state"}:
+            hint = "leave it out, and give the joint its initial values"
+            yield (
+                ("response", "initial", key),
+                wrong("displaces a body whose joint says where it begins", hint, mark="key"),
+            )
 
 
 class _Specimen(Titled):
@@ -352,4 +356,4 @@ class SpecimenScenario(Environments, _Specimen):
         """Errors of keys that are of a beam only."""
         if self.response.stations is not None:
             hint = "leave it out: output is at the points of the body"
-            yield ("response", "stations"), wrong("is of a beam", hint, mark="key")
+            yield ("response", "stations"), wrong("is of positions along a beam", hint, mark="key")

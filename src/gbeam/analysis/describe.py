@@ -1,0 +1,132 @@
+"""Meaning of a case before any run: its bodies, joints and forces, motions, records and settings."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.case import Case
+from gbeam.analysis.one_body import points_of
+from gbeam.guards.arguments import typed
+from gbeam.mechanics.assembly import model_of
+from gbeam.mechanics.fields.basis import FAMILIES
+from gbeam.mechanics.plausibility import input_warnings
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.joints import GROUND, Joint
+from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.motion import Flight
+from gbeam.motion.protocol import notes_on
+from gbeam.results.description import (
+    BodyDescription,
+    ControllerDescription,
+    Description,
+    ForceDescription,
+    JointDescription,
+    MassOnBeam,
+)
+
+MODES = 6  # natural frequencies at most
+
+
+@typed
+def describe(case: Case) -> Description:
+    """Describe a case: masses, frequencies of the bodies, joints, forces, motions, records, and settings.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`gbeam.read_scenario`, or made by hand.
+
+    Returns
+    -------
+    Description
+
+    Examples
+    --------
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml")
+    >>> description = gb.describe(case)
+    >>> print(f"{description.mass:.4f} kg, {description.duration} s, {description.bodies['beam'].counts}")
+    0.0648 kg, 15.99 s, {'axial': 1, 'y': 3, 'z': 3}
+    """
+    system, settings = case.system, case.response
+    masses, centres = zip(*(_mass(system.bodies[name]) for name in system.order), strict=True)
+    roots = system.at_start.roots
+    places = [np.asarray(root.p + root.R @ centre) for root, centre in zip(roots, centres, strict=True)]
+    free = system.alone is None or any(motion.free for motion in case.motions.values())
+    chosen = None if settings is None else settings.chosen(free=free)
+    over_time: dict[str, Any] = {}
+    doubts = [*_doubts(case), *(() if chosen is None else chosen.warnings)]
+    if chosen is not None:
+        over_time = {key: getattr(chosen, key) for key in ("start", "duration", "step", "integrator")}
+    flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
+    return Description(
+        title=case.title,
+        mass=float(sum(masses)),
+        centre=np.einsum("b,bi->i", masses, places) / sum(masses),
+        bodies={name: _body(system, name) for name in system.order},
+        joints={name: _joint(each) for name, each in system.joints.items() if each.steps or each.on != GROUND},
+        forces={name: ForceDescription(force.on, force.follower) for name, force in system.forces.items()},
+        controllers={
+            name: ControllerDescription(tuple(law.measure), tuple(law.drive), law.sample, law.delay)
+            for name, law in system.controllers.items()
+        },
+        gravity=None if system.gravity is None else np.asarray(system.gravity, dtype=float),
+        motions={name: motion.kind for name, motion in case.motions.items()},
+        tracks=dict(case.tracks),
+        scales={name: each.level_factor for name, each in flights.items() if each.level_factor is not None},
+        records={name: each.record for name, each in flights.items() if each.record is not None},
+        notes=notes_on(case.motions),
+        warnings=tuple(dict.fromkeys(doubts)),
+        **over_time,
+    )
+
+
+def _doubts(case: Case) -> tuple[str, ...]:
+    """Words on what is implausible in the bodies, and where one is alone on its base in the motions too."""
+    body = case.system.alone
+    if body is None:
+        return case.system.warnings
+    span = case.start, case.start + (0.0 if case.response is None else case.response.duration)
+    motions = case.motions.items()
+    doubts = [input_warnings(body, motion, name=name, span=span) for name, motion in motions] or [input_warnings(body)]
+    return tuple(doubt for each in doubts for doubt in each)
+
+
+def _mass(body: RigidBody | Structure) -> tuple[float, Any]:
+    """Mass of a body, kg, and its centre (3,) m, from the root, undeformed."""
+    if isinstance(body, RigidBody):
+        return body.mass, np.asarray(body.centre, dtype=float)
+    mass, *moment = (float(value) for value in body.coefficients.rigid[:4])
+    return mass, np.array(moment) / mass
+
+
+def _body(system: System, name: str) -> BodyDescription:
+    body = system.bodies[name]
+    points = system.points_of(name) if system.alone is None else points_of(system)
+    mass, centre = _mass(body)
+    described: dict[str, Any] = {"mass": mass, "centre": centre, "points": points}
+    if isinstance(body, RigidBody):
+        return BodyDescription(kind="rigid", coordinates=0, **described)
+    frequencies, modes = body.rest
+    described |= {"kind": body.kind, "coordinates": body.size}
+    described["frequency"] = np.asarray(frequencies)[: min(MODES, body.resolved)] / (2 * np.pi)
+    if body.recovery is not None:
+        described["clamps"] = body.recovery.clamps
+    if body.source is not None:
+        beam, counts = body.source.beam, model_of(body).counts
+        # A mode bends along the axis of the group of coordinates that moves most.
+        groups = np.repeat(FAMILIES, body.counts)
+        described |= {
+            "length": float(beam.length),
+            "masses": tuple(MassOnBeam(each.at, each.mass) for each in beam.masses),
+            "counts": {way: n for way, n in zip(FAMILIES, counts, strict=True) if n or way in FAMILIES[:3]},
+            "direction": tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
+        }
+    return BodyDescription(**described)
+
+
+def _joint(joint: Joint) -> JointDescription:
+    driven, prescribed = tuple(joint.efforts), tuple(joint.rates)
+    moving = (kind for kind in joint.rate_names if kind not in (*driven, *prescribed))
+    return JointDescription(joint.kind, joint.body, joint.on, tuple(moving), driven, prescribed)
