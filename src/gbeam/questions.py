@@ -262,13 +262,19 @@ def static(
     case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
 ) -> tuple[Deflection, ...] | tuple[SystemRest, ...]:
     """Deflections at rest in all motions, or one."""
+    from gbeam.analysis.automatic import sufficient
     from gbeam.analysis.steady.static import static
 
-    structure, time = _subject(case, needs), _time(case, at)
+    time, needs = _time(case, at), replace(needs, errors=needs.errors or case.automatic)
     if all(body.work is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
         case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
-    return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
+
+    def ask(case: Case) -> Any:
+        structure = _subject(case, needs)
+        return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
+
+    return sufficient(case, ask, lambda rests: [each.errors for each in rests])[1]
 
 
 @question(
@@ -286,12 +292,18 @@ def modes(
     gyroscopic: Annotated[bool, "Keep Coriolis coupling."] = True,
 ) -> Modes | SystemModes:
     """Small vibrations about the equilibrium."""
+    from gbeam.analysis.automatic import of_lowest, sufficient
     from gbeam.analysis.steady import modal
 
     name, time = motion_of(case.environments, motion), _time(case, at)
-    options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": needs.errors, "name": name}
-    structure = _subject(case, replace(needs, errors=True))  # the source has the sections, at whose edges twist shows
-    return modal.modes(structure, prepared(case, name), time, **options)
+    errors = needs.errors or case.automatic
+    options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": errors, "name": name}
+
+    def ask(case: Case) -> Any:
+        structure = _subject(case, replace(needs, errors=True))  # the source has the sections: twist shows at edges
+        return modal.modes(structure, prepared(case, name), time, **options)
+
+    return sufficient(case, ask, lambda modes: [of_lowest(modes.frequency, modes.errors)])[1]
 
 
 _TURNING = "Of a system, the angle that turns, base.angle; else its only prescribed one, or only one."
@@ -327,29 +339,33 @@ def critical_speed(
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
     """Lowest rate, factor of the loads, or acceleration of the root, up to `to`, at which the equilibrium is lost."""
+    from gbeam.analysis.automatic import sufficient
     from gbeam.analysis.steady import stability
     from gbeam.analysis.steady.operating_point import held_base
 
     if to is not None and not to > 0:
         raise InputError("to", f"is {to:g}", "give a value above zero, where the search ends")
     name, time = motion_of(case.environments, motion, HUB), _time(case, at)
-    base, structure = prepared(case, name), _subject(case, needs)
+    base, needs = prepared(case, name), replace(needs, errors=needs.errors or case.automatic)
     options: dict[str, Any] = {"upper": to, "progress": progress}
-    body = case.system.alone
-    if body is None:
-        options |= {"motion": base, "time": time}
-    else:
-        structure = structure.at_time(time)
-    if vary == "loads":
-        still = None if body is None else held_base(base, time)
-        return stability.critical_load(structure, still, **options)
-    if vary == "acceleration":
+
+    def ask(case: Case) -> Critical:
+        structure, body = _subject(case, needs), case.system.alone
         if body is None:
-            problem = "is acceleration, which pushes one body by its root, and the bodies move on joints"
-            raise InputError("--vary", problem, "give rate or loads")
-        return stability.buckling_acceleration(structure, **options)
-    options["motion"] = base
-    return replace(stability.critical_speed(structure, turning=turning, name=name, **options), motion=name)
+            frozen = options | {"motion": base, "time": time}
+        else:
+            structure, frozen = structure.at_time(time), options
+        if vary == "loads":
+            return stability.critical_load(structure, None if body is None else held_base(base, time), **frozen)
+        if vary == "acceleration":
+            if body is None:
+                problem = "is acceleration, which pushes one body by its root, and the bodies move on joints"
+                raise InputError("--vary", problem, "give rate or loads")
+            return stability.buckling_acceleration(structure, **frozen)
+        how = frozen | {"motion": base, "turning": turning, "name": name}
+        return replace(stability.critical_speed(structure, **how), motion=name)
+
+    return sufficient(case, ask, lambda critical: [critical.errors])[1]
 
 
 @question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None, deforms=False)
@@ -408,6 +424,7 @@ def campbell(
     progress: Callable[[str, float], None] | None = None,
 ) -> Campbell:
     """Frequencies from one rate of a hub or a joint to another, rad/s, and crossings with multiples of the rate."""
+    from gbeam.analysis.automatic import sufficient
     from gbeam.analysis.steady import campbell
 
     if orders < 0:
@@ -416,10 +433,13 @@ def campbell(
     base = prepared(case, name)
     if to is None and getattr(base, "free", False):
         raise InputError("to", "is missing: the hub is driven by a torque", 'give the largest speed, such as "5 rad/s"')
-    return campbell.campbell(
-        case.subject, base, turning=turning, start=from_ or 0.0, end=to, modes=modes,
-        orders=range(1, orders + 1), time=_time(case, at), name=name, progress=progress,
-    )  # fmt: skip
+    options: dict[str, Any] = {"turning": turning, "start": from_ or 0.0, "end": to, "modes": modes}
+    options |= {"orders": range(1, orders + 1), "time": _time(case, at), "name": name, "progress": progress}
+
+    def ask(case: Case) -> Campbell:
+        return campbell.campbell(case.subject, base, **options)
+
+    return sufficient(case, ask, lambda diagram: [diagram.errors])[1]
 
 
 def machine_of(case: Case, motion: str | None) -> tuple[str, Any]:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.automatic import sufficient
 from gbeam.analysis.case import Case
 from gbeam.analysis.imitation.comparison import compare
-from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
@@ -19,6 +20,7 @@ from gbeam.numerics.peaks import vector_peaks
 from gbeam.progress import Progress, tell
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import judging
+from gbeam.results.errors import Errors
 from gbeam.results.parts import Extremes, VectorPeaks
 from gbeam.results.response import Readings, Response, Sensor
 from gbeam.results.result import each_once
@@ -63,13 +65,8 @@ def study(case: Case, progress: Progress = None) -> Any:
     if case.automatic and not settings.estimate:
         fix = "give it, or leave response.estimate out"
         raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
-    responses, failures = _answers(case, progress)
-    while case.automatic and _lacks_shapes(responses, settings):
-        richer = case.model.richer()
-        if richer is None:
-            break
-        case = case.remade(model=richer)
-        responses, failures = _answers(case, progress)
+    limits = {"shapes": min(settings.tolerance / 3, ENOUGH), "strains": settings.tolerance}
+    case, (responses, failures) = sufficient(case, partial(_answers, progress=progress), _errors_of, **limits)
     return study_of(case, responses, failures)
 
 
@@ -143,7 +140,6 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, 
     return responses, failures
 
 
-def _lacks_shapes(responses: Mapping[str, Response], settings: ResponseSettings) -> bool:
-    """True if more shapes would change a response by more than a third of the tolerance, or by 1e-3."""
-    limit = min(settings.tolerance / 3, ENOUGH)
-    return any(max(e.displacement.shapes, e.loads.shapes) > limit for e in (r.errors for r in responses.values()))
+def _errors_of(answers: tuple[Mapping[str, Any], Any]) -> list[Errors]:
+    """Errors of responses."""
+    return [response.errors for response in answers[0].values()]

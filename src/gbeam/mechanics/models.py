@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import get_args
+from typing import Literal, get_args
 
 from gbeam.constants import BY_STRAINS, ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
+
+StrainName = Literal["twist", "shear_y", "shear_z"]
+STRAINS: tuple[StrainName, ...] = get_args(StrainName)
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,17 @@ class Model:
         y, z = (n + 2 if n else 0 for n in (self.y, self.z))
         axial, twist, shear_y, shear_z = (n + 1 if n else 0 for n in (self.axial, *self.counts[3:]))
         return replace(self, axial=axial, y=y, z=z, twist=twist, shear_y=shear_y, shear_z=shear_z)
+
+    def with_strains(self, names: Collection[StrainName]) -> Model:
+        """Return the model with one shape of each of some strains.
+
+        Parameters
+        ----------
+        names : collection of str
+            Of twist, shear_y and shear_z.
+        """
+        twist, shear_y, shear_z = (1 if name in names else getattr(self, name) for name in STRAINS)
+        return replace(self, twist=twist, shear_y=shear_y, shear_z=shear_z)
 
     def __post_init__(self) -> None:
         for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, get_args(Shapes))):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -28,8 +28,27 @@ SEVERAL = "NaN of a mode that has several there"
 SLENDER = "against one with shear, rotary inertia and twist, and by plate action"
 
 
+class Lacking(Protocol):
+    """Errors that say whether a model has enough shapes, and the strains that matter; zero where they are not known."""
+
+    @property
+    def few_shapes(self) -> float:
+        """Largest error by too few shapes."""
+        ...
+
+    @property
+    def few_strains(self) -> float:
+        """Largest error by twist, shear and rotary inertia, which a slender beam lacks, and by plate action."""
+        ...
+
+
+def known(*values: float) -> float:
+    """Largest of the values that are known; zero if none is."""
+    return max((float(value) for value in values if math.isfinite(value)), default=0.0)
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class ErrorEstimate(Part):
+class ErrorEstimate(Lacking, Part):
     """Estimated errors of one quantity, or a vector's length, as fractions of its largest; NaN where there is none."""
 
     step: float = quantity("", "estimated error of the time steps", name=None, default=math.nan)
@@ -47,6 +66,16 @@ class ErrorEstimate(Part):
         return {
             each.name.replace("_", " "): getattr(self, each.name) for each in fields(self) if each.name not in WHOLE
         }
+
+    @property
+    def few_shapes(self) -> float:
+        """Error by too few shapes; zero where it is not known."""
+        return known(self.shapes)
+
+    @property
+    def few_strains(self) -> float:
+        """Error of the theory of slender beams; zero where it is not known."""
+        return known(self.beam_theory)
 
     @property
     def slender(self) -> float:
@@ -128,6 +157,16 @@ class Errors(Part):
         known = [(name, words) for name, words in zip(self.beams, self.theory, strict=True) if words]
         return "; ".join(words if len(self.beams) == 1 else f"{name}: {words}" for name, words in known)
 
+    @property
+    def few_shapes(self) -> float:
+        """Largest error by too few shapes, of displacement and loads."""
+        return known(self.displacement.shapes, self.loads.shapes)
+
+    @property
+    def few_strains(self) -> float:
+        """Largest error of the theory of slender beams, of displacement, loads and stress."""
+        return known(*(each.beam_theory for each in (self.displacement, self.loads, self.stress)))
+
     def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
         """Return the errors whose total is above a tolerance, by what they are of, in words."""
         estimates = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
@@ -168,6 +207,16 @@ class FrequencyErrors(Part):
         "rate at which a motion grows in the exact model with more shapes, where none grows in this one",
         default=0.0,
     )
+
+    @property
+    def few_shapes(self) -> float:
+        """Largest error by too few shapes."""
+        return known(*self.shapes)
+
+    @property
+    def few_strains(self) -> float:
+        """Largest error of the theory of slender beams; infinite where frequencies are unseen."""
+        return math.inf if self.unseen else known(*self.beam_theory)
 
     @property
     def slender(self) -> Floats:

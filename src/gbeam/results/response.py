@@ -286,6 +286,9 @@ class Response(Driven, Figured[ResponseFigure]):
     )
     readings: Readings | None = part("of accelerometers", name="sensor_", key="sensors", optional=True, default=None)
     scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
+    shapes: Mapping[str, int] | None = fact(
+        "numbers of shapes of a beam's model, by strain", optional=True, note="None of other bodies", default=None
+    )
 
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:

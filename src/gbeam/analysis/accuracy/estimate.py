@@ -44,7 +44,7 @@ def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
         return BENT_FAR if model > shapes else FEW_MODES
     if not shapes >= model:
         return "the model", 'check with model.kind = "exact"'
-    return "too few shapes", "raise model.modes, which one [beam] may leave out"
+    return "too few shapes", "raise model.modes; one [beam] that leaves them out has enough for the lowest six"
 
 
 def fuller(errors: ErrorEstimate) -> str:

@@ -35,6 +35,7 @@ from gbeam.arrays.namespace import Array, is_jax
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import accelerations, root_loads, section_forces
 from gbeam.mechanics.structure import Structure
@@ -313,6 +314,7 @@ def response_of(
         bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
         whole=whole,
         scale=level_factor(motion),
+        shapes=None if structure.source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
         point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
         felt_at_steps=felt_at_steps,
