@@ -211,11 +211,10 @@ def reduced(case: Case, needs: Needs) -> Case:
 
 def _subject(case: Case, needs: Needs) -> Any:
     """Argument of the analyses; if no errors are needed, without what a steady state would judge them by."""
-    body = case.system.alone
-    if body is None or body.source is None:
+    if case.only_beam is None:
         return case.subject
     if needs.shapes:
-        length = body.source.beam.length
+        length = case.beam.length
         case = case.remade(stations=[length * i / (STATIONS - 1) for i in range(STATIONS)])
     body = case.require_beam()
     return body if needs.errors else replace(body, source=None, richer=None, coarser=None)

@@ -153,7 +153,7 @@ WRONG = {
     "inertia": ('"12 kg m^2"]', '"120 kg m^2"]', "bodies.bus.inertia", "has the principal moments", None),
     "two moments": (', "12 kg m^2"]', "]", "bodies.bus.inertia", "has 2 entries", None),
     "station": ('duration = "20 s"\n', 'duration = "20 s"\nstations = [1]\n', "response.stations",
-                "is given beside joints", "stations"),
+                "is given beside bodies", "stations"),
     "stops": ('axes = [[0, 1, 0]]', 'axes = [[0, 1, 0]]\nstops = ["30 deg", "-10 deg"]\nstop_stiffness = "1 kN m/rad"',
               "joints.hinge_left.stops.angle", "is 30 deg, -10 deg", "stops"),
     "gravity": ("[response]", '[system]\ngravity = [0, 0, "-1 g"]' + FLIGHT + "[response]", "system.gravity",
@@ -197,9 +197,9 @@ def test_what_is_missing_is_said(left_out: str) -> None:
 
 
 def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it() -> None:
-    given = "damping_ratio = 0.005\n"
-    at = SATELLITE.rindex(given)
-    case = build(loads(SATELLITE[:at] + SATELLITE[at + len(given) :], "s.toml"))
+    line = "damping_ratio = 0.005\n"
+    at = SATELLITE.rindex(line)
+    case = build(loads(SATELLITE[:at] + SATELLITE[at + len(line) :], "s.toml"))
     for ask, answer in (
         (gb.study, "the response"),
         (QUESTIONS["modes"].answer, "that of its modes"),

@@ -152,8 +152,7 @@ class Case(OneBody, Value):
 
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {motion.kind}" if motion else name for name, motion in self.environments.items())
-        body = self.system.alone
-        subject = repr(self.subject) if body is None or body.source is None else body.kind
+        subject = repr(self.subject) if self.only_beam is None else self.model.kind
         duration = "" if self.response is None else f", {self.response.duration:g} s"
         return f"{type(self).__name__}({self.title!r}, {subject}, {{{motions}}}{duration})"
 
@@ -178,8 +177,7 @@ class Case(OneBody, Value):
     @property
     def automatic(self) -> bool:
         """True if a study chooses the numbers of shapes of the only beam by the errors that they leave."""
-        body = self.system.alone
-        return body is not None and body.source is not None and body.source.automatic
+        return self.only_beam is not None and self.model.automatic
 
     @property
     def environments(self) -> Mapping[str, Motion | None]:

@@ -51,8 +51,8 @@ def describe(case: Case) -> Description:
     """
     system, settings = case.system, case.response
     masses, centres = zip(*(_mass(system.bodies[name]) for name in system.order), strict=True)
-    roots = system.at_start.roots
-    places = [np.asarray(root.p + root.R @ centre) for root, centre in zip(roots, centres, strict=True)]
+    total, roots = float(sum(masses)), zip(system.at_start.roots, centres, strict=True)
+    moment = np.einsum("b,bi->i", masses, [root.p + root.R @ centre for root, centre in roots])
     free = system.alone is None or any(motion.free for motion in case.motions.values())
     chosen = None if settings is None else settings.chosen(free=free)
     over_time: dict[str, Any] = {}
@@ -62,8 +62,8 @@ def describe(case: Case) -> Description:
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
     return Description(
         title=case.title,
-        mass=float(sum(masses)),
-        centre=np.einsum("b,bi->i", masses, places) / sum(masses),
+        mass=total,
+        centre=moment / total if total else np.full(3, np.nan),
         bodies={name: _body(system, name) for name in system.order},
         joints={name: _joint(each) for name, each in system.joints.items() if each.steps or each.on != GROUND},
         forces={name: ForceDescription(force.on, force.follower) for name, force in system.forces.items()},

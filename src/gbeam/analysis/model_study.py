@@ -150,7 +150,7 @@ def _refuse(case: Case, point: str | None) -> None:
 
 
 def _subject(case: Case, kind: ModelKind) -> Structure | System | Failure:
-    """What a case is computed as by a kind of model, or the reason why it cannot be."""
+    """Argument of the analyses for a case by a kind of model, or the reason why there is none."""
     try:
         return replace(case, system=of_kind(case.system, kind)).subject
     except InputError as error:

@@ -50,13 +50,19 @@ class OneBody:
         """
         return self.system if self.system.alone is None else self.system.alone
 
+    @property
+    def only_beam(self) -> Structure | None:
+        """Structure of the only body, where that is a beam and nothing but its base moves it."""
+        body = self.system.alone
+        return None if body is None or body.source is None else body
+
     def require_beam(self) -> Structure:
         """Return the structure of the beam that the base holds by its root; InputError where the case has none."""
-        body, names = self.system.alone, ", ".join(self.system.order)
-        if body is None or body.source is None:
+        if self.only_beam is None:
+            body, names = self.system.alone, ", ".join(self.system.order)
             what = f"{names} is {body.kind}" if body is not None else f"it is of {names} on joints"
             raise InputError("case", f"needs a beam that the base holds by its root, and {what}", "give one [beam]")
-        return body
+        return self.only_beam
 
     @property
     def beam(self) -> Beam:

@@ -14,6 +14,7 @@ from gbeam.cli.options import (
     Output,
     ScenarioFile,
     SmoothVerb,
+    Verb,
     asked,
     names,
     number,
@@ -24,7 +25,7 @@ from gbeam.cli.options import (
 from gbeam.cli.outputs import LIST, deliver, list_figures
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
-from gbeam.constants import Sampler, Verb
+from gbeam.constants import Sampler
 from gbeam.questions import QUESTIONS, differentiable
 
 

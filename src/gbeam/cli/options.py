@@ -13,17 +13,18 @@ from cyclopts import Parameter
 
 from gbeam.cli.process import Watch, command
 from gbeam.cli.publication import refuse_unwritable
-from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.questions import QUESTIONS, Needs, Question, differentiable, motion_of, prepared, refuse_rigid
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
+    from gbeam.constants import Verb as Verb
     from gbeam.results.provenance import Provenance
     from gbeam.scenario.load import AnyScenario
 
     _Smooth = Verb
 else:
+    Verb = Literal[tuple(QUESTIONS)]  # with those that are declared elsewhere
     _Smooth = Literal[differentiable()]
 
 

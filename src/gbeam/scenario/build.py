@@ -45,9 +45,9 @@ def read_scenario(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -
 
     Examples
     --------
-    >>> case = gb.read_scenario("examples/f16_8g_turn.toml", ["beam.length=250 mm"])
+    >>> case = gb.read_scenario("examples/f16_8g_turn.toml", ["beam.length=320 mm"])
     >>> case.beam.length
-    0.25
+    0.32
     """
     return build(load(path, overrides))
 

@@ -74,8 +74,7 @@ class Neighbourhood:
         self.case: Case = self._built(None, 0.0)
         # Runs of a beam alone are differentiated themselves, all other answers by differences: shapes of a reduced mesh
         # follow its values, and joints move the frames of what hangs on them.
-        body = self.case.system.alone
-        self.runs = inquiry.verb == "run" and body is not None and body.source is not None
+        self.runs = inquiry.verb == "run" and self.case.only_beam is not None
         self.answer: Any
         if self.runs:
             if grids is None:

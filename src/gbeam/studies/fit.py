@@ -113,10 +113,9 @@ def fit(
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
-    body = case.system.alone
     start = (
         None
-        if measurement.modal or body is None or body.source is None
+        if measurement.modal or case.only_beam is None
         else Neighbourhood(inquiry, parameters, adapt=partial(reduced, needs=Needs(errors=False)), progress=progress)
     )
     model = Quantities(

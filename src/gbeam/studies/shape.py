@@ -141,7 +141,7 @@ def shape_hub_command(
 
 @dataclass(frozen=True)
 class Driven:
-    """What a command drives: the hub or the joint's coordinate of a name, as `drive`, in the case as it is computed."""
+    """Hub, or coordinate of a joint, that a command drives: `drive` as :func:`shape_command` takes it, in a case."""
 
     name: str
     hub: Hub  # with the rate of the scenario's own command, or free

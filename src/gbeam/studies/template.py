@@ -146,9 +146,9 @@ class CaseTemplate:
 
     @property
     def identity(self) -> dict[str, Any]:
-        case, body = self.case, self.case.system.alone
+        case = self.case
         # Of a beam what its structure is made of: numbers that are computed may differ on another machine.
-        system: Any = case.system if body is None or body.source is None else case.stations
+        system: Any = case.system if case.only_beam is None else case.stations
         others = case.title, case.tracks, case.accept, case.sensors
         try:
             content = pickle.dumps((system, self._tree, *others))
@@ -163,7 +163,7 @@ class CaseTemplate:
         case, system = self.case, self.case.system
         common = {"motion": case.motions, "response": case.response}
         if system.alone is not None:
-            beam = {} if system.alone.source is None else {BEAM: case.beam, "model": case.model}
+            beam = {} if case.only_beam is None else {BEAM: case.beam, "model": case.model}
             return beam | common
         bodies: dict[str, Any] = {}
         for name, body in system.bodies.items():

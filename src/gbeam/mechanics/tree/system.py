@@ -365,10 +365,10 @@ class System(Value):
     @property
     def alone(self) -> Structure | None:
         """The only body, where it is a structure that the ground holds by its root as it is, and nothing else acts."""
-        if len(self.bodies) > 1 or self.forces or self.controllers or self.gravity is not None:
+        acting = self.forces or self.controllers or self.gravity is not None
+        if len(self.bodies) > 1 or acting or self.tree.links[0].steps:
             return None
-        (joint,) = self.joints.values()
-        return None if joint.steps else self.flexible.get(joint.body)
+        return self.flexible.get(self.order[0])
 
     def require_damping(self, answer: str) -> None:
         """Raise InputError where a body has no damping ratio and an `answer` depends on it."""

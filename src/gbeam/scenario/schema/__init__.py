@@ -40,6 +40,4 @@ def kind_of_scenario(data: Mapping[str, Any]) -> type[Scenario | SystemScenario 
 
     bodies = data.get("bodies")
     alone = isinstance(bodies, Mapping) and len(bodies) == 1 and {*_OF_SYSTEMS, "beam", "model"}.isdisjoint(data)
-    kinds = [each.get("kind") for each in bodies.values() if isinstance(each, Mapping)] if bodies and alone else []
-    of_beam = kinds == ["beam"]
-    return SpecimenScenario if alone and not of_beam else SystemScenario
+    return SpecimenScenario if alone else SystemScenario

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
 
 from pydantic import (
     AfterValidator,
@@ -18,9 +18,10 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, State, Verb
+from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, State
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
 from gbeam.printable import advise, level_words, shortened, unprintable
+from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -43,7 +44,10 @@ from gbeam.scenario.schema.fields import (
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
 
 if TYPE_CHECKING:
+    from gbeam.constants import Verb
     from gbeam.scenario.text.source import Source
+else:
+    Verb = Literal[tuple(QUESTIONS)]  # with those that are declared elsewhere
 
 
 Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]

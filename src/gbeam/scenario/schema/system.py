@@ -306,6 +306,13 @@ class Tree(Titled):
     system: Surroundings = Field(default_factory=Surroundings, description="what acts on all bodies")
 
 
+def _stations(scenario: Environments) -> Iterator[tuple[Loc, PydanticCustomError]]:
+    """Error of stations that are not given to the beam that they are of."""
+    if scenario.response.stations is not None:
+        hint = "give them to a beam: [bodies.NAME] stations = [...]; other output is at the points of the bodies"
+        yield ("response", "stations"), wrong("is given beside bodies", hint, mark="key")
+
+
 _BESIDE = {
     "beam": 'give the beam as a body: [bodies.NAME] with kind = "beam"',
     "model": "give each beam its own: [bodies.NAME.model]",
@@ -327,9 +334,7 @@ class SystemScenario(Environments, Tree):
         for name, body in self.bodies.items():
             for place, error in OF_TABLE[type(body)].among(body):
                 yield ("bodies", name, *place), error
-        if self.response.stations is not None:
-            hint = "give them to a beam: [bodies.NAME] stations = [...]; other output is at the points of the bodies"
-            yield ("response", "stations"), wrong("is given beside joints", hint, mark="key")
+        yield from _stations(self)
         for key in self.response.initial.settings.keys() - {"state"}:
             hint = "leave it out, and give the joint its initial values"
             yield (
@@ -354,6 +359,4 @@ class SpecimenScenario(Environments, _Specimen):
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Errors of keys that are of a beam only."""
-        if self.response.stations is not None:
-            hint = "leave it out: output is at the points of the body"
-            yield ("response", "stations"), wrong("is of positions along a beam", hint, mark="key")
+        yield from _stations(self)
