@@ -43,7 +43,7 @@ def test_frequencies_state_what_twist_and_shear_take() -> None:
     assert rigid.errors is not None
     np.testing.assert_allclose(rigid.errors.beam_theory[:4], expected, rtol=1e-3)
     assert max(expected) > 0.6 and min(expected) < 3e-3
-    assert rigid.errors.causes == "twist; assumed: Poisson's ratio 0.3"
+    assert rigid.errors.theory == "twist; assumed: Poisson's ratio 0.3"
 
 
 def test_a_system_of_one_beam_states_of_its_frequencies_what_the_beam_does() -> None:
