@@ -159,13 +159,12 @@ def _subject(case: Case, kind: ModelKind) -> Structure | System | Failure:
 
 def of_kind(system: System, kind: ModelKind) -> System:
     """The system with all of its beams in one kind of model, with as many shapes as they have."""
-    bodies = {
+    beams = {
         name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])
-        if isinstance(body, Structure) and body.source is not None
-        else body
-        for name, body in system.bodies.items()
+        for name, body in system.flexible.items()
+        if body.source is not None
     }
-    return replace(system, bodies=bodies)
+    return replace(system, bodies={**system.bodies, **beams})
 
 
 def _answer(
@@ -190,7 +189,7 @@ def _answer(
         assert isinstance(response, SystemResponse)
         tip = _tip_of(structure, response, point)
         name = tip.point.partition(".")[0]
-        body, q = structure.bodies[name], response.q[:, deforming(structure.coordinates, name)]
+        body, q = structure.flexible.get(name), response.q[:, deforming(structure.coordinates, name)]
     else:
         assert isinstance(response, Response)
         peaks, hub = response.peaks, response.hub
@@ -200,7 +199,7 @@ def _answer(
             response.residual_from, angle,
         )  # fmt: skip
         body, q = structure, response.q
-    if response.outcome != "done" or not isinstance(body, Structure) or body.kind != REFERENCE:
+    if response.outcome != "done" or body is None or body.kind != REFERENCE:
         return tip
     tail = shape_tail(body, q)
     if tail <= SHAPES_FINE:

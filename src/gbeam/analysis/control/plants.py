@@ -192,8 +192,8 @@ class OnJoint:
     @property
     def kind(self) -> str:
         """Kind of the model of the point's body; "system" if that is rigid."""
-        body = self.system.bodies[self.point.partition(".")[0]]
-        return body.kind if isinstance(body, Structure) else "system"
+        body = self.system.flexible.get(self.point.partition(".")[0])
+        return "system" if body is None else body.kind
 
     @property
     def slides(self) -> bool:
@@ -277,11 +277,11 @@ class OnJoint:
         """Linear model of the system about rest, with the column of a unit effort or acceleration."""
         state, linear = self._rest
         name, at = self.system.point("point", self.point)
-        body, tip = self.system.bodies[name], np.zeros((3, len(linear.mass)))
+        tip = np.zeros((3, len(linear.mass)))
         if self._deflection(self.system.start[0][None]) is None:
             tip = state.slopes_of_points[self.system.points.index(self.point)]
         else:
-            assert isinstance(body, Structure)
+            body = self.system.flexible[name]
             first, station = state.names.index(f"{name}.q1"), list(stations_of(body).values())[at]
             tip[:, first : first + body.size] = np.asarray(body.station_places.first[station])
         a, b, c, _ = linear.state_space(tip, 0 * tip, 0 * tip, np.zeros((3, 1)))

@@ -12,7 +12,6 @@ from gbeam.analysis.system.histories import carried
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.section_forces import sections
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signals import CARRIED, carried_of, measurements
@@ -29,10 +28,10 @@ class Strained(NamedTuple):
 
     def read(self, system: System, state: State, acting: list[list[Acting]], inputs: Inputs) -> Array:
         """Reading (t,) of the gauge at states (t,) of the system's tree."""
-        k, body = system.order.index(self.body), system.bodies[self.body]
+        k, body = system.order.index(self.body), system.flexible[self.body]
         if self.section is None:
             return state.q[k][-1] @ self.share
-        assert isinstance(body, Structure) and body.sections is not None
+        assert body.sections is not None
         q, qd, qdd, a, w, alpha, hung = carried(system, state, self.body, acting)
         loads = sections(body, body.sections, Base(a, w, alpha), q, qd, qdd, inputs.loads[k], hung)
         of_section = [load[:, self.section] for load in (loads.section_force, loads.section_moment)]

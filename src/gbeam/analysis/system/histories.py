@@ -80,16 +80,16 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
     point is of a rigid body.
     """
     name, k = system.point("point", point)
-    body = system.bodies[name]
-    if not isinstance(body, Structure) or k >= len(stations_of(body)):
+    body = system.flexible.get(name)
+    if body is None or k >= len(stations_of(body)):
         return None
     return deflections(body, q[:, deforming(system.coordinates, name)])[:, k]
 
 
 def beams_of(system: System) -> dict[str, Structure]:
     """Bodies that have sections, by name."""
-    bodies = ((name, system.bodies[name]) for name in system.order)
-    return {name: body for name, body in bodies if isinstance(body, Structure) and body.sections is not None}
+    flexible = system.flexible
+    return {name: flexible[name] for name in system.order if name in flexible and flexible[name].sections is not None}
 
 
 def carried(system: System, state: State, name: str, acting: list[list[Acting]]) -> Carried:
@@ -131,8 +131,8 @@ def meshes_of(
 ) -> tuple[dict[str, SolidStress], dict[str, Surface]]:
     """Stress and surfaces of the bodies made of meshes, by name, at coordinates (t, n) at times (t,) s."""
     stresses, surfaces = dict[str, SolidStress](), dict[str, Surface]()
-    for body, solid in system.bodies.items():
-        if isinstance(solid, Structure) and solid.recovery is not None:
+    for body, solid in system.flexible.items():
+        if solid.recovery is not None:
             first = system.coordinates.index(f"{body}.q1")
             names = {"motion": motion, "model": solid.kind, "environment": environment}
             parts = solid.recovery.parts(time, None, q[:, first : first + solid.size], **names)

@@ -428,8 +428,9 @@ class System(Value):
             if joint.on != GROUND:
                 holding, on = self.point(f"joints.{name}.on", joint.on)
                 parent = index[holding]
-                refuse_turnless(f"joints.{name}.on", self.bodies[holding], on)
-                deforms = isinstance(self.bodies[holding], Structure) and self.points_of(holding)[on] != ROOT
+                deforms = holding in self.flexible and self.points_of(holding)[on] != ROOT
+                if deforms:
+                    refuse_turnless(f"joints.{name}.on", self.flexible[holding], on)
                 if holding in free or deforms:
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
@@ -513,9 +514,8 @@ class System(Value):
         for joint in self.joints.values():
             times += [each.corners(step) for each in (*joint.rates.values(), *joint.efforts.values())]
         times += [each.corners(step) for force in self.forces.values() for each in force.history]
-        for body in self.bodies.values():
-            if isinstance(body, Structure) and body.history is not None:
-                times.append(body.history.corners(step))
+        loads = [body.history for body in self.flexible.values() if body.history is not None]
+        times += [history.corners(step) for history in loads]
         return np.concatenate(times)
 
     def inputs(self, t: Any, motion: Motion | None = None) -> Inputs:
@@ -577,9 +577,9 @@ def stations_of(structure: Structure) -> dict[str, int]:
     return {name: int(np.argmin(np.abs(structure.stations - at))) for name, at in named.items()}
 
 
-def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
-    """Raise InputError, with the place `where`, if the rotation of a body's point `on` (index) is not known."""
-    if not isinstance(body, Structure) or body.field is not None or on >= len(stations_of(body)):
+def refuse_turnless(where: str, body: Structure, on: int) -> None:
+    """Raise InputError, with the place `where`, if the rotation of a structure's point `on` (index) is not known."""
+    if body.field is not None:
         return
     if body.turns is None or not np.isfinite(body.turns[list(stations_of(body).values())[on]]).all():
         fix = "hang it on the root, or on an interface of a solid, or on a node that has rotations"
