@@ -74,8 +74,8 @@ LOST = 10.0  # times the motion, or the extent of the system: a larger answer of
 
 @dataclass(frozen=True)
 class Starting:
-    """How richer systems begin: flags of what a start bends and accelerates, see :func:`unknown_at_start`, or the state
-    in which the only body that deforms begins.
+    """Starts of richer systems: flags of what is bent and accelerated, see :func:`unknown_at_start`, or the state in
+    which the only body that deforms begins.
     """
 
     flags: Callable[[System], tuple[Flags, Flags]]
