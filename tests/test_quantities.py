@@ -266,7 +266,7 @@ def methods() -> dict[str, Callable[..., Any]]:
 def test_methods_read_quantities_too(samples: Samples, name: str) -> None:
     owner, _, method = name.partition(".")
     call = getattr(samples.objects.get(name, samples.objects.get(owner)), method)
-    values = {each: ARGUMENTS[each] for each in signature(call).parameters if each != "motion"}
+    values = {each: ARGUMENTS[each] for each in signature(call).parameters if each not in ("motion", "beam", "model")}
     if name == "RigidSpecimen.loads":
         values["motion"] = samples.flight
     kinds = {each: kind_of_argument(method, each, {}) for each in values}

@@ -198,6 +198,9 @@ def test_a_strip_on_a_fixed_joint_is_the_beam_and_has_its_slopes(tmp_path: Path)
     ]
     assert set(slopes[1].methods) == {"exact"} and (slopes[0].derivatives[0, [0, 2]] != 0).all()
     np.testing.assert_array_equal(slopes[0].derivatives, slopes[1].derivatives)
+    swept = gb.sweep(replace(cases[1], title="made"), {"bodies.strip.length": ["250 mm", "300 mm"]}, ["tip.z.max_abs"])
+    shorter, same = swept.measures["tip.z.max_abs"]
+    assert same == pytest.approx(slopes[0].figures[0], rel=1e-12) and shorter < 0.6 * same
     turned = gb.read_scenario(held, ["joints.clamp.turn=[0, 0, '10 deg']"])
     assert turned.subject is turned.system and turned.points == ("strip.tip", "strip.root")
     with pytest.raises(gb.InputError, match="case needs a beam that the base holds by its root, and it is of strip on"):

@@ -101,13 +101,13 @@ def compare_models(
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
     answers: dict[tuple[str, str], tuple[_Tip | Failure, float]] = {}
     for i, kind in enumerate(chosen):
-        structure = _subject(case, kind)
+        alike = _counterpart(case, kind)
         for name, motion in case.environments.items():
 
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
                 tell(progress, f"{doing}: {what}", (done + share) / len(chosen))
 
-            run = partial(_answer, structure, motion, case.over_time, name, point, report)
+            run = partial(_answer, alike, motion, case.over_time, name, point, report)
             answer, seconds = _timed(run)
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)
@@ -149,26 +149,23 @@ def _refuse(case: Case, point: str | None) -> None:
     case.system.point("point", point)
 
 
-def _subject(case: Case, kind: ModelKind) -> Structure | System | Failure:
-    """Argument of the analyses for a case by a kind of model, or the reason why there is none."""
+def _counterpart(case: Case, kind: ModelKind) -> Case | Failure:
+    """The case with its beams in one kind of model, or the reason why there is none."""
     try:
-        return replace(case, system=of_kind(case.system, kind)).subject
+        return replace(case, system=of_kind(case.system, kind))
     except InputError as error:
         return Failure("cannot", str(error))
 
 
 def of_kind(system: System, kind: ModelKind) -> System:
     """The system with all of its beams in one kind of model, with as many shapes as they have."""
-    beams = {
-        name: remade(body, counterpart(model_of(body), kind), body.stations[:-1])
-        for name, body in system.flexible.items()
-        if body.source is not None
-    }
-    return replace(system, bodies={**system.bodies, **beams})
+    beams = {name: body for name, body in system.flexible.items() if body.source is not None}
+    other = {name: remade(body, counterpart(model_of(body), kind), body.stations[:-1]) for name, body in beams.items()}
+    return replace(system, bodies={**system.bodies, **other})
 
 
 def _answer(
-    structure: Structure | System | Failure,
+    case: Case | Failure,
     motion: Motion | None,
     settings: ResponseSettings,
     name: str,
@@ -176,29 +173,27 @@ def _answer(
     progress: Callable[[str, float], None],
 ) -> _Tip | Failure:
     """Displacement by one model, or the reason why there is none."""
-    if isinstance(structure, Failure):
-        return structure
-    model: Any = structure
+    if isinstance(case, Failure):
+        return case
+    subject: Any = case.subject
     try:
-        response = simulate(model, motion, settings, name=name, progress=progress)
+        response: Any = simulate(subject, motion, settings, name=name, progress=progress)
     except InputError as error:
         return Failure("cannot", str(error))
     except ComputationError as error:
         return Failure(error.outcome, str(error))
-    if isinstance(structure, System):
-        assert isinstance(response, SystemResponse)
-        tip = _tip_of(structure, response, point)
+    body, q = case.system.alone, response.q
+    if body is None:
+        tip = _tip_of(case.system, response, point)
         name = tip.point.partition(".")[0]
-        body, q = structure.flexible.get(name), response.q[:, deforming(structure.coordinates, name)]
+        body, q = case.system.flexible.get(name), q[:, deforming(case.system.coordinates, name)]
     else:
-        assert isinstance(response, Response)
         peaks, hub = response.peaks, response.hub
         angle = float("nan") if hub is None or not hub.free else float(hub.angle[-1])
         tip = _Tip(
             response, "tip", response.tip, peaks.max_abs, peaks.time_of_max, peaks.residual_amplitude,
             response.residual_from, angle,
         )  # fmt: skip
-        body, q = structure, response.q
     if response.outcome != "done" or body is None or body.kind != REFERENCE:
         return tip
     tail = shape_tail(body, q)

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Self
 
+from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed_methods
 from gbeam.mechanics.assembly import assemble, model_of, stations_asked
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
@@ -38,6 +40,7 @@ def refuse_no_point(system: System, where: str, name: str) -> tuple[str, int]:
     return system.order[0], names.index(name)
 
 
+@typed_methods
 class OneBody:
     """A case as the only body of its system sees it."""
 
@@ -80,9 +83,7 @@ class OneBody:
         """Positions of output of the only beam besides its named points, m; InputError where there is no such beam."""
         return stations_asked(self.require_beam())
 
-    def remade(
-        self, *, beam: Beam | None = None, model: Model | None = None, stations: Sequence[float] | None = None
-    ) -> Self:
+    def remade(self, *, beam: Beam | None = None, model: Model | None = None, stations: Numbers | None = None) -> Self:
         """Return the case with another beam, model or stations in place of its only one's.
 
         Parameters
@@ -95,6 +96,6 @@ class OneBody:
         body = structure_of(
             self.beam if beam is None else beam,
             self.model if model is None else model,
-            self.stations if stations is None else stations,
+            self.stations if stations is None else tuple(stations),
         )
         return replace(self, system=System.of(body, self.system.order[0]))  # type: ignore[type-var]

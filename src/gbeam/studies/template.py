@@ -162,15 +162,16 @@ class CaseTemplate:
         """Objects of the case by the tables of a scenario, in which paths are looked up."""
         case, system = self.case, self.case.system
         common = {"motion": case.motions, "response": case.response}
-        if system.alone is not None:
-            beam = {} if case.only_beam is None else {BEAM: case.beam, "model": case.model}
-            return beam | common
+        if case.only_beam is not None and system.order == (BEAM,):
+            return {BEAM: case.beam, "model": case.model} | common
         bodies: dict[str, Any] = {}
         for name, body in system.bodies.items():
             if isinstance(body, RigidBody):
                 bodies[name] = body
             elif body.source is not None:  # None: made of particles, without values to vary
                 bodies[name] = _BeamBody(body, body.source.beam)
+        if system.alone is not None:
+            return ({"bodies": bodies} if bodies else {}) | common
         gravity = {} if system.gravity is None else {"gravity": system.gravity}
         parts = {name: getattr(system, name) for name in ("joints", "forces", "controllers")}
         return {"bodies": bodies} | parts | {"system": gravity} | common
@@ -196,9 +197,11 @@ class CaseTemplate:
             if motions.get(flight) is not self.case.motions.get(flight):
                 motions[machine] = motions[machine].altered(flight=motions[flight])
         case = replace(self.case, response=parts.pop("response"), motions=motions)
-        if case.system.alone is None:
-            return CaseTemplate(replace(case, system=_joined(case.system, parts)))
-        return CaseTemplate(case.remade(**parts) if parts.keys() & wanted.keys() else case)
+        if not parts.keys() & wanted.keys():
+            return CaseTemplate(case)
+        return CaseTemplate(
+            case.remade(**parts) if BEAM in parts else replace(case, system=_joined(case.system, parts))
+        )
 
     def built(self, system: System | None = None) -> Case:
         return self.case
@@ -218,10 +221,10 @@ class CaseTemplate:
 
 
 def _joined(system: System, parts: dict[str, Any]) -> System:
-    """The system with other bodies, gravity, joints, forces and controllers."""
+    """The system with other bodies and, where these can be changed, gravity, joints, forces and controllers."""
     bodies = {name: getattr(body, "structure", body) for name, body in parts.pop("bodies").items()}
-    gravity = parts.pop("system").get("gravity")
-    return System({**system.bodies, **bodies}, gravity=gravity, **parts)
+    gravity = parts.pop("system", {}).get("gravity")
+    return replace(system, bodies={**system.bodies, **bodies}, gravity=gravity, **parts)
 
 
 Template = ScenarioTemplate | CaseTemplate

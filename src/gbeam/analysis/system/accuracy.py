@@ -181,7 +181,7 @@ def system_errors(
 
 
 class _Known(NamedTuple):
-    """What is known before richer systems are asked: errors by the steps, sizes of quantities and those that are
+    """Facts known before richer systems are asked: errors by the steps, sizes of quantities and those that are
     rounding, errors of peaks by the steps and of the law of friction, and a note.
     """
 

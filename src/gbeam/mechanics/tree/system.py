@@ -180,8 +180,8 @@ class System(Value):
     Parameters
     ----------
     bodies : mapping of str to RigidBody or Structure
-        Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`: exact, fourth-order, CFOAM,
-        FOAM or TLAM.
+        Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`; SFOAM only where joints
+        prescribe how its root moves.
         Their points are the named points of the beam, and ``tip``.
     joints : mapping of str to Joint
         One for every body, which holds it by its root.
@@ -195,7 +195,8 @@ class System(Value):
     Raises
     ------
     InputError
-        If a body hangs on nothing, on two joints, or on a point that is not there, or joints make a loop.
+        If a body hangs on nothing, on two joints, or on a point that is not there, joints make a loop, or an SFOAM's
+        root moves by unknowns.
 
     Examples
     --------
