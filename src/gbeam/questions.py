@@ -336,28 +336,18 @@ def critical_speed(
     progress: Callable[[str, float], None] | None = None,
 ) -> Critical:
     """Lowest rate, factor of the loads, or acceleration of the root, up to `to`, at which the equilibrium is lost."""
-    from gbeam.analysis.case import Case
     from gbeam.analysis.steady import stability
-    from gbeam.analysis.steady.operating_point import held_base
-    from gbeam.mechanics.tree.system import System
 
     if to is not None and not to > 0:
         raise InputError("to", f"is {to:g}", "give a value above zero, where the search ends")
     name, time = motion_of(case.environments, motion, HUB), _time(case, at)
     base, structure = prepared(case, name), _structure(case, needs)
-    options: dict[str, Any] = {"upper": to, "progress": progress}
-    if isinstance(structure, System):
-        options |= {"motion": base, "time": time}
-    else:
-        structure = structure.at_time(time)
-    if vary == "loads":
-        still = None if isinstance(structure, System) else held_base(base, time)
-        return stability.critical_load(structure, still, **options)
+    options: dict[str, Any] = {"time": time, "upper": to, "progress": progress}
     if vary == "acceleration":
-        if not isinstance(case, Case):
-            raise InputError("--vary", "is acceleration, which pushes one [beam] by its root", "give rate or loads")
         return stability.buckling_acceleration(structure, **options)
     options["motion"] = base
+    if vary == "loads":
+        return stability.critical_load(structure, **options)
     return replace(stability.critical_speed(structure, turning=turning, name=name, **options), motion=name)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from gbeam.mechanics.theory import Theory, theory_of
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base
 
+Directions = tuple[bool, bool, bool]  # flags of x, y and z
 NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
 
 
@@ -50,20 +52,29 @@ def left_unjudged(system: System) -> str:
 def coarser(system: System) -> System | None:
     """The system with coarser meshes of its solids, in the same coordinates; None if no solid has one."""
     rough = {
-        name: replace(body.coarser, load_values=body.load_values)
+        name: replace(body.coarser, history=body.history, load_values=body.load_values)
         for name, body in system.flexible.items()
         if body.coarser is not None
     }
     return replace(system, bodies={**system.bodies, **rough}) if rough else None
 
 
-def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
-    """System with more shapes in the bodies whose roots move as `bases`, of their own models or the exact one."""
+def richer(
+    system: System,
+    bases: Mapping[str, Base],
+    *,
+    exact: bool,
+    along: Mapping[str, Directions] = MappingProxyType({}),
+) -> Richer:
+    """System with more shapes in the bodies whose roots move as `bases`, of their own models or the exact one; beams
+    get new shapes `along` some of x, y and z, by default along all.
+    """
     beams, original = dict[str, Structure](), dict[str, IntArray]()
     for name, base in bases.items():
         body = judged_bodies(system)[name]
-        rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind)
-        beams[name] = replace(rich, load_values=body.load_values)
+        directions = along.get(name, (True, True, True))
+        rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind, directions=directions)
+        beams[name] = replace(rich, history=body.history, load_values=body.load_values)
     other = replace(system, bodies={**system.bodies, **beams})
     renamed = {
         f"{name}.q{k + 1}": f"{name}.q{new + 1}" for name, index in original.items() for k, new in enumerate(index)
@@ -73,22 +84,25 @@ def richer(system: System, bases: Mapping[str, Base], *, exact: bool) -> Richer:
     return Richer(other, np.searchsorted(other.tree.free, indices[system.tree.free]), system, renamed)
 
 
-def theories_of(system: System) -> dict[str, Theory]:
-    """Slender and thick exact models of the judged beams, by name; bodies and forces may act on their stations."""
+def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
+    """Slender and thick models of the judged beams, by name: exact ones, or linear about `straight` beams; bodies and
+    forces may act on their stations.
+    """
     tree, theories = system.tree, dict[str, Theory]()
     loaded = [(link.parent, link.on) for link in tree.links] + [(force.body, force.on) for force in tree.forces]
     for name, body in judged_beams(system).items():
         number, stations = system.order.index(name), [*stations_of(body).values()]
         hung = {stations[on] for of, on in loaded if of == number and on < len(stations)}
-        theories[name] = theory_of(body, tuple(sorted(hung))).exact
+        theory = theory_of(body, tuple(sorted(hung)))
+        theories[name] = theory if straight else theory.exact
     return theories
 
 
 def with_beams(system: System, beams: Mapping[str, Structure]) -> System:
     """The system with other structures in place of some of its beams, under the same loads."""
     judged = judged_beams(system)
-    kept = {
-        name: replace(beam, source=judged[name].source, load_values=judged[name].load_values)
-        for name, beam in beams.items()
-    }
+    kept = dict[str, Structure]()
+    for name, beam in beams.items():
+        body = judged[name]
+        kept[name] = replace(beam, source=body.source, history=body.history, load_values=body.load_values)
     return replace(system, bodies={**system.bodies, **kept})

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gbeam.arrays.namespace import Array, is_traced, namespace
-from gbeam.arrays.tree import record
+from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.fields.series import SeriesField
@@ -220,11 +220,15 @@ class LinearBody:
     with C q̇ the momentum of deforming and R the inertia of the body about its root: the kinetic energy has
     ½ q̇ᵀ(CᵀR⁻¹C − C0ᵀR0⁻¹C0) q̇ more, which is of third order in q and q̇. It is then that of the rigid motion with all
     momentum and of vibration about it, and positive wherever R is.
+
+    Without `hub_force` the root does not feel the rates of the coordinates: so is SFOAM as printed, 2009 (32), which
+    conserves nothing.
     """
 
     coefficients: Coefficients
     points: Points
     carried: Array | None = None
+    hub_force: bool = static(default=True)
 
     @property
     def size(self) -> int:
@@ -236,11 +240,13 @@ class LinearBody:
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         c = self.coefficients
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
-        Sdd = turned(Si, qdd) + turned(_times(c.k_a, qd), qd)
-        hd = turned(hi, qdd) + turned(_times(c.k_al, qd), qd)
-        force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S) + 2 * Sd) + Sdd
+        felt = qd if self.hub_force else 0 * qd  # by the root
+        Sdd = turned(Si, qdd) + turned(_times(c.k_a, felt), qd)
+        hd = turned(hi, qdd) + turned(_times(c.k_al, felt), qd)
+        force = c.rigid[0] * root.a + cross(root.alpha, S) + Sdd
+        force = force + cross(root.w, cross(root.w, S) + 2 * turned(Si, felt))
         swelling = (root.w[..., None, None, :] @ Ji)[..., 0, :]  # ∂(J ω)/∂q
-        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, qd) + hd
+        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, felt) + hd
         moment = moment + cross(root.w, turned(J, root.w) + h)
         along = qdd @ c.mass + qd @ c.damping + c.elastic(q)
         along = along + turned_back(Si, root.a) + turned_back(hi, root.alpha)

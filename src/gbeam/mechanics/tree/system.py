@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
-from gbeam.errors import InputError
+from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
 from gbeam.mechanics.equations.linear import Coefficients
@@ -341,6 +341,12 @@ class System(Value):
         """Bodies that deform, by name."""
         return {name: body for name, body in self.bodies.items() if isinstance(body, Structure)}
 
+    def require_damping(self, answer: str) -> None:
+        """Raise InputError where a body has no damping ratio and an `answer` depends on it."""
+        for name, body in self.flexible.items():
+            with naming(f"bodies.{name}.damping_ratio"):
+                body.require_damping(answer)
+
     @property
     def floating(self) -> tuple[str, ...]:
         """Names of the bodies that hang on nothing but a free joint, or on a body that does."""
@@ -399,7 +405,9 @@ class System(Value):
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
                 free.add(body)
-            terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free)
+            first = self.joints[self._holding(self.order[0])]
+            hinged = parent == 0 and joint.kind == "fixed" and first.kind == "revolute"
+            terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free, hinged=hinged)
             links.append(Link(joint.steps, joint.holder, terms, parent, on, joint.loose))
         forces = []
         for name, force in self.forces.items():
@@ -546,21 +554,22 @@ def refuse_turnless(where: str, body: RigidBody | Structure, on: int) -> None:
         raise InputError(where, "is a point of particles, which do not say how it turns", fix)
 
 
-def body_of(where: str, body: RigidBody | Structure, *, free: bool = False) -> Body:
-    """Terms of a body in the equations, `free` if its root moves by unknowns; InputError unless it can be in a tree."""
+def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hinged: bool = False) -> Body:
+    """Terms of a body in the equations, `free` if its root moves by unknowns, `hinged` if by one hinge on the ground
+    alone; InputError unless it can be in a tree.
+    """
     if isinstance(body, RigidBody):
         return body.body
-    if not body.hub_force:
+    if free and not (body.hub_force or hinged):
         fix = "choose FOAM with no axial shapes, which are the same equations with it"
         raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
-    if body.damping_ratio is None:
-        fix = "give a ratio of critical damping, such as 0.01, or 0 for none"
-        raise InputError(f"{where}.damping_ratio", "is missing, and the response depends on it", fix)
     return terms_of(body, free=free)
 
 
 def terms_of(body: Structure, *, free: bool = False) -> Body:
-    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid."""
+    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid, and
+    takes from those of SFOAM what its printed equations lack.
+    """
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
     if isinstance(body.field, Expanded):
@@ -575,5 +584,6 @@ def terms_of(body: Structure, *, free: bool = False) -> Body:
             turn = np.nan_to_num(body.turns[stations])
         points = PolynomialPoints(places.r0, places.first, second, turn, none)
     if isinstance(equations, Coefficients):
-        return LinearBody(equations, points, carried(equations) if free and body.field is None else None)
+        mean = carried(equations) if free and body.field is None else None
+        return LinearBody(equations, points, mean, body.hub_force or not free)
     return FieldBody(equations, points)
