@@ -481,7 +481,7 @@ def test_what_looks_like_a_number_is_one(samples: Samples) -> None:
 
 
 def test_a_mistake_inside_is_not_blamed_on_an_argument(samples: Samples, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gbeam.analysis.steady.static.operating_point", None)
+    monkeypatch.setattr("gbeam.analysis.steady.static.settled", None)
     with pytest.raises(TypeError, match="NoneType"):
         gb.static(samples.structure, samples.still, time=0.0)
 

@@ -340,29 +340,21 @@ def critical_speed(
     """Lowest rate, factor of the loads, or acceleration of the root, up to `to`, at which the equilibrium is lost."""
     from gbeam.analysis.automatic import sufficient
     from gbeam.analysis.steady import stability
-    from gbeam.analysis.steady.operating_point import held_base
 
     if to is not None and not to > 0:
         raise InputError("to", f"is {to:g}", "give a value above zero, where the search ends")
     name, time = motion_of(case.environments, motion, HUB), _time(case, at)
     base, needs = prepared(case, name), replace(needs, errors=needs.errors or case.automatic)
-    options: dict[str, Any] = {"upper": to, "progress": progress}
+    options: dict[str, Any] = {"time": time, "upper": to, "progress": progress}
 
     def ask(case: Case) -> Critical:
-        structure, body = _subject(case, needs), case.system.alone
-        if body is None:
-            frozen = options | {"motion": base, "time": time}
-        else:
-            structure, frozen = structure.at_time(time), options
-        if vary == "loads":
-            return stability.critical_load(structure, None if body is None else held_base(base, time), **frozen)
+        structure = _subject(case, needs)
         if vary == "acceleration":
-            if body is None:
-                problem = "is acceleration, which pushes one body by its root, and the bodies move on joints"
-                raise InputError("--vary", problem, "give rate or loads")
-            return stability.buckling_acceleration(structure, **frozen)
-        how = frozen | {"motion": base, "turning": turning, "name": name}
-        return replace(stability.critical_speed(structure, **how), motion=name)
+            return stability.buckling_acceleration(structure, **options)
+        moved = options | {"motion": base}
+        if vary == "loads":
+            return stability.critical_load(structure, **moved)
+        return replace(stability.critical_speed(structure, turning=turning, name=name, **moved), motion=name)
 
     return sufficient(case, ask, lambda critical: [critical.errors])[1]
 

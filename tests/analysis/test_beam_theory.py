@@ -18,7 +18,9 @@ from scipy.optimize import brentq
 import gbeam as gb
 from gbeam.analysis.accuracy.estimate import cure_of_theory
 from gbeam.analysis.steady.loss import _lost
-from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base
+from gbeam.analysis.steady.subject import subject_of
+from gbeam.analysis.system.richer import with_beams
+from gbeam.analysis.system.steady import Drive, Path
 from gbeam.mechanics.theory import theory_of
 
 from ..frame import Frame, cantilever
@@ -272,14 +274,9 @@ def test_a_strip_on_edge_buckles_sideways() -> None:
 
     rigidity = MODULUS * 0.02 * 0.001**3 / 12 * SHEAR * properties(thin)["torsion"]
     true = 4.0126 * np.sqrt(rigidity) / LENGTH**2
-    beam = loaded(1.0)
-    assert beam.load_values is not None
-    unit = beam.load_values
-
-    def pulled(of: gb.Structure, force: float) -> OperatingPoint:
-        return on_base(replace(of, load_values=force * unit), REST)
-
-    lost = _lost(theory_of(beam).thick, pulled, true, None)
+    system = subject_of(loaded(1.0), None).system
+    thick = with_beams(system, {"beam": theory_of(system.flexible["beam"]).thick})
+    lost = _lost(thick, Path(Drive(), lambda drive, force: replace(drive, factor=force)), true, None)
     assert lost == pytest.approx(true, rel=2e-3)  # and its own deflection
     for force, stays in ((0.9 * true, True), (1.1 * true, False)):
         rest = gb.static(loaded(force))

@@ -22,8 +22,9 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.analysis.steady.operating_point import on_base
-from gbeam.analysis.steady.static import deflection_at
+from gbeam.analysis.steady.static import deflection
+from gbeam.analysis.steady.subject import subject_of
+from gbeam.analysis.system.steady import Drive, settled
 from gbeam.motion import Base
 
 from .helpers import EA, EI, LENGTH, LINE, strip
@@ -133,10 +134,9 @@ def test_an_equilibrium_states_its_error(seed: int) -> None:
     axial = 0 if kind == "SFOAM" else int(random.integers(1, 4))
     size = 10 ** random.uniform(1, 3)
     base = Base(size * random.normal(size=3), 10 * random.normal(size=3), 30 * random.normal(size=3))
-    few = assemble(beam, Model(kind, axial, along_y, along_z))
-    answer = deflection_at(few, on_base(few, base), None, 0.0)
-    exact = assemble(beam, Model("exact", 6, 12, 12))
-    true = deflection_at(exact, on_base(exact, base), None, 0.0)
+    few, exact = (assemble(beam, model) for model in (Model(kind, axial, along_y, along_z), Model("exact", 6, 12, 12)))
+    subjects = subject_of(few, None), subject_of(exact, None)
+    answer, true = (deflection(each, settled(each.system, Drive(base=base))) for each in subjects)
     for name, ours, theirs in (
         ("displacement", answer.tip, true.tip),
         ("loads", answer.loads.root_moment[0], true.loads.root_moment[0]),

@@ -10,9 +10,9 @@ from gbeam import Beam, Gauge, InputError, Model, Root, assemble
 from gbeam.analysis.control.linearization import linearize, nonlinear_system, outputs_of
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.steady.modal import modes
-from gbeam.analysis.steady.operating_point import on_base, on_hub, operating_point
 from gbeam.analysis.steady.static import static
-from gbeam.arrays.tree import leaves_of
+from gbeam.analysis.steady.subject import subject_of
+from gbeam.analysis.system.steady import Drive, placed, settled
 from gbeam.motion import Base, Centrifuge, Flight, Hub, constant
 from gbeam.report import text
 from gbeam.results.facts import json_of
@@ -33,10 +33,11 @@ def transfer(system, frequency):
 def test_matrices_are_finite_differences(kind):
     structure = assemble(beam_2009(0.1), Model(kind, 1, 2, 1))
     q = np.random.default_rng(3).normal(size=4) * [1e-4, 0.1, 0.02, 0.1]
-    point = on_base(structure, BASE, q)
-    linear, outputs = point.linear, outputs_of(structure, point, ())
-    u = np.concatenate([np.ravel(each) for each in leaves_of(point.inputs)])
-    forces = outputs.matrices(point, u)[2]
+    subject = subject_of(structure, None)
+    at = placed(subject.system, Drive(base=BASE), q, None)
+    point, linear, outputs = at.point, at.linear, outputs_of(structure, at, ())
+    u = outputs.held
+    forces = outputs.matrices(point)[2]
     state = [np.asarray(x) for x in (point.y, point.yd, point.ydd, u)]
     for which, matrix in ((0, linear.stiffness), (1, linear.velocity), (2, linear.mass), (3, -forces)):
         for k in range(matrix.shape[1]):
@@ -45,15 +46,17 @@ def test_matrices_are_finite_differences(kind):
             for sign in (1, -1):
                 moved = [x.copy() for x in state]
                 moved[which][k] += sign * h
-                ends.append(point.residual(*moved[:3], outputs.inputs(moved[3])))
+                ends.append(point.tree(*moved[:3], outputs.inputs(moved[3])))
             column = (ends[0] - ends[1]) / (2 * h)
             assert column == pytest.approx(matrix[:, k], rel=1e-6, abs=1e-6 * np.abs(matrix).max())
 
 
 def test_a_free_hub_keeps_its_momentum():
-    point = on_hub(structure_2009("FOAM", 1, 3), FREE_2009, 1.3)
-    linear = point.linear
-    assert float(point.inputs[0]) == pytest.approx(0, abs=1e-9)
+    structure = structure_2009("FOAM", 1, 3)
+    subject = subject_of(structure, FREE_2009)
+    state = settled(subject.system, Drive(coordinate="hinge.angle", rate=1.3))
+    linear = state.linear
+    assert float(outputs_of(structure, state, ()).held[0]) == pytest.approx(0, abs=1e-9)
     assert np.abs(linear.stiffness[:, 0]).max() == 0
 
 
@@ -192,7 +195,8 @@ def test_a_gauge_off_the_beam():
 def test_a_hub_on_a_spring_rests_where_it_balances_the_torque():
     hub = Hub(radius=0.5, inertia=200.0, torque=constant(30.0), stiffness=600.0, damping=5.0)
     structure = structure_2009("FOAM", 1, 3)
-    point = operating_point(structure, hub, 2.0)
+    subject = subject_of(structure, hub)
+    point = settled(subject.system, subject.drive(2.0)).point
     assert float(point.y[0]) == pytest.approx(0.05) and float(point.yd[0]) == 0
     vibration = modes(structure, hub, 2.0)
     assert vibration.rigid == 0 and vibration.damping_ratio[0] > 0 and vibration.stable

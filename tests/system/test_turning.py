@@ -11,7 +11,7 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.steady.frequency_errors import Richer
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.steady import Drive, Turning
+from gbeam.analysis.system.steady import Drive, Path, turning_at
 from gbeam.figures import figure_of
 from gbeam.results.facts import json_of
 from tests.analysis_verbs.beams import slender
@@ -248,7 +248,10 @@ def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:
     """
     material, mass = gb.Material(2700.0, 70e9, poissons_ratio=0.33), gb.PointMass(0.3, 0.5)
     heavy = gb.Beam(0.3, STRIP.section, material, [mass], damping_ratio=0.01)
-    system, path = panels(gb.assemble(heavy, "exact", y=2, z=2), SPIN, "rim"), Turning(Drive(None, 0.0, "spin.angle"))
+    system, path = (
+        panels(gb.assemble(heavy, "exact", y=2, z=2), SPIN, "rim"),
+        Path(Drive(None, 0.0, "spin.angle"), turning_at),
+    )
     _, thick, *_ = Richer(path(system, 0.0)).by_theories(system)[0]
     steady, beam = path(thick, 800.0), thick.bodies["panel_rim"]
     alone = gb.solve_equilibrium(beam, gb.Hub(radius=0.5, rate=800.0).base(0.0))
@@ -268,7 +271,7 @@ def test_steady_states_found_at_once_are_those_found_alone(
     clamp = gb.Joint(joint, "panel", on="bus.rim", turn=turn)
     system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN if held else FREE, "clamp": clamp})
     drive, rates = Drive(coordinate="spin.angle"), np.linspace(10.0, 60.0, 6).tolist()
-    path = Turning(drive, held)
+    path = Path(drive, turning_at, held)
     path(system, rates[0])
     for some in (rates[1:2], rates[2:4], rates[4:]):
         path.ahead(system, some)
@@ -276,7 +279,7 @@ def test_steady_states_found_at_once_are_those_found_alone(
     states = [path(system, rate) for rate in rates]
     monkeypatch.undo()
     for rate, state in zip(rates, states, strict=True):
-        alone = Turning(drive, held)(system, rate)
+        alone = Path(drive, turning_at, held)(system, rate)
         np.testing.assert_allclose(state.point.y, alone.point.y, atol=1e-11)
         for part, other in zip(state.linear, alone.linear, strict=True):
             np.testing.assert_allclose(part, other, atol=1e-9 * np.abs(other).max(initial=0.0))
@@ -288,7 +291,7 @@ def test_a_steady_state_that_is_far_is_found_alone() -> None:
     structure = gb.assemble(STRIP, "exact", axial=1, y=2, z=2)
     swept = gb.Joint("fixed", "panel", on="bus.rim", turn=(0.0, 0.7, 0.3))
     system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN, "clamp": swept})
-    path = Turning(Drive(coordinate="spin.angle"))
+    path = Path(Drive(coordinate="spin.angle"), turning_at)
     path(system, 1.0)
     path.ahead(system, [2.0, 500.0])
     assert path.equilibria._known(system).keys() == {1.0, 2.0}
@@ -309,7 +312,7 @@ def test_a_steady_state_begins_where_lower_ones_lead(held: bool, monkeypatch: py
 
     monkeypatch.setattr(Point, "slopes", counted)
     drive, rates, answers = Drive(coordinate="spin.angle"), np.linspace(10.0, 120.0, 12), []
-    for paths in ([Turning(drive, held)] * 12, [Turning(drive, held) for _ in rates]):
+    for paths in ([Path(drive, turning_at, held)] * 12, [Path(drive, turning_at, held) for _ in rates]):
         count = 0
         states = [path(system, float(rate)) for path, rate in zip(paths, rates, strict=True)]
         answers.append((count, np.array([each.point.y for each in states])))

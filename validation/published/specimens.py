@@ -29,7 +29,8 @@ from gbeam import (
     assemble,
     simulate,
 )
-from gbeam.analysis.steady.operating_point import on_base
+from gbeam.analysis.steady.subject import subject_of
+from gbeam.analysis.system.steady import Drive, settled
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base
 from validation.published import hubbeam2009, zhang2020
@@ -146,7 +147,7 @@ def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
 
 def vibration_about_equilibrium(s: Structure, base: Base, count: int) -> np.ndarray:
     """Vibration about the relative equilibrium of a complete model."""
-    at = on_base(s, base).linear
+    at = settled(subject_of(s, None).system, Drive(base=base)).linear
     return gyroscopic_frequencies(at.mass, at.velocity, at.stiffness, count)
 
 

@@ -374,7 +374,10 @@ class Structure:
 
     def at_time(self, time: float) -> Structure:
         """Return the structure with its loads frozen at a `time`, s: as static, modes and stability take it."""
-        return self if self.history is None else replace(self, load_values=self.history(np.asarray(float(time))))
+        if self.history is None:
+            return self
+        history = self.history.held(float(time))
+        return replace(self, history=history, load_values=history(np.zeros(())))
 
     def turned(self, basis: Array) -> Structure:
         """Return a linear structure of particles in coordinates p with q = basis p, without what is recovered.

@@ -10,20 +10,16 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.analysis.steady.frequency_errors import BY_RICHER, doubtful, judgeable, pole_errors, unknown_errors
-from gbeam.analysis.steady.operating_point import (
-    REST,
-    OperatingPoint,
-    on_base,
-    on_hub,
-    operating_point,
-    steady_base,
-)
+from gbeam.analysis.steady.frequency_errors import BY_RICHER, doubtful, pole_errors, unknown_errors
 from gbeam.analysis.steady.stability import hub_of
+from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.gauges import Strained
 from gbeam.analysis.system.linear import frozen, instabilities, linearize_system, named_acceleration
+from gbeam.analysis.system.point import Point
+from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.steady import Drive, SteadySystem, placed, turning_of, undeformed
 from gbeam.arrays.namespace import Array
-from gbeam.arrays.tree import each_leaf, leaves_of, record
+from gbeam.arrays.tree import record
 from gbeam.arrays.types import Floats
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError, placing_within
@@ -31,18 +27,20 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import at_stations
-from gbeam.mechanics.equations.dalembert import OnBase, OnHub
 from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.control import signal_names
+from gbeam.mechanics.tree.equations import Inputs, Tree
+from gbeam.mechanics.tree.one_body import on_motion
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import along
+from gbeam.results.parts import Base
 from gbeam.results.state_space import ACCURATE, Gauge, Signal, StateSpace, import_control
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam, fibre_strain, names_at
@@ -93,27 +91,43 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 
 @record
 class Outputs:
-    """Outputs as a function of y, ẏ, ÿ and the inputs u, in base axes: displacement and absolute acceleration of the
-    tip, root moment, strains, displacement and acceleration of other `points` (numbers of stations), and a free hub's
-    angle and rate. Strains are of beams by section forces times `strains` (gauges, 6) at the sections `at`, of solids
-    by coordinates times `shares` (gauges, n). u is one vector of inputs of the residual, shaped `like` these.
+    """Outputs of one body as a function of y, ẏ, ÿ and the inputs u of its system, in axes of its base: displacement
+    and absolute acceleration of the tip, root moment, strains, displacement and acceleration of other `points` (numbers
+    of stations), and a free hub's angle and rate. Strains are of beams by section forces times `strains` (gauges, 6) at
+    the sections `at`, of solids by coordinates times `shares` (gauges, n). u has the torque on a free hub, or the
+    base's acceleration, angular velocity and angular acceleration, and then the components of the loads.
     """
 
     structure: Structure
-    residual: OnBase | OnHub
+    tree: Tree
     outboard: Sections
     at: Array
     strains: Array
     shares: Array
     points: Array
-    like: Any
+    drives: Inputs
+
+    @property
+    def first(self) -> int:
+        """Index of the body's first coordinate in y: 1 behind the angle of a free hub."""
+        return len(self.tree.free) - self.structure.size
+
+    @property
+    def held(self) -> Array:
+        """Inputs u (m,) of the state."""
+        drives, ground = self.drives, self.drives.ground
+        efforts: Any = drives.efforts
+        driven = [efforts[self.tree.free[:1]]] if self.first else [ground.a, ground.w, ground.alpha]
+        loads = [] if drives.loads[-1] is None else [np.ravel(drives.loads[-1])]
+        return np.concatenate([*driven, *loads])
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (t, p) of states (t, n) and inputs (t, m)."""
-        i, inputs = self.residual.first, self.inputs(u)
+        i, inputs = self.first, self.inputs(u)
         q, qd, qdd = y[:, i:], yd[:, i:], ydd[:, i:]
-        base = self.residual.base(y, yd, ydd, inputs)
-        _, moment, *section_loads, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, inputs[1])
+        root = self.tree.motion(y, yd, ydd, inputs).roots[-1]
+        base = Base(root.a, root.w, root.alpha)
+        _, moment, *section_loads, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, inputs.loads[-1])
         strain = (np.concatenate([load[:, self.at] for load in section_loads], axis=-1) * self.strains).sum(axis=-1)
         moved = self.structure.displacement(q)
         # Accelerations are of the root and the stations, displacements of the stations alone.
@@ -121,27 +135,38 @@ class Outputs:
         strains = strain, q @ self.shares.T
         return np.concatenate([moved[:, -1], a[:, -1], -moment[:, 0], *strains, named, y[:, :i], yd[:, :i]], axis=-1)
 
-    def inputs(self, u: Array) -> Any:
-        """Inputs of the residual, base or torque and loads, from vectors u (..., m)."""
-        parts = iter(np.split(u, np.cumsum([np.size(each) for each in leaves_of(self.like)]), axis=-1))
-        return each_leaf(lambda leaf: next(parts).reshape(*u.shape[:-1], *np.shape(leaf)), self.like)
+    def inputs(self, u: Array) -> Inputs:
+        """Inputs of the tree from vectors u (..., m)."""
+        drives, ground = self.drives, self.drives.ground
+        if self.first:
+            driven, loads = np.split(u, [1], axis=-1)
+            efforts = driven * np.equal(np.arange(self.tree.size), self.tree.free[0])
+            drives = replace(drives, efforts=efforts)
+        else:
+            a, w, alpha, loads = np.split(u, [3, 6, 9], axis=-1)
+            drives = replace(drives, ground=replace(ground, a=a, w=w, alpha=alpha))
+        if drives.loads[-1] is not None:
+            of_body = loads.reshape(*u.shape[:-1], *np.shape(drives.loads[-1]))
+            drives = replace(drives, loads=(*drives.loads[:-1], of_body))
+        return drives
 
-    def matrices(self, point: OperatingPoint, u: Array) -> tuple[Array, Array, Array]:
-        """Values (p,) at an operating point, their derivatives (p, 3 n + m) by (y, ẏ, ÿ, u), and forces (n, m) by u."""
+    def matrices(self, point: Point) -> tuple[Array, Array, Array]:
+        """Values (p,) at a point, their derivatives (p, 3 n + m) by (y, ẏ, ÿ, u), and forces (n, m) by u."""
+        u = self.held
         state = np.concatenate([point.y, point.yd, point.ydd, u])
         moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(len(state))])
         y, yd, ydd, drive = np.split(moved, len(point.y) * np.arange(1, 4), axis=1)
         values = self(y, yd, ydd, drive)
-        left = self.residual(y, yd, ydd, self.inputs(drive))[-len(u) :]
+        left = self.tree(y, yd, ydd, self.inputs(drive))[-len(u) :]
         return values[0].real, values[1:].imag.T / STEP, -left.imag.T / STEP
 
     def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
         """Rates of a state x, and outputs; x is (y, ẏ) and, unless on a free hub, the base's angular velocity."""
-        i = self.residual.first
+        i = self.first
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
         full = (u if i else np.concatenate([u[:3], rate, u[3:]]))[None]
-        ydd = accelerations(self.residual, y[None], yd[None], self.inputs(full))
+        ydd = accelerations(self.tree, y[None], yd[None], self.inputs(full))
         rates = np.concatenate([yd, ydd[0], u[3:6] if not i else []])
         return rates, self(y[None], yd[None], ydd, full)[0]
 
@@ -197,8 +222,8 @@ def points_of(structure: Structure) -> dict[str, int]:
     return {name: k for k, name in enumerate(names) if name in structure.source.beam.named_points and name != TIP}
 
 
-def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gauge]) -> Outputs:
-    """Build the outputs at an operating point."""
+def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge]) -> Outputs:
+    """Build the outputs of one body in a state of its system."""
     measured, shares = structure.sections, np.zeros((0, structure.size))
     strains, at, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # rows of the sections: root and tip
     if measured is None:
@@ -217,7 +242,13 @@ def outputs_of(structure: Structure, point: OperatingPoint, gauges: Sequence[Gau
     if gauges or points.size:
         rows = list(range(len(structure.stations) + 1))
     outboard = replace(measured, mass=measured.mass[rows], loaded=measured.loaded[rows])
-    return Outputs(structure, point.residual, outboard, at, strains, shares, points, point.inputs)
+    point = state.point
+    drives = point.inputs
+    if len(point.tree.free) > structure.size:  # the torque that a free hub needs to go on as it does
+        needed = replace(drives, efforts=None)
+        efforts = point.tree.rows(point.y, point.yd, point.ydd, needed)[0]
+        drives = replace(drives, efforts=efforts)
+    return Outputs(structure, point.tree, outboard, at, strains, shares, points, drives)
 
 
 def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:
@@ -361,6 +392,7 @@ def linearize(
         if loop != "open" and not drives:
             raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
         choice("loop", loop, ("open", "closed", *drives))
+        structure.require_damping("the state-space model")
         structure, strained = _gauged(structure, gauges)
         state = frozen(structure, motion, time, at)
         options: Any = {"inputs": inputs, "outputs": outputs, "strained": strained, "name": name}
@@ -374,34 +406,52 @@ def linearize(
             return JudgedLoops(state, loops, cut).judge(computed)
         plant = linearize_system(state, **options)
         tell(progress, BY_RICHER, 0.5)
-        of_system, doubts = _poles(state, structure)
+        of_system, doubts = _poles(state, subject_of(structure, motion))
         if state.begins and state.point.yd.any():
             of_system["frame"] = "turning"
         return replace(plant, **of_system, warnings=plant.warnings + doubts)
     choice("loop", loop, ("open",))
     motion = Flight(z=0.0) if motion is None else motion
-    structure.require_coordinates()
-    if rate is None:
-        point = operating_point(structure, motion, time, q, qd)
-    else:
-        hub = hub_of(motion, "a rate", "leave it out and give a time", name)
-        if hub.free:
-            point = on_hub(structure, hub, rate, q=q, qd=qd)
-        else:
-            point = on_base(structure, steady_base(hub, rate), q, qd)
+    subject = subject_of(structure, motion)
+    subject.require_coordinates()
+    structure.require_damping("the state-space model")
     for i, gauge in enumerate(gauges):
         if gauge.body:
             raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
-    linear, n = point.linear, len(point.y)
-    measured = outputs_of(structure, point, gauges)
-    held = np.concatenate([np.ravel(leaf) for leaf in leaves_of(point.inputs)])
-    value, d, forces = measured.matrices(point, held)
+    if rate is None:
+        drive = subject.drive(time)
+    else:
+        hub_of(motion, "a rate", "leave it out and give a time", name)
+        drive = Drive(subject.ground, time, turning_of(subject.system, subject.ground, None), rate)
+    at_rest = q is None and qd is None
+    coordinates = (None if each is None else np.asarray(each, dtype=float) for each in (q, qd))
+    plant = _linearized(
+        subject, placed(subject.system, drive, *coordinates), gauges, name, time, progress, at_rest=at_rest
+    )
+    return plant.select(inputs=inputs, outputs=outputs)
+
+
+def _linearized(
+    subject: Subject,
+    state: SteadySystem,
+    gauges: Sequence[Gauge],
+    name: str,
+    time: float,
+    progress: Progress,
+    *,
+    at_rest: bool,
+) -> StateSpace:
+    """State-space model of one body in a state of its system; with the errors of its poles if it is `at_rest`."""
+    structure, point, linear = subject.structure, state.point, state.linear
+    motion: Any = subject.motion
+    n, measured = len(point.y), outputs_of(structure, state, gauges)
+    value, d, forces = measured.matrices(point)
     a, drive, out, through = linear._replace(inputs=forces).state_space(
         *np.split(d, len(linear.mass) * np.arange(1, 4), axis=1)
     )
-    states = coordinate_signals(structure, point.first)
+    states, held = coordinate_signals(structure, measured.first), measured.held
     begun = np.concatenate([point.y, point.yd])
-    if not point.first:
+    if not measured.first:
         # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
         acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
         kept = [i for i in range(len(held)) if not 3 <= i < 6]
@@ -412,11 +462,11 @@ def linearize(
         drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
         states += tuple(BASE_RATES[i - 3] for i in acts)
         begun, held = np.concatenate([begun, held[acts]]), held[kept]
-    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
+    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=subject.base(state))
     poles: dict[str, Any] = {}
-    if q is None and qd is None:
+    if at_rest:
         tell(progress, BY_RICHER, 0.5)
-        poles, doubts = _poles(point, structure)
+        poles, doubts = _poles(state, subject)
         warnings += doubts
     return StateSpace(
         a=a,
@@ -435,22 +485,22 @@ def linearize(
         **poles,
         warnings=warnings,
         notes=notes_on({name: motion}),
-    ).select(inputs=inputs, outputs=outputs)
+    )
 
 
-def _poles(state: Any, of: Structure | System) -> tuple[dict[str, Any], tuple[str, ...]]:
+def _poles(state: SteadySystem, subject: Subject) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Fields of the poles about a steady state: frequencies (k,) Hz, their errors and frame; and warnings of errors and
     instability.
     """
-    frequency, errors, doubts = np.zeros(0), unknown_errors(of, 0), tuple[str, ...]()
+    frequency, errors, doubts = np.zeros(0), unknown_errors(state.system, 0), tuple[str, ...]()
     turning = {"frame": "turning"} if state.whirl is not None and state.whirl.turning else {}
-    if judgeable(of):
+    if judged_bodies(state.system):
         frequency, errors = pole_errors(state)
         doubts = doubtful(errors) if errors.within(ACCURATE) == 0 else ()
     growing = (
         f"the operating point is not stable: {motion.kind} {along(motion.direction)}, growing with "
         f"{motion.growth_rate:.4g} 1/s"
-        for motion in instabilities(state, state.moving)
+        for motion in instabilities(state, state.moving, subject.directions)
     )
     return {"frequency": frequency, "errors": errors, **turning}, (*doubts, *growing)
 
@@ -486,12 +536,9 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     control = import_control()
 
     structure.require_coordinates()
-    straight = np.zeros(structure.size)
-    if motion.free:
-        point, states = on_hub(structure, motion, 0.0, q=straight), coordinate_signals(structure, 1)
-    else:
-        point, states = on_base(structure, REST, straight), coordinate_signals(structure, 0) + BASE_RATES
-    outputs = outputs_of(structure, point, gauges)
+    system, _ = on_motion(structure, motion)
+    outputs = outputs_of(structure, undeformed(system), gauges)
+    states = coordinate_signals(structure, outputs.first) + (() if outputs.first else BASE_RATES)
 
     def update(t: float, x: Any, u: Any, params: Any) -> Any:
         return outputs.rates(np.asarray(x, dtype=float), np.asarray(u, dtype=float))[0]

@@ -16,9 +16,9 @@ from gbeam.analysis.response.posed_system import PosedSystem, state_at
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
-from gbeam.analysis.steady.operating_point import turning_inertia
+from gbeam.analysis.steady.hinged import inertia_along
 from gbeam.analysis.system.histories import deflection
-from gbeam.analysis.system.steady import Drive, SteadySystem, steady
+from gbeam.analysis.system.steady import Drive, SteadySystem, steady, undeformed
 from gbeam.arrays.tree import altered
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
@@ -29,6 +29,7 @@ from gbeam.integrate.steps import fitted
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.one_body import on_motion
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
@@ -113,7 +114,8 @@ class OnHub:
     @property
     def inertia(self) -> float:
         """Moment of inertia of all that turns, kg m²."""
-        return turning_inertia(self.structure, self.hub)
+        system, _ = on_motion(self.structure, self.hub)
+        return inertia_along(undeformed(system).point, 0)
 
     def refuse_moving(self, goal: Goal) -> None:
         """Raise InputError unless the hub rests without a command, and gravity bends the beam alike at all angles."""

@@ -12,19 +12,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful, judgeable, unknown_errors
-from gbeam.analysis.steady.loss import Path
-from gbeam.analysis.steady.stability import INSTEAD, first_lost_speed, turned
-from gbeam.analysis.system.steady import Turning
+from gbeam.analysis.steady.frequency_errors import Richer, doubtful, unknown_errors
+from gbeam.analysis.steady.stability import first_lost_speed, turned
+from gbeam.analysis.steady.subject import Subject, subject_of
+from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats, Indices, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
-from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion, notes_on
-from gbeam.numerics.eigen import Steady, mac, matched
+from gbeam.numerics.eigen import mac, matched
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing, Unstable
@@ -45,12 +45,13 @@ class _Speed(NamedTuple):
     damping_ratio: Floats
     coordinates: Complex
     mass: Floats
-    state: Steady
+    state: SteadySystem
     modes: Complex
+    subject: Subject
 
     def direction(self, which: Any) -> tuple[str, ...]:
         """Directions in which the modes chosen by an index move most."""
-        return self.state.directions(self.modes[:, which])
+        return self.subject.directions(self.state, self.modes[:, which])
 
 
 def _alike(before: _Speed, after: _Speed) -> tuple[Floats, Floats]:
@@ -171,7 +172,9 @@ def campbell(
      [ 37.08 182.7 ]]
     """
     instead = "ask `gbeam modes` for its frequencies at a time"
-    path, history = turned(structure, motion, turning, time, "a Campbell diagram", instead, name)
+    subject = subject_of(structure, motion)
+    system = subject.system
+    path, history = turned(subject, turning, time, "a Campbell diagram", instead, name)
     if speeds is None:
         speeds = np.linspace(start, _largest(history) if end is None else end, count + 1)
     grid = np.asarray(speeds, dtype=float)
@@ -180,16 +183,11 @@ def campbell(
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
-    holding: Path = (
-        replace(path, held=True)  # which knows the states
-        if isinstance(path, Turning)
-        else turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)[0]
-    )
-    lost = first_lost_speed(structure, holding, end, progress)
+    lost = first_lost_speed(subject, replace(path, held=True), end, progress)  # which knows the states
 
     @cache
-    def point_at(rate: float) -> Any:
-        return path(structure, rate)
+    def point_at(rate: float) -> SteadySystem:
+        return path(system, rate)
 
     @cache
     def growth_at(rate: float) -> float:
@@ -199,14 +197,10 @@ def campbell(
         except (ComputationError, np.linalg.LinAlgError):
             return math.nan
 
-    def solve_ahead(rates: Floats) -> None:
-        if isinstance(path, Turning) and isinstance(structure, System):
-            path.ahead(structure, rates.tolist())
-
     known = lost.outcome == "done"
     limit = lost.value if known else lost.searched_to
     critical = limit if limit is not None and limit > start else math.inf
-    solve_ahead(beyond := grid[grid > critical])
+    path.ahead(system, (beyond := grid[grid > critical]).tolist())
     # Short of a critical speed, where a frequency is zero, unless a speed beyond it is known and stable.
     ends = len(beyond) > 0 and (not known or all(growth_at(rate) != 0.0 for rate in beyond.tolist()))
     last = start + (critical - start) * (1 - 1e-6) if ends else end
@@ -215,16 +209,15 @@ def campbell(
     def modes_at(rate: float) -> _Speed:
         tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)
-        moving, first = state.moving, state.first
-        moving = moving.oscillating(slice(structure.resolved if isinstance(structure, Structure) else None))
-        damping = -moving.value.real / moving.frequency
-        mass = state.linear.mass[first:, first:]
-        return _Speed(rate, moving.frequency / (2 * np.pi), damping, moving.modes[first:].T, mass, state, moving.modes)
+        moving = state.moving.oscillating(slice(subject.resolved))
+        damping, modes = -moving.value.real / moving.frequency, moving.modes
+        frequency = moving.frequency / (2 * np.pi)
+        return _Speed(rate, frequency, damping, modes.T, state.linear.mass, state, modes, subject)
 
     rates = start + (grid - start) * (last - start) / (end - start)
     if critical < last:
         rates = np.sort(np.append(rates, critical * (1 + BESIDE * np.array([-1.0, 1.0]))))
-    solve_ahead(rates)
+    path.ahead(system, rates.tolist())
     coarse = [modes_at(rate) for rate in rates.tolist() if not math.isnan(growth_at(rate))]
     kept = min(modes, len(coarse[0].frequency))
     if not kept:
@@ -242,11 +235,10 @@ def campbell(
         for order in orders
         for crossing in _crossings(modes_at, followed, index, rates, frequency[:, k], k, order)
     ]
-    crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(structure, kept)
-    if judgeable(structure):
+    crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(system, kept)
+    if judged_bodies(system):
         sound = np.flatnonzero(np.abs(rates / critical - 1) > 1 - SURE).tolist() or [0]
-        fastest: Any = followed[sound[-1]].state
-        richer = Richer(fastest)
+        richer = Richer(followed[sound[-1]].state)
         chosen = sorted({sound[0], sound[(len(sound) - 1) // 2], sound[-1]})
         looked = [_errors(richer, followed[i].state, followed[i], index[i]) for i in chosen]
         parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS}
@@ -255,11 +247,8 @@ def campbell(
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
         ]
-    if isinstance(structure, System):
-        doubts = lost.warnings
-    else:
-        fast = point_at(last).base if structure.unstiffened else None  # where the missing stiffness is largest
-        doubts = input_warnings(structure, motion, name=name, base=fast)
+    fast = subject.unstiffened and subject.base(point_at(last))  # where the missing stiffness is largest
+    doubts = subject.doubts(name, fast or None) if subject.body else lost.warnings
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     if (more := len(coarse[-1].frequency) - len(coarse[0].frequency)) > 0:
@@ -271,7 +260,7 @@ def campbell(
         warnings += tuple(warning for warning in lost.warnings if warning not in warnings)
     return Campbell(
         motion=name,
-        model=structure.kind,
+        model=subject.kind,
         speed=rates,
         frequency=frequency,
         damping_ratio=damping,

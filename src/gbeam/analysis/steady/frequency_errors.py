@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described
-from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, MORE_SHAPES, percent, unjudged, wrong_by
-from gbeam.analysis.steady.operating_point import OperatingPoint
+from gbeam.analysis.accuracy.estimate import LIMIT, MORE_SHAPES, percent, wrong_by
 from gbeam.analysis.system.richer import (
+    Directions,
     coarser,
     judged_bodies,
     left_unjudged,
@@ -26,10 +26,7 @@ from gbeam.analysis.system.richer import (
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError
-from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import Steady, mac, matched
@@ -38,6 +35,7 @@ from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 BENT = 0.01  # of the kinetic energy: a mode of twist with less bending is hardly excited
 BY_RICHER = "errors, by richer models"  # words of the progress
 NO_REST = "with more shapes no place was found in which it rests"
+STRAIGHT = 0.1  # of the length: beams that bend by less are straight for their theory
 SHOWN = 3  # frequencies that the model lacks, named at most
 
 
@@ -69,23 +67,19 @@ class ByTheory(NamedTuple):
 
 
 class More(NamedTuple):
-    """A structure or a system with more shapes, and the new names there of coordinates that are renamed."""
+    """A system with more shapes, and the new names there of coordinates that are renamed."""
 
-    model: Any
+    model: System
     renamed: Mapping[str, str]
 
 
 class Richer:
     """Richer models than a steady state's: exact or the same with more shapes, thick beams; and with coarser meshes."""
 
-    def __init__(self, state: OperatingPoint | SteadySystem) -> None:
-        of = state.of
-        rough: Structure | System | None
-        if isinstance(of, System):
-            bodies, rough, self.theories = judged_bodies(of), coarser(of), theories_of(of)
-        else:
-            bodies, rough = {BEAM: of}, of.coarser
-            self.theories = {} if of.source is None else {BEAM: theory_of(of)}
+    def __init__(self, state: SteadySystem) -> None:
+        of = state.system
+        bodies, rough = judged_bodies(of), coarser(of)
+        self.theories = theories_of(of, straight=state.bent(bodies) <= STRAIGHT)
         self.beams = {name: bodies[name] for name in self.theories}
         self.exact = _with_more(state, exact=True)
         self.one_model = all(body.richer is not None and body.exact for body in bodies.values())
@@ -103,7 +97,7 @@ class Richer:
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
         mesh = np.abs(rough / frequency - 1)
         total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
-        note = unknown_part(state.of)
+        note = unknown_part(state.system)
         if not note and len(frequency) and np.isnan(total).all():
             note = NO_REST
         growth = 0.0 if not gyroscopic or len(state.moving.growing) else growth
@@ -146,26 +140,24 @@ class Richer:
         exact = reference(self.exact)
         return exact if self.same is self.exact else reference(self.same), exact, reference(self.rough), growth
 
-    def by_theories(self, of: Structure | System, state: Any = None) -> tuple[list[Any], dict[str, Floats]]:
-        """The structure or system with slender beams, with thick ones, and with thick ones and plate action; and the
-        stiffness (n, n) of plate action by beam, bent as in a state, by default little.
+    def by_theories(self, of: System, state: Any = None) -> tuple[list[System], dict[str, Floats]]:
+        """The system with slender beams, with thick ones, and with thick ones and plate action; and the stiffness
+        (n, n) of plate action by beam, bent as in a state, by default little.
         """
         variants, plates = [], dict[str, Floats]()
         for name, theory in self.theories.items():
             q = np.zeros(0) if state is None else state.q[deforming(state.names, name)]
             plates[name] = theory.plate(np.pad(q, (0, theory.thick.size - len(q)))[None])
             variants.append((theory.slender, *theory.variants(plates[name])))
-        if isinstance(of, System):
-            kinds = zip(*variants, strict=True)
-            return [with_beams(of, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
-        return [*variants[0]], plates
+        kinds = zip(*variants, strict=True)
+        return [with_beams(of, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
 
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
         """Errors of the frequencies of modes (k, n) by the theory of slender beams; NaN if not known."""
         k = len(coordinates)
         if not self.theories:
             return ByTheory(np.full(k, np.nan), "", ())
-        models, plates = self.by_theories(point.of, point)
+        models, plates = self.by_theories(point.system, point)
         try:
             states = [point.richer(model) for model in models]
             (slender, shape), (thick, deep), (plated, flat) = (
@@ -231,32 +223,29 @@ def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
     return moving.frequency / (2 * np.pi), errors
 
 
-def judgeable(of: Structure | System) -> bool:
-    """True if errors can be estimated for a structure, or for some body of a system."""
-    return bool(judged_bodies(of)) if isinstance(of, System) else of.judged
+def unknown_part(system: System) -> str:
+    """Sentence about the errors of a system that are not judged, or ""; of a body alone its name is left out."""
+    words, names = left_unjudged(system), [*system.flexible]
+    return words if len(names) > 1 else words.replace(f" of {names[0]}", "") if names else ""
 
 
-def unknown_part(of: Structure | System) -> str:
-    """Sentence about the errors of a structure or a system that are not judged, or ""."""
-    return left_unjudged(of) if isinstance(of, System) else unjudged(of)
-
-
-def unknown_errors(of: Structure | System, count: int) -> FrequencyErrors | None:
+def unknown_errors(system: System, count: int) -> FrequencyErrors | None:
     """NaN for the errors of `count` frequencies, with the reason; None if there is no reason."""
-    note, unknown = unknown_part(of), np.full(count, np.nan)
+    note, unknown = unknown_part(system), np.full(count, np.nan)
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 
-def _with_more(state: OperatingPoint | SteadySystem, *, exact: bool) -> More:
-    """The model of a steady state with more shapes, of its own kinds or exact."""
-    if isinstance(state, SteadySystem):
-        bases = state.solution.bases(judged_bodies(state.system))
-        rich = richer(state.system, bases, exact=exact)
-        return More(rich.system, rich.renamed)
-    structure, (_, along_y, along_z, *_) = state.structure, state.structure.counts
-    kind, directions = "exact" if exact else structure.kind, (True, along_y > 0, along_z > 0)
-    model, index = enrichment(structure, state.base).model(kind, directions=directions)
-    return More(model, {name: f"{BEAM}.q{k + 1}" for name, k in zip(state.names, index, strict=True)})
+def _with_more(state: SteadySystem, *, exact: bool) -> More:
+    """The model of a steady state with more shapes, of its own kinds or exact; a beam alone, which turns about one axis
+    at most, gets none across a plane in which it has none.
+    """
+    system, along = state.system, dict[str, Directions]()
+    bases = state.solution.bases(judged_bodies(system))
+    for name, body in system.flexible.items():
+        if len(system.flexible) == 1 and len(system.tree.free) <= body.size + 1:
+            along[name] = True, body.counts[1] > 0, body.counts[2] > 0
+    rich = richer(system, bases, exact=exact, along=along)
+    return More(rich.system, rich.renamed)
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:

@@ -6,20 +6,21 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, not_known, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, among, judgeable, unknown_part
+from gbeam.analysis.steady.frequency_errors import Richer, among, unknown_part
+from gbeam.analysis.steady.subject import Subject
 from gbeam.analysis.system.linear import instabilities
-from gbeam.analysis.system.steady import Loaded, Turning, open_loops
+from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.steady import Path, SteadySystem, open_loops
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.numerics.eigen import ZERO, Steady, symmetric, symmetric_modes, vibrations
+from gbeam.numerics.eigen import ZERO, symmetric, symmetric_modes, vibrations
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import ErrorEstimate, along
@@ -28,15 +29,7 @@ from gbeam.results.result import NOT_KNOWN
 SCAN = 64  # values at which the equilibrium is looked at before Brent's method
 
 
-class Path(Protocol):
-    """Steady states of a structure or a system, or of richer ones, as a quantity grows."""
-
-    def __call__(self, of: Any, value: float, /) -> Steady:
-        """Return the steady state; raises ComputationError where there is none."""
-        ...
-
-
-def _state(path: Path, of: Any, value: float) -> Steady | None:
+def _state(path: Path, of: System, value: float) -> SteadySystem | None:
     """Steady state at a value, or None."""
     try:
         return path(of, value)
@@ -44,24 +37,28 @@ def _state(path: Path, of: Any, value: float) -> Steady | None:
         return None
 
 
-def _in_turn(path: Path, of: Any, values: Sequence[float]) -> Iterator[float]:
-    """Yield values in turn; of systems the states at the next 1, 2, 4, ... values are solved for at once before."""
+def _in_turn(path: Path, of: System, values: Sequence[float]) -> Iterator[float]:
+    """Yield values in turn; the states at the next 1, 2, 4, ... values are solved for at once before."""
     for k, value in enumerate(values):
-        if isinstance(path, Turning | Loaded) and k and not k & (k - 1):
+        if k and not k & (k - 1):
             path.ahead(of, values[k : 2 * k])
         yield value
 
 
-def _of_system(path: Path, of: System, value: float) -> tuple[str, ...]:
-    """Warnings of a system, its open loops, and friction that holds it just below a critical value."""
-    state: Any = _state(path, of, (1 - CLOSE) * value)
-    return of.warnings + open_loops(of) + (() if state is None else state.point.sticking(of))
+def _doubts(path: Path, subject: Subject, value: float) -> tuple[str, ...]:
+    """Doubts about one body, or about a system: its open loops, and friction that holds it just below a value."""
+    if subject.body:
+        return input_warnings(subject.structure)
+    state = _state(path, subject.system, (1 - CLOSE) * value)
+    of_system = subject.system.warnings + open_loops(subject.system)
+    return of_system + (() if state is None else state.point.sticking(subject.system))
 
 
 def first_loss_along(
-    path: Path, of: Structure | System, upper: float, quantity: str, unit: str, progress: Progress = None
+    path: Path, subject: Subject, upper: float, quantity: str, unit: str, progress: Progress = None
 ) -> Critical:
     """Least value up to `upper` at which the relative equilibrium is lost, by a grid of 64 and Brent's method."""
+    of = subject.system
 
     @cache
     def margin(value: float) -> float:
@@ -71,20 +68,17 @@ def first_loss_along(
         return -1.0 if state is None else state.margin
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
-        words = kind, direction, reason, of.kind
-        doubts = (
-            _of_system(path, of, upper if value is None else value) if isinstance(of, System) else input_warnings(of)
-        )
+        words = kind, direction, reason, subject.kind
+        doubts = _doubts(path, subject, upper if value is None else value)
         return Critical(quantity, unit, value, upper, *words, warnings=doubts)
 
     grid = [float(value) for value in np.linspace(0.0, upper, SCAN + 1)]
     first = next((i for i, value in enumerate(_in_turn(path, of, grid)) if margin(value) < 0), None)
     if first is None:
-        why = f"{of.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
+        why = f"{subject.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
         return answer(None, "none", "", why)
     if first == 0:
-        which = "system" if isinstance(of, System) else "beam"
-        return answer(0.0, "divergence", "", f"the {which} is unstable before anything moves")
+        return answer(0.0, "divergence", "", f"the {subject.noun} is unstable before anything moves")
     from scipy.optimize import brentq
 
     root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=1e-9, maxiter=200)
@@ -93,34 +87,32 @@ def first_loss_along(
     if beyond is None:
         kind, direction = "no equilibrium", ""
     else:
-        grown = instabilities(beyond, beyond.moving)
+        grown = instabilities(beyond, beyond.moving, subject.directions)
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
         parts = (symmetric(each) for each in (state.linear.stiffness, state.linear.mass))  # others store no energy
-        direction = state.directions(symmetric_modes(*parts)[1][:, :1])[0]
+        direction = subject.directions(state, symmetric_modes(*parts)[1][:, :1])[0]
     way = f" {along(direction)}" if direction else ""
     reason = f"{kind}{way} at {root:.6g} {unit}"
     # Half way, where nothing grows yet without bound, with half of the load or less.
     if undecided := not_known(2 * path(of, root / 2).bend, reason):
-        words = f"{of.kind} keeps its equilibrium up to there, and {undecided['message']}"
+        words = f"{subject.kind} keeps its equilibrium up to there, and {undecided['message']}"
         return replace(answer(None, NOT_KNOWN, direction, words), searched_to=root, **undecided)
-    return answer(root, kind, direction, f"{of.kind}: {reason}")
+    return answer(root, kind, direction, f"{subject.kind}: {reason}")
 
 
 FOLLOWED = 20  # steps to the critical value, closer to one another near it, where frequencies fall by a root
 LOWEST = 4  # frequencies followed
 
 
-def with_frequencies(
-    critical: Critical, path: Path, structure: Structure | System, progress: Progress = None
-) -> Critical:
+def with_frequencies(critical: Critical, path: Path, system: System, progress: Progress = None) -> Critical:
     """A critical value with the lowest frequencies, undamped, on the way to it."""
     end = critical.searched_to if critical.value is None else (1 - CLOSE) * critical.value
     values = end * np.sin(np.linspace(0.0, np.pi / 2, FOLLOWED + 1)) if end else np.zeros(1)
     frequency, last = np.full((len(values), LOWEST), np.nan), None
-    for row, value in zip(frequency, _in_turn(path, structure, values.tolist()), strict=True):
+    for row, value in zip(frequency, _in_turn(path, system, values.tolist()), strict=True):
         tell(progress, "frequencies on the way to it", value / end if end else 0.0)
-        state = _state(path, structure, value)
+        state = _state(path, system, value)
         if state is not None:
             c = state.linear.velocity
             undamped = state.linear._replace(velocity=(c - c.T) / 2)  # what is overdamped has no frequency
@@ -137,16 +129,16 @@ HALVINGS = 16
 CLOSE = 1e-6  # of the critical value: tolerance of its root
 
 
-def judged(critical: Critical, path: Path, structure: Structure | System, progress: Progress = None) -> Critical:
+def judged(critical: Critical, path: Path, subject: Subject, progress: Progress = None) -> Critical:
     """The critical value with errors estimated by richer models, and warnings if above one in a hundred."""
-    critical = replace(critical, error_note=unknown_part(structure))
-    if critical.value == 0 or critical.kind == NOT_KNOWN or not judgeable(structure):
+    system, critical = subject.system, replace(critical, error_note=unknown_part(subject.system))
+    if critical.value == 0 or critical.kind == NOT_KNOWN or not judged_bodies(system):
         return critical
     if critical.value is None:
-        doubts = _unseen(critical, path, structure, progress)
+        doubts = _unseen(critical, path, system, progress)
         return replace(critical, warnings=critical.warnings + doubts)
     at = critical.value
-    point: Any = path(structure, (1 - CLOSE) * at)
+    point = path(system, (1 - CLOSE) * at)
     richer = Richer(point)
     count = 5 if richer.theories else 2
     exact = _lost(richer.exact.model, path, at, progress, part=(0, count))
@@ -158,12 +150,12 @@ def judged(critical: Critical, path: Path, structure: Structure | System, progre
         errors = replace(errors, model=richer.of_model(errors.model))
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
-    models, plates = richer.by_theories(structure)
+    models, plates = richer.by_theories(system)
     slender, *thick = (_lost(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2))
     beam_theory = max(apart(at if math.isinf(slender) else slender, value) for value in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
     words = _in_words(richer, point, models, plates)
-    model = "the system" if isinstance(structure, System) else critical.model
+    model = critical.model if subject.body else "the system"
     doubts = doubtful_loss(critical.quantity, model, errors, words)
     return replace(critical, errors=errors, warnings=critical.warnings + doubts)
 
@@ -186,14 +178,13 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
     return richer.in_words(slender, thick, shape, np.zeros(1), plates)
 
 
-def _unseen(critical: Critical, path: Path, structure: Structure | System, progress: Progress) -> tuple[str, ...]:
+def _unseen(critical: Critical, path: Path, system: System, progress: Progress) -> tuple[str, ...]:
     """Warn if a richer model, with twist or more modes, loses the equilibrium before the search's end."""
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    unloaded: Any = path(structure, 0.0)
-    richer, lacked = Richer(unloaded), "more modes"
+    richer, lacked = Richer(path(system, 0.0)), "more modes"
     rich = richer.exact.model
     if richer.theories:
-        (_, rich, *_), lacked = richer.by_theories(structure)[0], "shear and twist"
+        (_, rich, *_), lacked = richer.by_theories(system)[0], "shear and twist"
     lost = _lost(rich, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
-from typing import TypeVar, overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import not_known
-from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, judgeable, unknown_errors
-from gbeam.analysis.steady.operating_point import OperatingPoint, drawn, extent, operating_point
+from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, unknown_errors
+from gbeam.analysis.steady.subject import Subject, drawn, extent, subject_of
 from gbeam.analysis.system.linear import framed, instabilities, largest_component, system_modes
-from gbeam.analysis.system.steady import Drive, settled
-from gbeam.arrays.tree import each_leaf
+from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.steady import SteadySystem, settled
 from gbeam.guards.arguments import typed
-from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
@@ -25,46 +25,44 @@ from gbeam.results.system import SystemModes
 AnyModes = TypeVar("AnyModes", Modes, SystemModes)
 
 
-def modes_at(
-    structure: Structure,
-    point: OperatingPoint,
-    *,
-    gyroscopic: bool = True,
-    name: str = "",
-    time: float = float("nan"),
-) -> Modes:
-    """Modes about an operating point, each scaled to a largest component of one."""
-    rigid = int(point.first and not np.abs(point.linear.stiffness[:, 0]).any())
-    deforming = slice(structure.resolved + point.first - rigid)  # with a sprung hub's own mode
-    moving = point.vibrations(gyroscopic=gyroscopic).oscillating(deforming)
-    coordinates, direction = moving.modes[point.first :], point.directions(moving.modes)
-    shape = np.moveaxis(structure.station_slopes(point.q) @ coordinates, -1, 0)
+def modes_of_body(subject: Subject, state: SteadySystem, *, gyroscopic: bool = True, name: str = "") -> Modes:
+    """Modes of one body about a steady state, each scaled to a largest component of one."""
+    structure, columns = subject.structure, subject.columns(state)
+    q, others = state.q[columns], len(state.names) - len(columns)
+    rigid = others if others and not np.abs(state.linear.stiffness[:, 0]).any() else 0
+    # With the mode of a hub that a spring holds, and those of the body that are its own.
+    moving = state.vibrations(gyroscopic=gyroscopic).oscillating(slice(structure.resolved + others - rigid))
+    coordinates, direction = moving.modes[columns], subject.directions(state, moving.modes)
+    shape = np.moveaxis(structure.station_slopes(q) @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
-    largest, turns = largest_component(shape), structure.station_twist(point.q)
+    largest, turns = largest_component(shape), structure.station_twist(q)
     twist = None if turns is None else (turns @ coordinates).T
     if twist is not None:
         largest = np.where(np.array(direction) == "twist", largest_component(twist * extent(structure)), largest)
     scale = np.where(largest == 0, 1, largest)
-    recovery = structure.recovery
+    recovery, whirl = structure.recovery, state.whirl
     return Modes(
         motion=name,
         model=structure.kind,
-        time=time,
-        base=each_leaf(np.asarray, point.base),
+        time=state.drive.time,
+        base=subject.base(state),
         gyroscopic=gyroscopic,
         eigenvalue=moving.value,
         direction=direction,
-        **framed(point.whirl, moving.frequency / (2 * np.pi), moving.modes),
+        **framed(whirl, moving.frequency / (2 * np.pi), moving.modes),
         coordinates=coordinates.T,
         stations=np.asarray(structure.stations),
         shape=shape / scale[:, None, None],
         twist=None if twist is None else twist / scale[:, None],
-        equilibrium=np.asarray(structure.displacement(point.q)),
-        instabilities=instabilities(point, moving),
+        equilibrium=np.asarray(structure.displacement(q)),
+        instabilities=instabilities(state, moving, subject.directions),
         rigid=rigid,
         damping_given=structure.damping_ratio is not None,
         overdamped=moving.decaying,
         surface=None if recovery is None or not len(moving.value) else recovery.in_modes((coordinates / scale).T),
+        notes=notes_on({name: subject.motion}),
+        warnings=subject.warnings(state, name),
+        **drawn(structure),
     )
 
 
@@ -146,29 +144,26 @@ def modes(
     [  36.6  182.6  229.  1138.7 4243.1]
     """
     tell(progress, "equilibrium", 0.0)
-    if isinstance(structure, System):
-        structure.require_damping("that of its modes")
-        state = settled(structure, Drive(motion, time))
-        moving = state.vibrations(gyroscopic=gyroscopic)
-        of_system = decided(system_modes(state, moving, time, name), state.bend)
-        if not errors:
-            return of_system
-        if not judgeable(structure):
-            return replace(of_system, errors=unknown_errors(structure, len(moving.value)))
+    subject = subject_of(structure, motion)
+    subject.require_coordinates()
+    if not subject.body:
+        subject.system.require_damping("that of its modes")
+    state = settled(subject.system, subject.drive(time))
+    computed: Any = (
+        modes_of_body(subject, state, gyroscopic=gyroscopic, name=name)
+        if subject.body
+        else system_modes(state, state.vibrations(gyroscopic=gyroscopic), time, name)
+    )
+    computed = decided(computed, state.bend)
+    if not errors:
+        return computed
+    stated = unknown_errors(subject.system, len(computed.eigenvalue))
+    if judged_bodies(subject.system):
         tell(progress, BY_RICHER, 0.5)
-        judged = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
-        doubts = doubtful(judged[~(of_system.frequency > of_system.reached)])  # modes above have their own warning
-        return replace(of_system, errors=judged, warnings=of_system.warnings + doubts)
-    structure.require_coordinates()
-    point = operating_point(structure, motion, time)
-    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=point.base)
-    computed = decided(modes_at(structure, point, gyroscopic=gyroscopic, name=name, time=time), point.bend)
-    warnings += tuple(bent_far(structure, bend(structure, point.q)))
-    stated = None
-    if errors and judgeable(structure):
-        tell(progress, BY_RICHER, 0.5)
-        stated = Richer(point).errors(point, computed.eigenvalue, computed.coordinates, gyroscopic=gyroscopic)
-        warnings += doubtful(stated)
-    elif errors:
-        stated = unknown_errors(structure, len(computed.eigenvalue))
-    return replace(computed, errors=stated, warnings=warnings, notes=notes_on({name: motion}), **drawn(structure))
+        which = slice(len(computed.eigenvalue))
+        moving = state.vibrations(gyroscopic=gyroscopic).oscillating(which)
+        stated = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
+        # Modes above those that are known have their own warning.
+        reached = math.inf if subject.body else computed.reached
+        computed = replace(computed, warnings=computed.warnings + doubtful(stated[~(computed.frequency > reached)]))
+    return replace(computed, errors=stated)

@@ -13,9 +13,18 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from gbeam.analysis.steady.loss import Path, doubtful_loss, first_loss_along, judged, with_frequencies
-from gbeam.analysis.steady.operating_point import REST, OperatingPoint, on_base, on_hub, steady_base
-from gbeam.analysis.system.steady import Drive, Loaded, Turning, turning_of
+from gbeam.analysis.steady.loss import doubtful_loss, first_loss_along, judged, with_frequencies
+from gbeam.analysis.steady.subject import Subject, subject_of
+from gbeam.analysis.system.steady import (
+    Drive,
+    Path,
+    loaded,
+    pushed,
+    refuse_changing,
+    share_of_loads,
+    turning_at,
+    turning_of,
+)
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -50,12 +59,6 @@ def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
         f"is a {motion.kind}, which has no hub to turn faster: {what} needs one",
         instead,
     )
-
-
-def lowest_frequency(structure: Structure) -> float:
-    """Lowest natural frequency of the beam on a base at rest, rad/s."""
-    structure.require_coordinates()
-    return float(structure.rest[0][0])
 
 
 @typed
@@ -110,62 +113,50 @@ def critical_speed(
     >>> print(f"{loss.value:.4g} rad/s")
     1148 rad/s
     """
-    path, _ = turned(structure, motion, turning, time, "a critical speed", INSTEAD, name, held=True)
-    lost = first_lost_speed(structure, path, upper, progress)
-    return replace(with_frequencies(lost, path, structure, progress), notes=notes_on({name: motion}))
+    subject = subject_of(structure, motion)
+    path, _ = turned(subject, turning, time, "a critical speed", INSTEAD, name, held=True)
+    lost = first_lost_speed(subject, path, upper, progress)
+    return replace(with_frequencies(lost, path, subject.system, progress), notes=notes_on({name: motion}))
 
 
-def first_lost_speed(structure: Structure | System, path: Path, upper: float | None, progress: Progress) -> Critical:
+def first_lost_speed(subject: Subject, path: Path, upper: float | None, progress: Progress) -> Critical:
     """Lowest rate, with its errors, at which the equilibrium is lost along a path that holds the rate."""
-    if upper is not None:
-        limit = positive("to", upper, "rad/s")
-    elif isinstance(structure, Structure):
-        limit = SEARCH_FACTOR * lowest_frequency(structure)
-    else:
-        limit = SEARCH_FACTOR * float(path(structure, 0.0).moving.frequency.min(initial=np.inf))
-        if not np.isfinite(limit):
-            raise InputError("to", "is missing, and nothing oscillates at rest", "give the end of the search")
-    if isinstance(path, Turning) and isinstance(structure, System):
-        path.refuse_changing(structure, limit / SEARCH_FACTOR)
-    words = "hub rate" if isinstance(structure, Structure) else "rate"
-    return judged(first_loss_along(path, structure, limit, words, "rad/s", progress), path, structure, progress)
+    limit = SEARCH_FACTOR * lowest_frequency(path, subject.system) if upper is None else positive("to", upper, "rad/s")
+    refuse_changing(path, subject.system, limit / SEARCH_FACTOR)
+    lost = first_loss_along(path, subject, limit, subject.rate, "rad/s", progress)
+    return judged(lost, path, subject, progress)
+
+
+def lowest_frequency(path: Path, system: System) -> float:
+    """Lowest natural frequency where a path begins, rad/s."""
+    limit = float(path(system, 0.0).moving.frequency.min(initial=np.inf))
+    if not np.isfinite(limit):
+        raise InputError("to", "is missing, and nothing oscillates at rest", "give the end of the search")
+    return limit
 
 
 def turned(
-    structure: Structure | System,
-    motion: Motion | None,
-    turning: str | None,
-    time: float,
-    what: str,
-    instead: str,
-    name: str,
-    *,
-    held: bool = False,
+    subject: Subject, angle: str | None, time: float, what: str, instead: str, name: str, *, held: bool = False
 ) -> tuple[Path, Profile | None]:
-    """Path of steady states by the rate, of a structure on a hub or of a system that turns, and the history of the rate
-    in the motion, if any; InputError, with the words `what` and `instead`, if there is nothing to turn.
+    """Path of steady states by the rate of a subject that turns about an `angle`, by default a hub's, and the history
+    of the rate in the motion, if any; InputError, with the words `what` and `instead`, if there is nothing to turn.
     """
-    if isinstance(structure, System):
-        coordinate = turning_of(structure, motion, turning)
-        joint, _, angle = coordinate.rpartition(".")
-        history = structure.joints[joint].rates.get(angle) if joint else motion.rate  # type: ignore[union-attr]
-        of_system = Turning(Drive(motion, time, coordinate), held)
-        # At a rate so slow that no equilibrium is lost: changing equations may be why there is none at larger rates.
-        replace(of_system, held=False).refuse_changing(structure, SLOW)
-        return of_system, history
-    structure.require_coordinates()
-    if turning is not None:
-        raise InputError("turning", "is given of one beam", "leave it out: its hub turns")
-    if motion is None:
-        fix = 'give gb.Hub(radius=...), or [motion.NAME] with kind = "hub"'
-        raise InputError("motion", f"is missing: {what} needs a hub", fix)
-    hub, values = hub_of(motion, what, instead, name), structure.load_values
-
-    def path(of: Structure, rate: float) -> OperatingPoint:
-        of = replace(of, load_values=values)
-        return on_hub(of, hub, rate) if hub.free and not held else on_base(of, steady_base(hub, rate))
-
-    return path, hub.rate
+    subject.require_coordinates()
+    system, motion = subject.system, subject.ground
+    if subject.body:
+        if angle is not None:
+            raise InputError("turning", "is given of one beam", "leave it out: its hub turns")
+        if subject.motion is None:
+            fix = 'give gb.Hub(radius=...), or [motion.NAME] with kind = "hub"'
+            raise InputError("motion", f"is missing: {what} needs a hub", fix)
+        hub_of(subject.motion, what, instead, name)
+    coordinate = turning_of(system, motion, angle)
+    joint, _, kind = coordinate.rpartition(".")
+    history = system.joints[joint].rates.get(kind) if joint else motion.rate  # type: ignore[union-attr]
+    path = Path(Drive(motion, time, coordinate), turning_at, held)
+    # At a rate so slow that no equilibrium is lost: changing equations may be why there is none at larger rates.
+    refuse_changing(replace(path, held=False), system, SLOW)
+    return path, history
 
 
 @typed
@@ -216,7 +207,7 @@ def critical_speed_map(
      [ 869.1  424.8]]
     """
     hub, unloaded = hub_of(motion, "a critical speed", INSTEAD, name), assemble(beam, model)
-    limit = SEARCH_FACTOR * lowest_frequency(unloaded) if upper is None else upper
+    limit = SEARCH_FACTOR * float(unloaded.rest[0][0]) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
     errors = MapErrors(*np.full((len(fields(MapErrors)), *speed.shape), np.nan))
     worst = ErrorEstimate(total=0.0)
@@ -224,9 +215,9 @@ def critical_speed_map(
         for j, position in enumerate(positions):
             tell(progress, "critical hub rates", (i * len(positions) + j) / speed.size)
             loaded = replace(beam, masses=(*beam.masses, PointMass(position, mass)))
-            structure = assemble(loaded, model)
-            path, _ = turned(structure, hub, None, 0.0, "", "", "", held=True)
-            loss = judged(first_loss_along(path, structure, limit, "hub rate", "rad/s"), path, structure)
+            subject = subject_of(assemble(loaded, model), hub)
+            path, _ = turned(subject, None, 0.0, "", "", "", held=True)
+            loss = judged(first_loss_along(path, subject, limit, "hub rate", "rad/s"), path, subject)
             speed[i, j] = np.nan if loss.value is None else loss.value
             for part in fields(errors):
                 getattr(errors, part.name)[i, j] = getattr(loss.errors, part.name)
@@ -239,16 +230,22 @@ def critical_speed_map(
 
 
 @typed
-def buckling_acceleration(structure: Structure, *, upper: float | None = None, progress: Progress = None) -> Critical:
+def buckling_acceleration(
+    structure: Structure | System, *, time: float = 0.0, upper: float | None = None, progress: Progress = None
+) -> Critical:
     """Acceleration of the root along +x at which the beam, pushed by it, buckles under its own inertia.
 
     The heavy column of Greenhill (1881): 7.8373 EI/(m L³) for a uniform beam without masses.
 
     Parameters
     ----------
-    structure : Structure
+    structure : Structure or System
+        Of a system its ground is accelerated, beside its gravity.
+    time : float
+        When loads and joints are frozen, s.
     upper : float, optional
-        End of the search, m/s²; by default ten times the length times the square of the lowest natural frequency.
+        End of the search, m/s²; by default ten times the length, or the system's extent, times the square of the lowest
+        natural frequency.
     progress : callable or bool, optional
         Called with what is done and the share of it; True shows a bar.
 
@@ -264,16 +261,13 @@ def buckling_acceleration(structure: Structure, *, upper: float | None = None, p
     >>> print(f"{gb.buckling_acceleration(structure).value:.4g} m/s²")
     1.005e+04 m/s²
     """
-    limit = SEARCH_FACTOR * lowest_frequency(structure) ** 2 * structure.length if upper is None else upper
-
-    values = structure.load_values
-
-    def pushed(of: Structure, acceleration: float) -> OperatingPoint:
-        base = Base(np.array([acceleration, 0.0, 0.0]), np.zeros(3), np.zeros(3))
-        return on_base(replace(of, load_values=values), base)
-
-    lost = first_loss_along(pushed, structure, limit, "acceleration along x", "m/s²", progress)
-    return with_frequencies(judged(lost, pushed, structure, progress), pushed, structure, progress)
+    subject, path = subject_of(structure, None), Path(Drive(None, time), pushed)
+    subject.require_coordinates()
+    if upper is None:
+        extent = float(np.linalg.norm(np.ptp(subject.system.undeformed, axis=0)))
+        upper = SEARCH_FACTOR * lowest_frequency(path, subject.system) ** 2 * extent
+    lost = first_loss_along(path, subject, upper, "acceleration along x", "m/s²", progress)
+    return with_frequencies(judged(lost, path, subject, progress), path, subject.system, progress)
 
 
 @typed
@@ -293,14 +287,13 @@ def critical_load(
     Parameters
     ----------
     structure : Structure or System
-        With loads, a structure's of time zero or of its :meth:`~gbeam.Structure.at_time`. Gravity and drives of a
-        system stay as they are.
+        With loads. Gravity and drives of a system stay as they are.
     base : Base, optional
-        Frozen motion of a structure's base, arrays (3,); by default at rest.
+        Frozen motion of the ground, arrays (3,), in place of a motion; by default at rest.
     time : float
-        Of a system: when its loads, drives and motion are frozen, s.
+        When loads, drives and motion are frozen, s.
     motion : Flight, Centrifuge or Hub, optional
-        Of a system's ground, at rest without one.
+        Of the ground, at rest without one.
     upper : float, optional
         End of the search; by default ten times the factor that makes the loads' stiffness as large as the beam's.
     progress : callable or bool, optional
@@ -324,34 +317,14 @@ def critical_load(
     >>> print(f"{euler.value:.4g} N")
     204.9 N
     """
-    path: Path
-    if isinstance(structure, System):
-        path = Loaded(Drive(motion, time))
-        share = path.share(structure)
-    else:
-        values = structure.load_values
-        share = 0.0 if values is None else _share(structure, values)
-
-        def path(of: Structure, factor: float) -> OperatingPoint:
-            of = replace(of, load_values=None if values is None else factor * values)
-            return on_base(of, REST if base is None else base)
-
+    subject = subject_of(structure, motion)
+    subject.require_coordinates()
+    path = Path(replace(subject.held(time), base=base), loaded, held=True)
+    share = share_of_loads(path, subject.system)
     if share < NOTHING:
-        where, what = ("forces", "a joint's") if isinstance(structure, System) else ("beam.loads", "a hub's")
+        where, what = ("beam.loads", "a hub's") if subject.body else ("forces", "a joint's")
         fix = f"add one, or give a time at which one acts; `gbeam critical-speed` can raise {what} rate instead"
         raise InputError(where, "have none that act", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
-    lost = first_loss_along(path, structure, limit, "load factor", "times the loads", progress)
-    return with_frequencies(judged(lost, path, structure, progress), path, structure, progress)
-
-
-def _share(structure: Structure, values: np.ndarray) -> float:
-    """Larger of two effects of the loads: stiffness over the beam's own, and deflection over its length."""
-    c = structure.coefficients
-    assert c.loads is not None
-    scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))
-    added = np.einsum("li,linm->nm", values, c.loads.slope[:, :, 6:])
-    size = np.linalg.norm(scale @ added @ scale.T, 2)
-    # Loads across the straight beam add no stiffness, but bend it.
-    bend = np.linalg.norm(np.linalg.solve(c.stiffness, np.einsum("li,lin->n", values, c.loads.constant[:, :, 6:])))
-    return float(max(size, bend / structure.length))
+    lost = first_loss_along(path, subject, limit, "load factor", "times the loads", progress)
+    return with_frequencies(judged(lost, path, subject, progress), path, subject.system, progress)

@@ -7,25 +7,19 @@ from typing import Any, overload
 
 import numpy as np
 
-from gbeam.analysis.accuracy.beam_theory import largest
-from gbeam.analysis.accuracy.correction import PLACE, Reading
-from gbeam.analysis.accuracy.estimate import BEAM, LIMIT, cause_and_cure, not_known, of_bodies, percent, unjudged
-from gbeam.analysis.accuracy.response_errors import BENT, Solution, errors_of
-from gbeam.analysis.steady.equilibrium import keeps, solve_equilibrium
-from gbeam.analysis.steady.operating_point import OperatingPoint, on_base, operating_point
-from gbeam.analysis.system.linear import system_rest
-from gbeam.analysis.system.steady import Drive, settled
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, percent, unjudged
+from gbeam.analysis.steady.subject import Subject, subject_of
+from gbeam.analysis.system.accuracy import system_errors
+from gbeam.analysis.system.linear import stepless, system_rest
+from gbeam.analysis.system.richer import left_unjudged, theories_of, with_beams
+from gbeam.analysis.system.steady import Drive, SteadySystem, settled
 from gbeam.arrays.tree import each_leaf
-from gbeam.arrays.types import Floats, Numbers
+from gbeam.arrays.types import Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
-from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.theory import theory_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
@@ -34,56 +28,28 @@ from gbeam.results.errors import Errors
 from gbeam.results.parts import Base
 from gbeam.results.system import SystemRest
 
-LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
+
+def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of an equilibrium of one body, over its displacement, root loads and stress, and warnings."""
+    solution, structure = state.standing(subject.system), subject.structure
+    steps, start = stepless(subject.system), subject.system.undeformed
+    errors, off_axis = system_errors(lambda _: solution, state.standing, steps, start=start, tolerance=LIMIT)
+    if errors.note == left_unjudged(subject.system):
+        errors = replace(errors, note=unjudged(structure))
+    return errors, (*_doubtful(errors), *off_axis, *_sideways(subject, state)) if structure.judged else ()
 
 
-def static_errors(point: OperatingPoint) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of an equilibrium, over the displacement, root loads and stress, and warnings."""
-    structure = point.structure
-    if not structure.judged:
-        return Errors(note=unjudged(structure)), ()
-    loaded = None if structure.load_values is None else np.asarray(structure.load_values)[None]
-    inputs = each_leaf(lambda x: np.asarray(x)[None], point.base), loaded
-    solution, more = Solution(structure, _resting(point.q), inputs), enrichment(structure, point.base)
-    directions = solution.along(more)
-    exact = more.model("exact", directions=directions)[0]
-
-    def rested(rich: Structure) -> Reading | None:
-        """Reading of a structure with more shapes at its own equilibrium; None where there is none."""
-        rich = replace(rich, load_values=structure.load_values)
-        try:
-            q = np.asarray(solve_equilibrium(rich, point.base).q)
-        except (ComputationError, np.linalg.LinAlgError):
-            return None
-        return replace(solution, structure=rich, of=_resting(q)).read()
-
-    computed, truth = solution.read(), rested(exact)
-    if truth is None:
-        return Errors(note=LOST), (LOST,)
-    same = truth if structure.kind == exact.kind else rested(more.model(structure.kind, directions=directions)[0])
-    unknown = {quantity: np.nan * values for quantity, values in truth.items()}
-    sizes = {quantity: max(largest(values), largest(truth[quantity])) for quantity, values in computed.items()}
-    beyond = solution.theory(straight=sizes[PLACE] <= BENT * structure.length)
-    same, steps = same or unknown, dict.fromkeys(computed, 0.0)
-    mesh = None if structure.coarser is None else (rested(structure.coarser) or unknown, computed)
-    causes, bodies = beyond.causes.get(BEAM, {}), beyond.bodies.get(BEAM, np.zeros(0))
-    errors = errors_of(structure, (computed, same), (same, truth), beyond, steps, sizes, mesh)
-    return errors, (
-        *_doubtful(errors),
-        *of_bodies(structure, "", causes, bodies, sizes[PLACE], LIMIT),
-        *_sideways(point),
-    )
-
-
-def _sideways(point: OperatingPoint) -> tuple[str, ...]:
+def _sideways(subject: Subject, state: SteadySystem) -> tuple[str, ...]:
     """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
-    drive = point.base, point.loads
-    if (
-        point.structure.source is None
-        or not keeps(point.about, *drive)
-        or keeps(theory_of(point.structure).thick.coefficients, *drive)
-    ):
+    theories = theories_of(subject.system)
+    if not theories or not state.stable:
         return ()
+    thick = with_beams(subject.system, {name: theory.thick for name, theory in theories.items()})
+    try:
+        if state.richer(thick).stable:
+            return ()
+    except (ComputationError, np.linalg.LinAlgError):
+        pass
     return (f"a beam that twists would not stay there, but buckle sideways: {TORSION}",)
 
 
@@ -95,11 +61,6 @@ def _doubtful(errors: Errors) -> tuple[str, ...]:
     cause, cure = cause_and_cure(worst, errors.causes)
     sizes = ", ".join(f"the {name} by {percent(error.total)}" for name, error in above.items())
     return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
-
-
-def _resting(q: Floats) -> Trajectory:
-    """Trajectory of one time, at rest at coordinates (n,)."""
-    return Trajectory(np.zeros(1), q[None], *np.zeros((2, 1, len(q))))
 
 
 @overload
@@ -173,57 +134,48 @@ def static(
     -2.297 mm
     """
     tell(progress, "equilibrium", 0.0)
-    if isinstance(structure, System):
-        if acceleration is not None:
-            raise InputError("acceleration", "is given of a system", "give it gravity, which is its opposite")
-        state = settled(structure, Drive(motion, time))
-        tell(progress, "loads, and errors by richer models", 0.5)
-        return system_rest(state, name)
-    if acceleration is None:
-        point = operating_point(structure, motion, time)
-    elif motion is not None:
-        raise InputError("acceleration", "is given beside a motion", "give one of them")
-    else:
-        a = np.asarray(acceleration, dtype=float)
-        if a.shape != (3,) or not np.isfinite(a).all():
-            raise InputError(
-                "acceleration", f"is {acceleration!r}", "give three finite components, x, y and z, in m/s²"
-            )
-        point = on_base(structure.at_time(time), Base(a, np.zeros(3), np.zeros(3)))
+    subject = subject_of(structure, motion)
+    state = settled(
+        subject.system, subject.drive(time) if acceleration is None else _pushed(motion, time, acceleration)
+    )
     tell(progress, "loads, and errors by richer models", 0.5)
-    return deflection_at(structure, point, motion, time, name)
+    return deflection(subject, state, name) if subject.body else system_rest(state, name)
 
 
-def deflection_at(
-    structure: Structure, point: OperatingPoint, motion: Motion | None, time: float, name: str = ""
-) -> Deflection:
-    """Describe the deflection at an operating point, with loads, errors and warnings."""
-    base, q = each_leaf(np.asarray, (point.base, point.q))
-    over_time = each_leaf(lambda x: x[None], base)
-    still = np.zeros((1, structure.size))
-    displacement = np.asarray(structure.displacement(q))
-    loads = section_forces(structure, over_time, q[None], still, still, np.array([time]), motion=motion)
-    errors, doubts = static_errors(point)
-    warnings = input_warnings(structure, motion, name=name, span=(time, time), base=base) + doubts
-    warnings += tuple(bent_far(structure, bend(structure, q)))
-    names = {"motion": name, "model": structure.kind, "environment": "" if motion is None else motion.kind}
-    recovery, times = structure.recovery, np.array([time])
-    stable: bool | None = keeps(point.about, point.base, point.loads)
-    undecided = {} if stable else not_known(point.bend, "its stiffness is not positive definite")
-    parts: dict[str, Any] = {} if recovery is None else recovery.parts(times, over_time, q[None], **names)
+def _pushed(motion: Motion | None, time: float, acceleration: Numbers) -> Drive:
+    """Drives at a time, s, on ground that is accelerated, m/s²; InputError beside a motion."""
+    if motion is not None:
+        raise InputError("acceleration", "is given beside a motion", "give one of them")
+    a = np.asarray(acceleration, dtype=float)
+    if a.shape != (3,) or not np.isfinite(a).all():
+        raise InputError("acceleration", f"is {acceleration!r}", "give three finite components, x, y and z, in m/s²")
+    return Drive(None, time, base=Base(a, np.zeros(3), np.zeros(3)))
+
+
+def deflection(subject: Subject, state: SteadySystem, name: str = "") -> Deflection:
+    """Describe the deflection of one body in a steady state, with loads, errors and warnings."""
+    structure, base, time, motion = subject.structure, subject.base(state), state.drive.time, subject.motion
+    q = state.q[subject.columns(state)]
+    over_time, still, times = each_leaf(lambda x: x[None], base), np.zeros((1, structure.size)), np.array([time])
+    errors, doubts = deflection_errors(subject, state)
+    undecided = {} if state.stable else not_known(state.bend, "its stiffness is not positive definite")
+    names: dict[str, Any] = {"motion": name, "model": structure.kind}
+    environment, recovery = "" if motion is None else motion.kind, structure.recovery
+    parts: dict[str, Any] = (
+        {} if recovery is None else recovery.parts(times, over_time, q[None], environment=environment, **names)
+    )
     return Deflection(
-        motion=name,
-        model=structure.kind,
+        **names,
         time=time,
         base=base,
         stations=np.asarray(structure.stations),
-        displacement=displacement,
+        displacement=np.asarray(structure.displacement(q)),
         q=q,
         strain_energy=float(structure.strain_energy(q)),
-        stable=None if undecided else stable,
-        warnings=warnings,
+        stable=None if undecided else state.stable,
+        warnings=subject.warnings(state, name) + doubts,
         notes=notes_on({name: motion}),
-        loads=loads,
+        loads=section_forces(structure, over_time, q[None], still, still, times, motion=motion),
         errors=errors,
         **{key: parts[key] for key in ("solid", "surface", "specimen") if key in parts},
         **undecided,

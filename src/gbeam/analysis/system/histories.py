@@ -132,9 +132,8 @@ def meshes_of(
     """Stress and surfaces of the bodies made of meshes, by name, at coordinates (t, n) at times (t,) s."""
     stresses, surfaces = dict[str, SolidStress](), dict[str, Surface]()
     for body, solid in system.flexible.items():
-        if solid.recovery is not None:
-            first = system.coordinates.index(f"{body}.q1")
+        if solid.recovery is not None and solid.size:
             names = {"motion": motion, "model": solid.kind, "environment": environment}
-            parts = solid.recovery.parts(time, None, q[:, first : first + solid.size], **names)
+            parts = solid.recovery.parts(time, None, q[:, deforming(system.coordinates, body)], **names)
             stresses[body], surfaces[body] = parts["solid"], parts["surface"]
     return stresses, surfaces

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, Quantity
 from gbeam.analysis.accuracy.estimate import LIMIT, not_known
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.gauges import Strained, read_signals
 from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, open_loops, settled
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Complex, Floats
@@ -37,15 +37,18 @@ from gbeam.results.state_space import Signal, StateSpace
 from gbeam.results.system import BeamShape, SystemModes, SystemRest
 
 
+def stepless(system: System) -> dict[Quantity, float]:
+    """Errors of the time steps of a state of rest, which takes none: zero of every quantity."""
+    kinds = (DEFLECTION, "force", "moment", "stress", "sheared")
+    return {PLACE: 0.0} | {(name, kind): 0.0 for name in system.flexible for kind in kinds}
+
+
 def system_rest(state: SteadySystem, name: str) -> SystemRest:
     """Describe the equilibrium of a system: places, efforts and loads, with errors and warnings."""
-    system, point, time, motion = state.system, state.point, state.drive.time, state.drive.motion
-
-    def inputs(of: System, _: Any = None) -> Any:
-        return of.inputs(np.array([time]), motion)
-
+    system, point, time, solution = state.system, state.point, state.drive.time, state.standing(state.system)
+    inputs = solution.inputs(system, None)
     (begun, _), (resting, beams) = (
-        histories(system, y[None], point.yd[None], point.ydd[None], inputs(system), inertial=False)
+        histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
         for y in (system.start[0][system.tree.free], point.y)
     )
     values = {key: history[0] for key, history in resting.items()}
@@ -58,9 +61,6 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
     except ComputationError as error:
         unstable = (f"whether it would stay there is not known, {error}",)
 
-    def standing(of: System) -> Solution:
-        return Solution(of, (state if of is system else state.richer(of)).point.standing(time), inputs)
-
     # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
     moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
     links = zip(point.tree.links, moving.q, moving.roots, strict=True)
@@ -69,7 +69,8 @@ def system_rest(state: SteadySystem, name: str) -> SystemRest:
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
     start, sticking = begun["place"][0], point.sticking(system, resting=True)
     solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
-    errors, off_axis = system_errors(lambda _: standing(system), standing, {}, start=start, tolerance=LIMIT)
+    everywhere = stepless(system)
+    errors, off_axis = system_errors(lambda _: solution, state.standing, everywhere, start=start, tolerance=LIMIT)
     return SystemRest(
         name=name,
         time=time,
@@ -149,11 +150,14 @@ def largest_component(shape: Complex) -> Complex:
     return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
 
-def instabilities(point: Steady, moving: Vibrations) -> tuple[Instability, ...]:
-    """Growing motions about a steady state."""
+def instabilities(
+    point: Steady, moving: Vibrations, directions: Callable[..., tuple[str, ...]] | None = None
+) -> tuple[Instability, ...]:
+    """Growing motions about a steady state, by its words for directions, or others."""
+    say = partial(directions, point) if directions else point.directions
     flutter = np.flatnonzero(moving.flutter)
     diverging, fluttering = (
-        zip(values, point.directions(modes) if modes.size else (), strict=True)
+        zip(values, say(modes) if modes.size else (), strict=True)
         for values, modes in ((moving.diverging, moving.divergence), (moving.value[flutter], moving.modes[:, flutter]))
     )
     return (

@@ -16,7 +16,9 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import Trajectory, accelerations, slopes, solved
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.linear import frozen_equations, is_linear
 from gbeam.mechanics.tree.signals import local_names, unit_of_effort
+from gbeam.mechanics.tree.steps import Ball
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.balance import (
@@ -31,6 +33,7 @@ from gbeam.numerics.balance import (
     turning_on,
     unheld,
 )
+from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
 
 ITERATIONS, RELAXING = 50, 100
@@ -39,6 +42,9 @@ FEW = 8  # corrections of several states at once
 NEAR = 0.1  # m, rad or strain: a state so near to where its search begins is that which is meant
 SHORTEST = 1 / 64  # share of what is out of balance that is taken away at once
 NONE = 1e-6  # m/s² or rad/s²: a smaller acceleration is rounding
+LOCATED, LEAST = 1e-4, 1e-6  # strides, shares of the drives: that locates a loss of stiffness; that is the least
+NEAREST = 1e-6  # of the coordinates: a stride that ends so near to its prediction has not left the path
+NOISE = 1e-8  # of the coordinates: smaller corrections may not shrink, by rounding
 CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller, they have converged
 
 
@@ -60,6 +66,8 @@ class Point:
     @property
     def local(self) -> Point:
         """The point with as many coordinates as degrees of freedom."""
+        if not any(isinstance(step, Ball) for link in self.tree.links for step in link.steps):
+            return self
         tree, prescribed = self.tree, self.inputs.prescribed
         states = [self.y, self.yd, self.ydd]
         if prescribed is not None:
@@ -80,6 +88,9 @@ class Point:
         """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps, without
         friction: at rest its smooth law is a damper that no joint has.
         """
+        if is_linear(self.tree):
+            m, c, k, force = frozen_equations(self.tree, self.inputs)
+            return m @ self.ydd + c @ self.yd + k @ self.y - force, k, c, m
         k, c, m = slopes(self.tree.frictionless, self.y[None], self.yd[None], self.ydd[None], self.driven())
         return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
 
@@ -279,10 +290,11 @@ def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> Flags:
 
 
 def _newton(
-    point: Point, left_over: Floats, *, relaxing: bool = False
+    point: Point, left_over: Floats, *, relaxing: bool = False, shrinking: bool = False
 ) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
     """Solve residual = `left_over` (n,) by Newton's method: the point, K, C, M, last correction, True if converged. If
-    `relaxing` each correction goes down the forces, as the tree itself would, and so ends where the stiffness holds.
+    `relaxing` each correction goes down the forces, as the tree itself would, and so ends where the stiffness holds. If
+    `shrinking`, corrections that do not shrink, which may lead far away, are a failure.
     """
     before, tree, accelerated = 0.0, point.tree, point.tree.sliding
     if accelerated.any() or tree.turning:
@@ -302,6 +314,8 @@ def _newton(
         limit = CLOSE * (1.0 + np.abs(point.y).max(initial=0.0))
         if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= limit:
             return point, (k, c, m), change, True
+        if shrinking and before and size > before / 2 and size > NOISE * np.abs(point.y).max(initial=0.0):
+            break
         before = min(size, 1.0)  # as much as was taken of it
     return point, (k, c, m), change, False
 
@@ -342,6 +356,8 @@ def rested_together(
     points: list[tuple[Point, tuple[Floats, ...]] | None] = [None] * len(y)
     for i in np.flatnonzero(near).tolist():
         slope = k[i], c[i], m[i]
+        if not bends_back(tree, k[i]):
+            continue
         try:
             points[i] = _steady(system, Point(tree, y[i], still[i], ydd[i], drives[i]), slope), slope
         except (InputError, ComputationError, np.linalg.LinAlgError):
@@ -352,11 +368,13 @@ def rested_together(
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
     """State of a tree in relative equilibrium: rates are zero, and only coordinates that nothing holds are accelerated.
 
-    If there are several, the nearest one to coordinates `start`, by default the joints' start with bodies undeformed.
-    Where Newton's method fails from there, the residual at the start is taken away in shares. ComputationError if
-    there is no equilibrium.
+    Linear equations are solved at once. If there are several states, the nearest one to coordinates `start`, by default
+    the joints' start with bodies undeformed. Where Newton's method fails from there, the residual at the start is taken
+    away in shares. ComputationError if there is no equilibrium.
     """
     still = np.zeros(len(tree.free))
+    if is_linear(tree):
+        return _rested_at_once(Point(tree, still, still, still, inputs))
     begun = point = Point(tree, (system.start[0] if start is None else start)[tree.free], still, still, inputs)
     residual, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
     while reached < 1.0:
@@ -372,6 +390,73 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
             problem = f"no place was found in which the system rests: {name} goes on and on; hold what is free"
             raise ComputationError("no equilibrium", problem)
     return _steady(system, point, slope)
+
+
+def _rested_at_once(point: Point) -> Point:
+    """State of rest of linear equations; ComputationError where their stiffness is singular."""
+    left, k, _, _ = point.slopes()
+    try:
+        y: Any = np.linalg.solve(k, -left)
+    except np.linalg.LinAlgError:
+        y = np.nan * left
+    if not np.isfinite(y).all():
+        problem = (
+            f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; {_turns(point)}"
+        )
+        raise ComputationError("not converged", problem)
+    return replace(point, y=y)
+
+
+def _turns(point: Point) -> str:
+    """Say at which rate the ground turns."""
+    return f"the rate is {float(np.linalg.norm(point.inputs.ground.w)):.4g} rad/s"
+
+
+def bends_back(tree: Tree, stiffness: Floats) -> bool:
+    """True if the stiffness K (n, n) holds the bodies that deform, alone."""
+    deforms = [np.full(size, k == len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
+    kept = np.concatenate(deforms)[tree.free]
+    return positive_definite(stiffness[kept][:, kept])
+
+
+def _eased(inputs: Inputs, share: float) -> Inputs:
+    """Inputs of which a share acts: of accelerations and forces, and of rates its root."""
+    ground, root = inputs.ground, np.sqrt(share)
+    slower = replace(ground, a=share * ground.a, w=root * ground.w, alpha=share * ground.alpha)
+    forces = {name: getattr(inputs, name) for name in ("efforts", "wrenches")}
+    acting = {name: None if each is None else share * each for name, each in forces.items()}
+    loads = tuple(None if each is None else share * each for each in inputs.loads)
+    moving = inputs.prescribed
+    moving = None if moving is None else moving * np.array([[1.0], [root], [share]])
+    return replace(inputs, ground=slower, prescribed=moving, loads=loads, **acting)
+
+
+def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
+    """State of rest at the end of a path on which the drives grow from nothing, in strides that are shortened where one
+    fails, or where the bodies' stiffness is lost in a long one that ends far from its prediction; ComputationError with
+    the share that was reached where the path ends.
+    """
+    still, y = np.zeros(len(tree.free)), system.start[0][tree.free]
+    left, k, _, m = Point(tree, y, still, still, _eased(inputs, 0.0)).slopes()
+    course = answered(k, m, left - tree(y, still, still, inputs))  # dy/dshare, along which a stride starts
+    holds, reached, stride = True, 0.0, 1.0
+    while reached < 1.0:
+        share = min(reached + stride, 1.0)
+        ahead = y + (share - reached) * course
+        point = Point(tree, ahead, still, still, _eased(inputs, share))
+        moved, slope, _, converged = _newton(point, still, shrinking=True)
+        held = converged and bends_back(tree, slope[0])
+        near = converged and np.abs(moved.y - ahead).max() < NEAREST * np.abs(moved.y).max()
+        if held or (converged and (not holds or stride < LOCATED or near)):
+            course = (moved.y - y) / (share - reached)
+            y, holds, reached, stride = moved.y, held, share, 2 * stride
+            continue
+        stride /= 4
+        if stride < LEAST:
+            which = "the beam" if len(system.bodies) == 1 else "a body"
+            problem = f"no relative equilibrium beyond {reached:.4g} of the load: {which} buckles or diverges there"
+            raise ComputationError("not converged", f"{problem}; {_turns(point)}")
+    return _steady(system, moved, slope)
 
 
 def relaxed(system: System, tree: Tree, inputs: Inputs, start: Floats) -> Point:

@@ -52,7 +52,7 @@ def left_unjudged(system: System) -> str:
 def coarser(system: System) -> System | None:
     """The system with coarser meshes of its solids, in the same coordinates; None if no solid has one."""
     rough = {
-        name: replace(body.coarser, load_values=body.load_values)
+        name: replace(body.coarser, history=body.history, load_values=body.load_values)
         for name, body in system.flexible.items()
         if body.coarser is not None
     }
@@ -74,7 +74,7 @@ def richer(
         body = judged_bodies(system)[name]
         directions = along.get(name, (True, True, True))
         rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind, directions=directions)
-        beams[name] = replace(rich, load_values=body.load_values)
+        beams[name] = replace(rich, history=body.history, load_values=body.load_values)
     other = replace(system, bodies={**system.bodies, **beams})
     renamed = {
         f"{name}.q{k + 1}": f"{name}.q{new + 1}" for name, index in original.items() for k, new in enumerate(index)
@@ -107,8 +107,8 @@ def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
 def with_beams(system: System, beams: Mapping[str, Structure]) -> System:
     """The system with other structures in place of some of its beams, under the same loads."""
     judged = judged_beams(system)
-    kept = {
-        name: replace(beam, source=judged[name].source, load_values=judged[name].load_values)
-        for name, beam in beams.items()
-    }
+    kept = dict[str, Structure]()
+    for name, beam in beams.items():
+        body = judged[name]
+        kept[name] = replace(beam, source=body.source, history=body.history, load_values=body.load_values)
     return replace(system, bodies={**system.bodies, **kept})

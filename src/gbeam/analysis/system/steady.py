@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -10,15 +10,29 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.system.point import NEAR, NONE, Point, adrift, relaxed, rested, rested_together, started
+from gbeam.analysis.system.point import (
+    NEAR,
+    NONE,
+    Point,
+    adrift,
+    bends_back,
+    followed,
+    relaxed,
+    rested,
+    rested_together,
+    started,
+)
 from gbeam.analysis.system.solution import Solution
+from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.plausibility import elastic_bend
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES, SPIN
+from gbeam.mechanics.tree.linear import is_linear
 from gbeam.mechanics.tree.signals import deforming, local_names, unit_of_effort
 from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import ROOT, System
@@ -30,23 +44,28 @@ from gbeam.numerics.eigen import (
     Linear,
     Steady,
     positive_definite,
+    stability_margin,
     symmetric,
     symmetric_modes,
+    unsymmetric,
 )
 from gbeam.numerics.series import STEP
 from gbeam.numerics.whirl import QUARTERS, Whirl, whirl_of
 from gbeam.results.errors import Accelerated
+from gbeam.results.parts import Base
 
 MASSLESS = "no positive mass"  # an outcome
 SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
 SAME, STILL = 1e-6, 1e-9  # of modes' matrices, and m or rad: what changes with the angle changes by more
+CORRECTIONS, CLOSE = 50, 1e-12  # of joints beside bodies that are held: their number, and m or rad
 TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
 
 
 @dataclass(frozen=True)
 class Drive:
-    """Drives of a system in a steady state: profiles and motion of the ground at a time, forces and loads times a
-    factor; a coordinate, or the hub below where none is named, turns at a rate rad/s and has turned by an angle.
+    """Drives of a system in a steady state: profiles and motion of the ground at a time, or a frozen motion `base` of
+    the ground, beside gravity; forces and loads times a factor; a coordinate, or the hub below where none is named,
+    turns at a rate rad/s that changes by `faster` rad/s², and has turned by an angle.
     """
 
     motion: Motion | None = None
@@ -55,16 +74,19 @@ class Drive:
     rate: float | None = None
     turn: float = 0.0
     factor: float = 1.0
+    base: Base | None = None
+    faster: float = 0.0
 
     def inputs(self, system: System) -> Inputs:
         """Inputs of a system's tree; a coordinate that turns without being prescribed is added as the last of these."""
         hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
-        inputs = system.inputs(np.asarray(self.time), None if hub_turns else self.motion)
+        inputs, base = system.inputs(np.asarray(self.time), None if hub_turns else self.motion), self.base
         if hub_turns:
             base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
-            still = np.zeros(3)
-            ground = Frame(np.eye(3), still, still, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
-            inputs = replace(inputs, ground=ground)
+        if base is not None:
+            ground = inputs.ground
+            a = base.a_WO_B if hub_turns else base.a_WO_B + ground.a
+            inputs = replace(inputs, ground=replace(ground, w=base.w_WB_B, a=a, alpha=base.alpha_WB_B))
         if self.factor != 1.0:
             loads = tuple(None if each is None else self.factor * each for each in inputs.loads)
             wrenches = None if inputs.wrenches is None else self.factor * inputs.wrenches
@@ -75,7 +97,7 @@ class Drive:
             if k not in system.tree.fixed:
                 prescribed = np.append(prescribed, [[system.start[0][k]], [0.0], [0.0]], axis=1)
             column = system.tree.fixed.index(k) if k in system.tree.fixed else -1
-            prescribed[1:, column] = self.rate, 0.0
+            prescribed[1:, column] = self.rate, self.faster
         if self.turn:
             # All prescribed coordinates go on for as long as the fastest one takes to turn so far.
             fastest = np.abs(np.append(prescribed[1], self.rate or 0.0)).max()
@@ -117,7 +139,6 @@ class SteadySystem(Steady):
     known: tuple[Floats, ...] | None = None  # K, C and M, where they have been found
     begins: bool = False  # True of a state of motion, at the start
     stuck: tuple[str, ...] = ()  # sentences on joints that friction holds
-    zero = RIGID
     first = 0
 
     @property
@@ -126,14 +147,59 @@ class SteadySystem(Steady):
         return self.system
 
     @property
+    def zero(self) -> float:  # type: ignore[override]
+        """Share of the largest eigenvalue below which one is of a motion that nothing holds; bodies hold themselves."""
+        size = sum(link.body.size for link in self.point.tree.links)
+        return 0.0 if len(self.point.tree.free) == size else RIGID
+
+    @property
     def solution(self) -> Solution:
         """The state, as a solution of one time, what turns free as in the system."""
         point = _released(self, held=False).point
         return Solution(self.system, point.standing(), point.driven)
 
+    def bent(self, bodies: Mapping[str, Structure]) -> float:
+        """Largest displacement of a station of some of the bodies from its place at rest, over the body's length."""
+        q = {name: self.local.y[deforming(self.names, name)] for name in bodies}
+        moved = (np.abs(body.displacement(q[name])).max() / body.length for name, body in bodies.items())
+        return float(max(moved, default=0.0))
+
+    def standing(self, of: System) -> Solution:
+        """Solution, of one time, of another system in such a state, what turns free as in that system."""
+        drive, state = self.drive, self if of is self.system else self.richer(of)
+        if drive.coordinate and self.system.coordinates.index(drive.coordinate) not in self.system.tree.fixed:
+            drive = replace(drive, coordinate="", rate=None)
+        point = _released(state, held=False).point
+
+        def inputs(system: System, _: Any) -> Inputs:
+            return each_leaf(lambda leaf: leaf[None], drive.inputs(system))
+
+        return Solution(of, point.standing(drive.time), inputs)
+
     @property
     def bend(self) -> float:
-        return max(self.solution.bends.values(), default=0.0)
+        solution = self.solution
+        bases = solution.bases(self.system.flexible)
+        elastic = (elastic_bend(body, bases[name]) for name, body in self.system.flexible.items() if body.size)
+        return max((*solution.bends.values(), *elastic), default=0.0)
+
+    @cached_property
+    def stable(self) -> bool:
+        """True if it would stay there: see :func:`stability_margin`. Angular accelerations bring a skew stiffness, half
+        the rate of the gyroscopic coupling, which feeds no energy and is left out.
+        """
+        m, c, k, _ = self.linear
+        if not len(m):
+            return True  # nothing moves
+        if unsymmetric(k):
+            inputs = self.local.inputs
+            ground, prescribed = inputs.ground, inputs.prescribed
+            even = replace(ground, alpha=0 * ground.alpha)
+            prescribed = None if prescribed is None else prescribed * [[1.0], [1.0], [0.0]]
+            without = replace(self.local, inputs=replace(inputs, ground=even, prescribed=prescribed)).slopes()[1]
+            brought = self.local.slopes()[1] - without
+            k = k - (brought - brought.T) / 2
+        return stability_margin(m, c, k, self.zero**2) > 0
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -455,15 +521,26 @@ def beginning(system: System, drive: Drive) -> SteadySystem:
 
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
     """The equilibrium of :func:`steady`, what turns held."""
-    parts, state, lost = (system, _held(system, drive), drive.inputs(system), start), None, None
+    tree, inputs, state, lost = _held(system, drive), drive.inputs(system), None, None
     try:
-        state = SteadySystem(system, drive, rested(*parts))
-        if state.moved(start) <= NEAR or not state.grows:
+        state = SteadySystem(system, drive, rested(system, tree, inputs, start))
+        if is_linear(tree):
             return state
     except ComputationError as error:
         lost = error
+    only_bodies = len(tree.free) == sum(link.body.size for link in tree.links)
+    if not is_linear(tree) and (only_bodies if state is None else not bends_back(tree, state.point.slopes()[1])):
+        try:
+            state = SteadySystem(system, drive, followed(system, tree, inputs))
+        except ComputationError as error:
+            if only_bodies:
+                raise error from None
+    if state is not None and (state.moved(start) <= NEAR or not state.grows):
+        return state
+    if only_bodies:
+        raise lost or ComputationError("no equilibrium", "")
     with suppress(ComputationError, np.linalg.LinAlgError):
-        other = SteadySystem(system, drive, relaxed(*parts))
+        other = SteadySystem(system, drive, relaxed(system, tree, inputs, start))
         if state is None or not other.grows:
             return other
     if state is None:
@@ -493,6 +570,46 @@ def _released(state: SteadySystem, *, held: bool) -> SteadySystem:
     inputs = replace(inputs, prescribed=others if others.size else None)
     y, yd, ydd = (each[tree.free] for each in whole)
     return SteadySystem(state.system, state.drive, Point(tree, y, yd, ydd, inputs))
+
+
+def undeformed(system: System) -> SteadySystem:
+    """System at its start, bodies undeformed and all at rest, as nothing need hold it, on ground at rest."""
+    y, still = system.start[0][system.tree.free], np.zeros(len(system.tree.free))
+    return SteadySystem(system, Drive(), Point(system.tree, y, still, still, system.inputs(np.zeros(()))))
+
+
+def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) -> SteadySystem:
+    """System whose bodies are held at coordinates and rates (n,), by default those of :func:`steady`, and accelerate as
+    their equations say; joints are where the drive and their springs hold them.
+    """
+    if q is None and qd is None:
+        return steady(system, drive)
+    if q is None:
+        state = steady(system, drive)
+    else:
+        tree, inputs = _held(system, drive), drive.inputs(system)
+        still = np.zeros(len(tree.free))
+        point = Point(tree, system.start[0][tree.free], still, still, inputs)
+        state = _released(SteadySystem(system, drive, point), held=False)
+    point, names = state.point, [system.coordinates[k] for k in state.point.tree.free]
+    bent = np.array([".q" in name for name in names])
+    y, yd = np.array(point.y), np.array(point.yd)
+    y[bent] = y[bent] if q is None else q
+    if q is not None and not drive.coordinate and not bent.all():
+        joints = Point(point.tree, y, yd, point.ydd, point.inputs)
+        for _ in range(CORRECTIONS):
+            left, k, *_ = joints.slopes()
+            change = np.zeros_like(left)
+            change[~bent] = np.linalg.lstsq(k[~bent][:, ~bent], -left[~bent], rcond=None)[0]
+            joints = replace(joints, y=joints.y + change)
+            if np.abs(change).max() <= CLOSE:
+                break
+        y = joints.y
+    yd[bent] = yd[bent] if qd is None else qd
+    left, _, _, m = Point(point.tree, y, yd, np.where(bent, 0.0, point.ydd), point.inputs).slopes()
+    ydd = np.array(point.ydd)
+    ydd[bent] = np.linalg.solve(m[bent][:, bent], -left[bent])
+    return replace(state, point=replace(point, y=y, yd=yd, ydd=ydd))
 
 
 def open_loops(system: System) -> tuple[str, ...]:
@@ -550,6 +667,8 @@ class Equilibria:
             return
         starts = np.array([_continued(known, value) for value in new])
         tree = _held(system, next(iter(new.values())))
+        if is_linear(tree):
+            return  # which takes no search
         points = rested_together(system, tree, [drive.inputs(system) for drive in new.values()], starts)
         for (value, drive), solved in zip(new.items(), points, strict=True):
             if solved is not None:
@@ -575,58 +694,61 @@ def _continued(states: Mapping[float, SteadySystem], value: float) -> Floats | N
 
 
 @dataclass(frozen=True)
-class Turning:
-    """Steady states of a system, or of richer ones, by the rate at which its drive's coordinate turns, rad/s."""
+class Path:
+    """Steady states of a system, or of richer ones, as a value of the drives is `varied`; what turns may be `held`."""
 
     drive: Drive
+    varied: Callable[[Drive, float], Drive]
     held: bool = False
     equilibria: Equilibria = field(default_factory=Equilibria, repr=False, compare=False)
 
-    def __call__(self, of: System, rate: float) -> SteadySystem:
-        return self.equilibria.steady(of, rate, replace(self.drive, rate=rate), held=self.held)
+    def __call__(self, of: System, value: float) -> SteadySystem:
+        return self.equilibria.steady(of, value, self.varied(self.drive, value), held=self.held)
 
-    def ahead(self, of: System, rates: Iterable[float]) -> None:
-        """Solve for the states at several rates at once."""
-        self.equilibria.ahead(of, {rate: replace(self.drive, rate=rate) for rate in rates})
-
-    def refuse_changing(self, system: System, rate: float) -> None:
-        """Refuse a system whose equations change as it turns: it has no frequencies."""
-        if self(system, rate).changing:
-            joint = self.drive.coordinate.rpartition(".")[0]
-            fix = (
-                "let gravity be along its axis, and all that does not turn with it, or all that does, be alike about "
-                "that axis; `gbeam run` answers for the others"
-            )
-            where = f"joints.{joint}" if joint else "motion"
-            raise InputError(where, "turns a system whose equations change with the angle: it has no frequencies", fix)
+    def ahead(self, of: System, values: Iterable[float]) -> None:
+        """Solve for the states at several values at once."""
+        self.equilibria.ahead(of, {value: self.varied(self.drive, value) for value in values})
 
 
-@dataclass(frozen=True)
-class Loaded:
-    """Steady states of a system, or of richer ones, by a factor on its loads and forces."""
+def turning_at(drive: Drive, value: float) -> Drive:
+    """Return drives whose coordinate turns at a rate, rad/s."""
+    return replace(drive, rate=value)
 
-    drive: Drive
-    equilibria: Equilibria = field(default_factory=Equilibria, repr=False, compare=False)
 
-    def __call__(self, of: System, factor: float) -> SteadySystem:
-        return self.equilibria.steady(of, factor, replace(self.drive, factor=factor))
+def loaded(drive: Drive, value: float) -> Drive:
+    """Return drives with loads and forces times a factor."""
+    return replace(drive, factor=value)
 
-    def ahead(self, of: System, factors: Iterable[float]) -> None:
-        """Solve for the states at several factors at once."""
-        self.equilibria.ahead(of, {factor: replace(self.drive, factor=factor) for factor in factors})
 
-    def share(self, system: System) -> float:
-        """The larger of two effects of loads and forces, to first order: stiffness over the system's, displacement over
-        its extent.
-        """
-        inputs = self.drive.inputs(system)
-        if not any(each is not None and np.any(each) for each in (*inputs.loads, inputs.wrenches)):
-            return 0.0  # which the differences below are not, by rounding
-        rest, pushed = self(system, 0.0), self(system, SLIGHT)
-        square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
-        elastic = square > RIGID**2 * square[-1]
-        shapes = modes[:, elastic] / np.sqrt(square[elastic])  # of unit strain energy
-        added = shapes.T @ (pushed.linear.stiffness - rest.linear.stiffness) @ shapes / SLIGHT
-        places, moved = (np.stack([frame.p for frame in each.frames]) for each in (rest, pushed))
-        size = max(np.abs(places).max(), 1e-300)
-        return float(max(np.linalg.norm(added, 2), np.abs(moved - places).max() / SLIGHT / size))
+def pushed(drive: Drive, value: float) -> Drive:
+    """Return drives whose ground is accelerated along its x axis, m/s²."""
+    return replace(drive, base=Base(np.array([value, 0.0, 0.0]), np.zeros(3), np.zeros(3)))
+
+
+def refuse_changing(path: Path, system: System, rate: float) -> None:
+    """Refuse a system whose equations change as it turns at a rate, rad/s: it has no frequencies."""
+    if path(system, rate).changing:
+        joint = path.drive.coordinate.rpartition(".")[0]
+        fix = (
+            "let gravity be along its axis, and all that does not turn with it, or all that does, be alike about "
+            "that axis; `gbeam run` answers for the others"
+        )
+        where = f"joints.{joint}" if joint else "motion"
+        raise InputError(where, "turns a system whose equations change with the angle: it has no frequencies", fix)
+
+
+def share_of_loads(path: Path, system: System) -> float:
+    """The larger of two effects of loads and forces, to first order: stiffness over the system's, displacement over
+    its extent. The path is that of :func:`loaded` drives.
+    """
+    inputs = path.drive.inputs(system)
+    if not any(each is not None and np.any(each) for each in (*inputs.loads, inputs.wrenches)):
+        return 0.0  # which the differences below are not, by rounding
+    rest, slight = path(system, 0.0), path(system, SLIGHT)
+    square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
+    elastic = square > RIGID**2 * square[-1]
+    shapes = modes[:, elastic] / np.sqrt(square[elastic])  # of unit strain energy
+    added = shapes.T @ (slight.linear.stiffness - rest.linear.stiffness) @ shapes / SLIGHT
+    places, moved = (np.stack([frame.p for frame in each.frames]) for each in (rest, slight))
+    size = max(np.abs(places).max(), 1e-300)
+    return float(max(np.linalg.norm(added, 2), np.abs(moved - places).max() / SLIGHT / size))

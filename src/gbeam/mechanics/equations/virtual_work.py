@@ -16,6 +16,7 @@ from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Places, Polynomials
 from gbeam.mechanics.fields.vectors import cross, joined, split
+from gbeam.motion.profiles.piecewise import constant
 
 
 @record
@@ -118,6 +119,10 @@ class LoadHistory:
         parts = [[p(t) for p in pair] for pair in self.profiles]
         xp = namespace(*(part for pair in parts for part in pair))
         return xp.stack([xp.concatenate(pair, axis=-1) for pair in parts], axis=-2)
+
+    def held(self, time: float) -> LoadHistory:
+        """Return constant loads, those of a time, s."""
+        return LoadHistory(tuple((constant(force(time)), constant(moment(time))) for force, moment in self.profiles))
 
     def corners(self, step: float) -> np.ndarray:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""

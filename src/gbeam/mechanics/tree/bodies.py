@@ -240,11 +240,13 @@ class LinearBody:
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         c = self.coefficients
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
-        Sdd = turned(Si, qdd) + turned(_times(c.k_a, qd), qd)
-        hd = turned(hi, qdd) + turned(_times(c.k_al, qd), qd)
-        force = c.rigid[0] * root.a + cross(root.alpha, S) + cross(root.w, cross(root.w, S) + 2 * Sd) + Sdd
+        felt = qd if self.hub_force else 0 * qd  # by the root
+        Sdd = turned(Si, qdd) + turned(_times(c.k_a, felt), qd)
+        hd = turned(hi, qdd) + turned(_times(c.k_al, felt), qd)
+        force = c.rigid[0] * root.a + cross(root.alpha, S) + Sdd
+        force = force + cross(root.w, cross(root.w, S) + 2 * turned(Si, felt))
         swelling = (root.w[..., None, None, :] @ Ji)[..., 0, :]  # ∂(J ω)/∂q
-        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, qd) + hd
+        moment = cross(S, root.a) + turned(J, root.alpha) + turned(swelling, felt) + hd
         moment = moment + cross(root.w, turned(J, root.w) + h)
         along = qdd @ c.mass + qd @ c.damping + c.elastic(q)
         along = along + turned_back(Si, root.a) + turned_back(hi, root.alpha)

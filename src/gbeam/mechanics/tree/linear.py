@@ -46,7 +46,7 @@ def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
     """Equations of a tree that :func:`is_linear`, by the coefficients of its bodies and the motions of their roots;
     `drive` returns the :class:`Inputs` of the tree at times (t,).
     """
-    of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody)]
+    of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size]
     parts = [c.terms for c in of_bodies]
     terms = LinearTerms(*(_blocks([part.each[k] for part in parts]) for k in range(3)))
     mass, damping, stiffness = (_diagonal([getattr(c, name) for c in of_bodies]) for name in _MATRICES)
@@ -72,6 +72,16 @@ def _roots(tree: Tree, drive: Drive, t: Array) -> Roots:
     state = tree.motion(still, still, still, replace(inputs, ground=ground))
     bodies = [k for k, link in enumerate(tree.links) if link.body.size]
     return tuple((state.moved(k)[1], inputs.loads[k]) for k in bodies)
+
+
+def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, Array]:
+    """M, C, K (n, n) and F (n,) of a tree that :func:`is_linear` under inputs of one time."""
+    of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size]
+    roots = _roots(tree, lambda _: inputs, np.zeros(()))
+    parts = [c.at(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(of_bodies, roots, strict=True)]
+    damping, stiffness, force = zip(*parts, strict=True)
+    mass = _diagonal([c.mass for c in of_bodies])
+    return mass, _diagonal([*damping]), _diagonal([*stiffness]), np.concatenate(force)
 
 
 def _features(c: Coefficients, count: int, root: Frame, loads: Array | None) -> Array:

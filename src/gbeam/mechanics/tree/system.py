@@ -436,7 +436,8 @@ class System(Value):
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
                 free.add(body)
-            hinged = parent == 0 and self.joints[self._holding(self.order[0])].kind == "revolute"
+            first = self.joints[self._holding(self.order[0])]
+            hinged = parent == 0 and joint.kind == "fixed" and first.kind == "revolute"
             terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free, hinged=hinged)
             links.append(Link(joint.steps, joint.holder, terms, parent, on, joint.loose))
         forces = []
@@ -600,7 +601,9 @@ def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hing
 
 
 def terms_of(body: Structure, *, free: bool = False) -> Body:
-    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid."""
+    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid, and
+    takes from those of SFOAM what its printed equations lack.
+    """
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
     if isinstance(body.field, Expanded):
@@ -616,5 +619,5 @@ def terms_of(body: Structure, *, free: bool = False) -> Body:
         points = PolynomialPoints(places.r0, places.first, second, turn, none)
     if isinstance(equations, Coefficients):
         mean = carried(equations) if free and body.field is None else None
-        return LinearBody(equations, points, mean, body.hub_force)
+        return LinearBody(equations, points, mean, body.hub_force or not free)
     return FieldBody(equations, points)

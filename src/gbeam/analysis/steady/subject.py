@@ -1,0 +1,161 @@
+"""Subjects of questions about steady states: systems, and structures alone in a motion as systems of one body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.accuracy.estimate import BEAM
+from gbeam.analysis.steady.hinged import turned_by_effort
+from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops
+from gbeam.arrays.types import Complex, Floats
+from gbeam.errors import InputError
+from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.one_body import HINGE, on_motion
+from gbeam.mechanics.tree.signals import deforming, local_names
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.eigen import Steady
+from gbeam.results.modal import outermost
+from gbeam.results.parts import Base
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A system, and the motion of its ground, that a question is about; of one body alone its name, and the motion in
+    which it was given.
+    """
+
+    system: System
+    ground: Motion | None
+    body: str
+    motion: Motion | None
+
+    @property
+    def structure(self) -> Structure:
+        """The body that is alone."""
+        return self.system.flexible[self.body]
+
+    @property
+    def kind(self) -> str:
+        """Kind of the body's model; "system" of a system."""
+        return self.structure.kind if self.body else self.system.kind
+
+    @property
+    def noun(self) -> str:
+        """Word for it."""
+        return "beam" if self.body else "system"
+
+    @property
+    def rate(self) -> str:
+        """Word for the rate at which it turns."""
+        return "hub rate" if self.body else "rate"
+
+    def drive(self, time: float) -> Drive:
+        """Drives at a time, s. On a hub that turns freely without a spring, the rate is that of the angular momentum of
+        torque and damper since time zero.
+        """
+        drive = Drive(self.ground, time)
+        if not self.body or self.motion is None or not self.motion.free:
+            return drive
+        hub: Any = self.motion
+        if float(hub.stiffness) > 0:
+            return drive
+        if time > 0 and (self.structure.history is not None or hub.mount.gravity is not None):
+            raise InputError(
+                "time",
+                f"is {time:g} s, when gravity or loads have moved a free hub",
+                "give time 0 or a rate, or ask `gbeam run` how it moves",
+            )
+        return turned_by_effort(self.system, HINGE, time)
+
+    def held(self, time: float) -> Drive:
+        """Drives at a time, s, that hold a free hub at rest, at angle zero."""
+        free = self.body and self.motion is not None and self.motion.free
+        return Drive(self.ground, time, f"{HINGE}.angle", rate=0.0) if free else Drive(self.ground, time)
+
+    def require_coordinates(self) -> None:
+        """Raise InputError where one body is rigid, and an answer is about what deforms."""
+        if self.body:
+            self.structure.require_coordinates()
+
+    def columns(self, state: Steady) -> list[int]:
+        """Indices of the coordinates, of a steady state, that deform the body that is alone; of a system of all."""
+        return deforming(state.names, self.body) if self.body else [*range(len(state.names))]
+
+    def directions(self, state: Any, modes: Complex | Floats) -> tuple[str, ...]:
+        """Words for what each mode (n, k) moves most: a body and an axis of its root or, of one body alone, the axis,
+        or twist where the sections' edges move more.
+        """
+        if not self.body:
+            return state.directions(modes)
+        structure, columns = state.system.flexible[self.body], self.columns(state)
+        q, coordinates = state.q[columns], modes[columns]
+        particles, stations = structure.particles.slopes(q), structure.station_slopes(q)
+        moved = np.abs(np.concatenate([particles, stations]) @ coordinates).max(axis=0)
+        ways = ["xyz"[i] for i in moved.argmax(axis=0)]
+        twist = structure.station_twist(q)
+        if twist is not None:
+            edges, moved = (np.abs(slope @ coordinates) for slope in (extent(structure)[:, None] * twist, stations))
+            twisted = edges.max(axis=0) > moved.max(axis=(0, 1))
+            ways = ["twist" if flag else way for way, flag in zip(ways, twisted, strict=True)]
+        return tuple(ways)
+
+    def base(self, state: SteadySystem) -> Base:
+        """Motion of the root of the body that is alone, (3,)."""
+        root = state.local.tree.motion(state.local.y, state.local.yd, state.local.ydd, state.local.inputs).roots[-1]
+        return Base(root.a, root.w, root.alpha)
+
+    def doubts(self, name: str = "", base: Base | None = None) -> tuple[str, ...]:
+        """Doubts about one body and its motion, called `name`, or a motion of its `base`; none of a system."""
+        return input_warnings(self.structure, self.motion, name=name, base=base) if self.body else ()
+
+    def warnings(self, state: SteadySystem, name: str) -> tuple[str, ...]:
+        """Doubts about the models of the bodies in a state, and what it leaves out; `name` is the motion's."""
+        if not self.body:
+            return state.warnings + open_loops(self.system) + state.point.sticking(self.system)
+        structure, time = self.structure, state.drive.time
+        doubts = input_warnings(structure, self.motion, name=name, span=(time, time), base=self.base(state))
+        return doubts + tuple(bent_far(structure, bend(structure, state.q[self.columns(state)])))
+
+    @property
+    def unstiffened(self) -> bool:
+        """True if the stress of loads is left out of the stiffness of one body."""
+        return bool(self.body) and self.structure.unstiffened
+
+    @property
+    def resolved(self) -> int:
+        """Number of the lowest modes that are of the bodies, and not of static shapes among their coordinates."""
+        shapes = sum(body.size - body.resolved for body in self.system.flexible.values())
+        return len(local_names(self.system.coordinates)) - shapes
+
+
+def subject_of(given: Structure | System, motion: Motion | None) -> Subject:
+    """Subject of a question about a system whose ground has a motion, or about a structure alone in it."""
+    if isinstance(given, System):
+        return Subject(given, motion, "", motion)
+    system, ground = on_motion(given, motion)
+    return Subject(system, ground, BEAM, motion)
+
+
+def extent(structure: Structure) -> Floats:
+    """Distance of the outermost fibres from the axis at the stations, m."""
+    outline = drawn(structure)
+    return outermost(outline["width"], outline["thickness"], is_round=outline["round"])
+
+
+def drawn(structure: Structure) -> dict[str, Any]:
+    """Outline of a beam for pictures of its modes, by name: width, thickness, round, place, across; else empty."""
+    if structure.source is None or structure.traced:
+        return {}
+    beam = structure.source.beam
+    section = beam.section.at(structure.stations)
+    width, thickness = section.extents()
+    known = {"width": width, "thickness": thickness, "round": section.round}
+    if beam.line is None:
+        return known
+    place, axes = beam.at_rest(structure.stations)
+    return known | {"place": place, "across": axes[:, :, 1]}
