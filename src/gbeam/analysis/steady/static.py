@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, percent, unjudged
 from gbeam.analysis.steady.subject import Subject, subject_of
-from gbeam.analysis.system.accuracy import system_errors
+from gbeam.analysis.system.accuracy import FAR, system_errors
 from gbeam.analysis.system.linear import stepless, system_rest
 from gbeam.analysis.system.richer import left_unjudged, theories_of, with_beams
 from gbeam.analysis.system.steady import Drive, SteadySystem, settled
@@ -36,7 +36,10 @@ def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tu
     errors, off_axis = system_errors(lambda _: solution, state.standing, steps, start=start, tolerance=LIMIT)
     if errors.note == left_unjudged(subject.system):
         errors = replace(errors, note=unjudged(structure))
-    return errors, (*_doubtful(errors), *off_axis, *_sideways(subject, state)) if structure.judged else ()
+    if not structure.judged:
+        return errors, ()
+    lost = (FAR,) if FAR in errors.note else ()
+    return errors, (*lost, *_doubtful(errors), *off_axis, *_sideways(subject, state))
 
 
 def _sideways(subject: Subject, state: SteadySystem) -> tuple[str, ...]:

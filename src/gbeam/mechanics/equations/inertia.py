@@ -314,8 +314,12 @@ class _Side(NamedTuple):
 
 
 def _work(forces: Vector, slopes: Vector) -> Array:
-    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points), or (..., n, 1) alike at all points."""
+    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points), or (..., n, 1) alike at all points;
+    zero () where all are absent, as of a beam that only twists.
+    """
     pairs = [(f, s) for f, s in zip(forces, slopes, strict=True) if not (absent(f) or absent(s))]
+    if not pairs:
+        return np.zeros(())
     spread = (np.broadcast_to(s, (*s.shape[:-1], f.shape[-1])) for f, s in pairs)
     return reduce(plus, (f @ np.swapaxes(s, -1, -2) for (f, _), s in zip(pairs, spread, strict=True)))
 
