@@ -23,7 +23,6 @@ from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError
 from gbeam.guards.checks import choice
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of, units_of
 from gbeam.mechanics.tree.steps import parameters_of_all
@@ -126,8 +125,8 @@ def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str
         reached=min((float(each.rest[0][each.resolved - 1]) / (2 * np.pi) for each in reduced), default=math.nan),
         surfaces={
             body: each.recovery.in_modes((moving.modes / scale)[deforming(state.names, body)].T)
-            for body, each in system.bodies.items()
-            if isinstance(each, Structure) and each.recovery is not None and len(moving.value)
+            for body, each in system.flexible.items()
+            if each.recovery is not None and len(moving.value)
         },
         accelerated=state.accelerated,
         rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,

@@ -113,8 +113,8 @@ class Drive:
 def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, float]:
     """Name of the second-order body that moves most over its size at coordinates (k, n), and that ratio."""
     bent = {"a body": 0.0}
-    for name, body in system.bodies.items():
-        if isinstance(body, Structure) and body.kind not in BY_STRAINS:
+    for name, body in system.flexible.items():
+        if body.kind not in BY_STRAINS:
             moved, size = body.displacement(q[:, deforming(names, name)]), np.abs(body.station_places.r0).max()
             bent[name] = float(np.abs(moved).max()) / max(float(size), 1e-300)
     most = max(bent, key=lambda name: bent[name])
