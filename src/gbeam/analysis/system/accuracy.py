@@ -162,7 +162,7 @@ def system_errors(
             if not np.isfinite(apart.truth[PLACE]).all():
                 return _bounded(judged, known) or by_steps(note=FAR), 0.0, Lacking()
             mesh = _by_mesh(solution, rerun, judged, starting)
-            lacking, lost = _beyond(solution, rerun, known, extent, starting, straight=straight)
+            lacking, lost = _beyond(solution, rerun, known, extent, starting)
         errors = _judged(solution, known, computed, apart, lacking, mesh, lost)
         missed = 0.0 if apart.rings is None else _missed(apart.rings, known, errors, RESOLVED / (least * interval))
         return errors, missed, lacking
@@ -448,11 +448,9 @@ def _beyond(
     known: _Known,
     extent: float,
     starting: Starting | None,
-    *,
-    straight: bool,
 ) -> tuple[Lacking, str]:
-    """Differences to thick beams: by runs of these in a loop, else by the residual in their equations, which may be
-    linearised about `straight` beams; and why they are not known.
+    """Differences to thick beams: by runs of these in a loop, else by the residual in their equations, bent as the
+    solution is, for a bend couples to twist; and why they are not known.
     """
     theories = theories_of(solution.system)
     if not theories:
