@@ -184,7 +184,6 @@ def _refused(text: str) -> tuple[Diagnostic, ...]:
 MISSING = {
     'kind = "free"\nbody = "bus"\n': ("joints.orbit", "kind is missing"),
     "axes = [[0, 1, 0]]\n": ("joints.hinge_left", "axes is missing"),
-    "damping_ratio = 0.005\n": ("bodies.left.damping_ratio", "is missing, and the response depends on it"),
     'mass = "50 kg"\n': ("bodies.bus", "mass is missing"),
     ", modes = { axial = 0, y = 1, z = 2 }": ("bodies.left.model", "modes is missing"),
 }
@@ -195,6 +194,19 @@ def test_what_is_missing_is_said(left_out: str) -> None:
     at = SATELLITE.rindex(left_out)
     first, *_ = _refused(SATELLITE[:at] + SATELLITE[at + len(left_out) :])
     assert (first.path, first.message) == MISSING[left_out] and first.line is not None
+
+
+def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it() -> None:
+    line = "damping_ratio = 0.005\n"
+    at = SATELLITE.rindex(line)
+    case = build(loads(SATELLITE[:at] + SATELLITE[at + len(line) :], "s.toml"))
+    for ask, answer in (
+        (gb.study, "the response"),
+        (lambda case: gb.linearize(case.assemble()), "the state-space model"),
+    ):
+        with pytest.raises(gb.InputError, match=f"bodies.left.damping_ratio is missing, and {answer} depends on it"):
+            ask(case)
+    assert gb.modes(case.assemble(), errors=False).frequency.size
 
 
 def test_a_body_that_hangs_on_nothing() -> None:

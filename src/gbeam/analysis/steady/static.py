@@ -8,11 +8,11 @@ from typing import Any, overload
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import beyond
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, of_bodies, percent, unjudged
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, of_bodies, percent
 from gbeam.analysis.steady.subject import Subject, subject_of
-from gbeam.analysis.system.accuracy import system_errors
+from gbeam.analysis.system.accuracy import FAR, system_errors
 from gbeam.analysis.system.linear import stepless, system_rest
-from gbeam.analysis.system.richer import left_unjudged, theories_of, with_beams
+from gbeam.analysis.system.richer import theories_of, with_beams
 from gbeam.analysis.system.steady import Drive, SteadySystem, settled
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Numbers
@@ -29,6 +29,8 @@ from gbeam.results.errors import Errors
 from gbeam.results.parts import Base
 from gbeam.results.system import SystemRest
 
+LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
+
 
 def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of an equilibrium of one body, over its displacement, root loads and stress, and warnings."""
@@ -37,11 +39,13 @@ def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tu
     structure, estimates = subject.structure, [stated.displacement, stated.loads, stated.stress]
     if structure.source is None and structure.exact:
         estimates = [replace(error, model=np.nan) for error in estimates]
-    note = unjudged(structure) if stated.note == left_unjudged(system) else stated.note
+    note = LOST if stated.note == FAR else subject.noted(stated.note)
     tip, loads, stress = estimates
     errors = Errors(tip, loads, stress, note, "".join(stated.theory))
     if not structure.judged:
         return errors, ()
+    if note == LOST:
+        return errors, (LOST,)
     return errors, (*_doubtful(errors), *_off_axis(subject, state), *_sideways(subject, state))
 
 

@@ -80,7 +80,7 @@ class Drive:
     def inputs(self, system: System) -> Inputs:
         """Inputs of a system's tree; a coordinate that turns without being prescribed is added as the last of these."""
         hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
-        inputs, base = system.inputs(np.asarray(self.time), None if hub_turns else self.motion), self.base
+        inputs, base = system.inputs(np.asarray(float(self.time)), None if hub_turns else self.motion), self.base
         if hub_turns:
             base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
         if base is not None:
