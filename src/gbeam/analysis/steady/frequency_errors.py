@@ -35,7 +35,7 @@ from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 BENT = 0.01  # of the kinetic energy: a mode of twist with less bending is hardly excited
 BY_RICHER = "errors, by richer models"  # words of the progress
 NO_REST = "with more shapes no place was found in which it rests"
-STRAIGHT = 0.1  # of the length: beams that bend by less are straight for their theory
+STRAIGHT = 0.02  # of the length: beams that bend by less are straight for their theory; beyond, bend and twist couple
 SHOWN = 3  # frequencies that the model lacks, named at most
 
 

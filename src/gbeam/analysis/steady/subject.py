@@ -143,11 +143,11 @@ class Subject:
         return len(local_names(self.system.coordinates)) - shapes
 
 
-def subject_of(given: Structure | System, motion: Motion | None) -> Subject:
+def subject_of(structure: Structure | System, motion: Motion | None) -> Subject:
     """Subject of a question about a system whose ground has a motion, or about a structure alone in it."""
-    if isinstance(given, System):
-        return Subject(given, motion, "", motion)
-    system, ground = on_motion(given, motion)
+    if isinstance(structure, System):
+        return Subject(structure, motion, "", motion)
+    system, ground = on_motion(structure, motion)
     return Subject(system, ground, BEAM, motion)
 
 
