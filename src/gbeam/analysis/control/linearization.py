@@ -382,14 +382,16 @@ def linearize(
     [  36.56  183.55  229.04 1139.77 4243.13]
     """
     tell(progress, "equilibrium and slopes", 0.0)
-    if isinstance(structure, System):
-        drives = signal_names(structure.controllers, "drive")
+    subject = subject_of(structure, motion)
+    if not subject.body:
+        system = subject.system
+        drives = signal_names(system.controllers, "drive")
         if loop != "open" and not drives:
             raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
         choice("loop", loop, ("open", "closed", *drives))
-        structure.require_damping("the state-space model")
-        structure, strained = _gauged(structure, gauges)
-        state = frozen(structure, motion, time, at)
+        system.require_damping("the state-space model")
+        system, strained = _gauged(system, gauges)
+        state = frozen(system, motion, time, at)
         options: Any = {"inputs": inputs, "outputs": outputs, "strained": strained, "name": name}
         if loop != "open":
             from gbeam.analysis.steady.loop_errors import JudgedLoops  # takes SciPy's linear algebra
@@ -401,7 +403,7 @@ def linearize(
             return JudgedLoops(state, loops, cut).judge(computed)
         plant = linearize_system(state, **options)
         tell(progress, BY_RICHER, 0.5)
-        of_system, doubts = _poles(state, subject_of(structure, motion))
+        of_system, doubts = _poles(state, subject)
         if state.begins and state.point.yd.any():
             of_system["frame"] = "turning"
         return replace(plant, **of_system, warnings=plant.warnings + doubts)
