@@ -186,7 +186,7 @@ class Samples:
                 {"axial": 0, "y": 1, "z": 1, "shapes": "clamped-free", "twist": 0, "shear_y": 0, "shear_z": 0},
             ),
             "balanced_truncation": ((self.system, 2), {}),
-            "buckling_acceleration": ((self.structure,), {"upper": None, "progress": None}),
+            "buckling_acceleration": ((self.structure,), {"time": 0.0, "upper": None, "progress": None}),
             "build_target": (
                 (gb.vector(z=30.0),),
                 {"span": (0.0, 1.0), "idle": None, "smoothing": 0.0, "gravity": False, "arm": 3.3, "clip": False,

@@ -48,3 +48,52 @@ def test_the_root_points_as_the_hub_says() -> None:
         tip, root = (point.at(f"beam.{name}") for name in ("tip", "root"))
         assert root == pytest.approx([0.7, 0, 0])
         assert tip - root == pytest.approx([0.3 if pointing == "outward" else -0.3, 0, 0], abs=1e-12)
+
+
+def test_sfoam_on_a_free_hub_is_as_printed() -> None:
+    """2009 (32): the hub's row lacks 2 θ̇ (F2 − K2 q)·q̇ + q̇·B q̇. Elsewhere it is refused."""
+    structure = gb.assemble(BEAM, "SFOAM", axial=0, y=2, z=2)
+    hub = gb.Hub(radius=0.2, inertia=0.5, torque=PUSH)
+    system, _ = on_motion(structure, hub)
+    y, yd, ydd = np.random.default_rng(0).normal(size=(3, 5)) * [[0.01], [2.0], [5.0]]
+    printed = structure.residual(hub)(y, yd, ydd, (hub.torque(0.1), None))
+    ours = system.tree(y, yd, ydd, system.inputs(np.asarray(0.1)))
+    np.testing.assert_allclose(ours, printed, rtol=1e-12, atol=1e-12 * np.abs(printed).max())
+    with pytest.raises(gb.InputError, match=r"bodies.beam.model is SFOAM, whose base does not feel the beam"):
+        gb.System({"beam": structure}, {"free": gb.Joint("free", "beam")})
+
+
+def test_a_system_is_pushed_until_it_buckles() -> None:
+    """Greenhill's heavy column, 7.8373 EI/(m L³), as a structure and as a body of a system."""
+    column = gb.assemble(gb.Beam(0.3, STRIP, BEAM.material, damping_ratio=0.01), "FOAM", axial=1, z=4)
+    system = gb.System({"column": column}, {"clamp": gb.Joint("fixed", "column")})
+    alone, held = gb.buckling_acceleration(column), gb.buckling_acceleration(system)
+    stiffness, mass = 70e9 * 0.02 * 0.004**3 / 12, 2700 * 0.02 * 0.004 * 0.3
+    assert alone.value == pytest.approx(7.8373 * stiffness / (mass * 0.3**2), rel=1e-3)
+    assert held.value == pytest.approx(alone.value, rel=1e-9) and held.direction == "column z"
+    rest = gb.static(system, acceleration=(0.0, 0.0, 3.0))
+    assert rest.at("column.tip")[2] == pytest.approx(0.0 + gb.static(column, acceleration=(0.0, 0.0, 3.0)).tip[2])
+
+
+def test_a_hub_turns_by_the_momentum_of_its_torque() -> None:
+    """∫ T exp(−c (t − s)/J) ds / J of a hub whose beam is light; it then goes on turning faster by (T − c Ω)/J."""
+    light = gb.Beam(0.3, STRIP, gb.Material(1e-3, 70e9), damping_ratio=0.01)
+    hub = gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(2.0), damping=0.25)
+    rest = gb.static(gb.assemble(light, "FOAM", axial=1, y=2, z=2), hub, 3.0)
+    rate = 2.0 / 0.25 * (1 - np.exp(-0.25 * 3.0 / 0.5))
+    assert rest.base.w_WB_B[2] == pytest.approx(rate, rel=1e-6)
+    assert rest.base.alpha_WB_B[2] == pytest.approx((2.0 - 0.25 * rate) / 0.5, rel=1e-5)
+
+
+def test_an_exact_beam_keeps_its_branch_past_a_bifurcation() -> None:
+    """Turned inward, a little off its axis, it bends ever farther; Newton's method from afar ends on a branch that is
+    not stable.
+    """
+    mass = gb.PointMass(0.3, 0.05, offset=(0.0, 0.0, 0.002))
+    exact = gb.assemble(gb.Beam(0.3, STRIP, BEAM.material, [mass], damping_ratio=0.01), "exact", axial=1, z=4)
+    tips = []
+    for rate in (50.0, 70.0, 90.0, 110.0):
+        rest = gb.static(exact, gb.Hub(radius=0.8, pointing="inward", rate=rate))
+        assert rest.stable
+        tips.append(float(np.linalg.norm(rest.tip)))
+    assert np.all(np.diff(tips) > 0) and tips[-1] > 0.02

@@ -382,19 +382,21 @@ def linearize(
     [  36.56  183.55  229.04 1139.77 4243.13]
     """
     tell(progress, "equilibrium and slopes", 0.0)
+    subject = subject_of(structure, motion)
     structure.require_damping("the state-space model")
-    if isinstance(structure, System):
+    if not subject.body:
         if rate is not None:
             raise InputError(
                 "rate", "is of a hub, and a system turns on its joints", "give a time, or a joint its rate"
             )
-        drives = signal_names(structure.controllers, "drive")
+        system = subject.system
+        drives = signal_names(system.controllers, "drive")
         if loop != "open" and not drives:
             raise InputError("loop", f"is {loop!r}, and the system has no controllers", "leave it out, or give it some")
         choice("loop", loop, ("open", "closed", *drives))
-        structure.require_damping("the state-space model")
-        structure, strained = _gauged(structure, gauges)
-        state = frozen(structure, motion, time, at)
+        system.require_damping("the state-space model")
+        system, strained = _gauged(system, gauges)
+        state = frozen(system, motion, time, at)
         options: Any = {"inputs": inputs, "outputs": outputs, "strained": strained, "name": name}
         if loop != "open":
             from gbeam.analysis.steady.loop_errors import JudgedLoops  # takes SciPy's linear algebra
@@ -406,7 +408,7 @@ def linearize(
             return JudgedLoops(state, loops, cut).judge(computed)
         plant = linearize_system(state, **options)
         tell(progress, BY_RICHER, 0.5)
-        of_system, doubts = _poles(state, subject_of(structure, motion))
+        of_system, doubts = _poles(state, subject)
         if state.begins and state.point.yd.any():
             of_system["frame"] = "turning"
         return replace(plant, **of_system, warnings=plant.warnings + doubts)
@@ -502,7 +504,7 @@ def _poles(state: SteadySystem, subject: Subject) -> tuple[dict[str, Any], tuple
         f"{motion.growth_rate:.4g} 1/s"
         for motion in instabilities(state, state.moving, subject.directions)
     )
-    return {"frequency": frequency, "errors": errors, **turning}, (*doubts, *growing)
+    return {"frequency": frequency, "errors": subject.noting(errors), **turning}, (*doubts, *growing)
 
 
 @typed

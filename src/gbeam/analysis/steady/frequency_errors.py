@@ -35,7 +35,7 @@ from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 BENT = 0.01  # of the kinetic energy: a mode of twist with less bending is hardly excited
 BY_RICHER = "errors, by richer models"  # words of the progress
 NO_REST = "with more shapes no place was found in which it rests"
-STRAIGHT = 0.1  # of the length: beams that bend by less are straight for their theory
+STRAIGHT = 0.02  # of the length: beams that bend by less are straight for their theory; beyond, bend and twist couple
 SHOWN = 3  # frequencies that the model lacks, named at most
 
 
@@ -97,7 +97,7 @@ class Richer:
         shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
         mesh = np.abs(rough / frequency - 1)
         total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
-        note = unknown_part(state.system)
+        note = left_unjudged(state.system)
         if not note and len(frequency) and np.isnan(total).all():
             note = NO_REST
         growth = 0.0 if not gyroscopic or len(state.moving.growing) else growth
@@ -223,15 +223,9 @@ def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
     return moving.frequency / (2 * np.pi), errors
 
 
-def unknown_part(system: System) -> str:
-    """Sentence about the errors of a system that are not judged, or ""; of a body alone its name is left out."""
-    words, names = left_unjudged(system), [*system.flexible]
-    return words if len(names) > 1 else words.replace(f" of {names[0]}", "") if names else ""
-
-
 def unknown_errors(system: System, count: int) -> FrequencyErrors | None:
     """NaN for the errors of `count` frequencies, with the reason; None if there is no reason."""
-    note, unknown = unknown_part(system), np.full(count, np.nan)
+    note, unknown = left_unjudged(system), np.full(count, np.nan)
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import MORE_SHAPES, ROUGH_MESH
-from gbeam.analysis.steady.frequency_errors import NO_REST, More, Richer, unknown_part
+from gbeam.analysis.steady.frequency_errors import NO_REST, More, Richer
 from gbeam.analysis.system.closed_loop import ROUNDING, Loops
 from gbeam.analysis.system.linear import frozen
-from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats, Indices
 from gbeam.errors import ComputationError, InputError
@@ -48,7 +48,7 @@ class JudgedLoops:
     """
 
     def __init__(self, state: SteadySystem, loops: Loops, cut: str | None = None) -> None:
-        self.loops, self.cut, self.note, self.others = loops, cut, unknown_part(state.of), dict[str, Other]()
+        self.loops, self.cut, self.note, self.others = loops, cut, left_unjudged(state.system), dict[str, Other]()
         self.known = bool(judged_bodies(state.system)) or not self.note
         if not judged_bodies(state.system):
             return

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, not_known, percent, wrong_by
-from gbeam.analysis.steady.frequency_errors import Richer, among, unknown_part
+from gbeam.analysis.steady.frequency_errors import Richer, among
 from gbeam.analysis.steady.subject import Subject
 from gbeam.analysis.system.linear import instabilities
-from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.analysis.system.steady import Path, SteadySystem, open_loops
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
@@ -131,7 +131,7 @@ CLOSE = 1e-6  # of the critical value: tolerance of its root
 
 def judged(critical: Critical, path: Path, subject: Subject, progress: Progress = None) -> Critical:
     """The critical value with errors estimated by richer models, and warnings if above one in a hundred."""
-    system, critical = subject.system, replace(critical, error_note=unknown_part(subject.system))
+    system, critical = subject.system, replace(critical, error_note=subject.noted(left_unjudged(subject.system)))
     if critical.value == 0 or critical.kind == NOT_KNOWN or not judged_bodies(system):
         return critical
     if critical.value is None:

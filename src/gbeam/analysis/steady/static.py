@@ -7,11 +7,11 @@ from typing import Any, overload
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, percent, unjudged
+from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, percent
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.accuracy import FAR, system_errors
 from gbeam.analysis.system.linear import stepless, system_rest
-from gbeam.analysis.system.richer import left_unjudged, theories_of, with_beams
+from gbeam.analysis.system.richer import theories_of, with_beams
 from gbeam.analysis.system.steady import Drive, SteadySystem, settled
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Numbers
@@ -28,18 +28,21 @@ from gbeam.results.errors import Errors
 from gbeam.results.parts import Base
 from gbeam.results.system import SystemRest
 
+LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
+
 
 def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of an equilibrium of one body, over its displacement, root loads and stress, and warnings."""
     solution, structure = state.standing(subject.system), subject.structure
     steps, start = stepless(subject.system), subject.system.undeformed
     errors, off_axis = system_errors(lambda _: solution, state.standing, steps, start=start, tolerance=LIMIT)
-    if errors.note == left_unjudged(subject.system):
-        errors = replace(errors, note=unjudged(structure))
+    note = LOST if FAR in errors.note else subject.noted(errors.note)
+    errors = replace(errors, note=note)
     if not structure.judged:
         return errors, ()
-    lost = (FAR,) if FAR in errors.note else ()
-    return errors, (*lost, *_doubtful(errors), *off_axis, *_sideways(subject, state))
+    if note == LOST:
+        return errors, (LOST,)
+    return errors, (*_doubtful(errors), *off_axis, *_sideways(subject, state))
 
 
 def _sideways(subject: Subject, state: SteadySystem) -> tuple[str, ...]:

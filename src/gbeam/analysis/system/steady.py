@@ -80,7 +80,7 @@ class Drive:
     def inputs(self, system: System) -> Inputs:
         """Inputs of a system's tree; a coordinate that turns without being prescribed is added as the last of these."""
         hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
-        inputs, base = system.inputs(np.asarray(self.time), None if hub_turns else self.motion), self.base
+        inputs, base = system.inputs(np.asarray(float(self.time)), None if hub_turns else self.motion), self.base
         if hub_turns:
             base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
         if base is not None:
@@ -656,7 +656,8 @@ class Equilibria:
         """Return the steady state of a system by its drive, whose rate or factor is the value."""
         known = self._known(system)
         if value not in known:
-            known[value] = steady(system, drive, held=True, start=_continued(known, value))
+            start = None if is_linear(_held(system, drive)) else _continued(known, value)
+            known[value] = steady(system, drive, held=True, start=start)
         return _released(known[value], held=held)
 
     def ahead(self, system: System, drives: Mapping[float, Drive]) -> None:
@@ -665,10 +666,10 @@ class Equilibria:
         new = {value: drive for value, drive in drives.items() if value not in known}
         if not new or not known:
             return
-        starts = np.array([_continued(known, value) for value in new])
         tree = _held(system, next(iter(new.values())))
         if is_linear(tree):
             return  # which takes no search
+        starts = np.array([_continued(known, value) for value in new])
         points = rested_together(system, tree, [drive.inputs(system) for drive in new.values()], starts)
         for (value, drive), solved in zip(new.items(), points, strict=True):
             if solved is not None:
