@@ -383,7 +383,6 @@ def linearize(
     """
     tell(progress, "equilibrium and slopes", 0.0)
     subject = subject_of(structure, motion)
-    structure.require_damping("the state-space model")
     if not subject.body:
         if rate is not None:
             raise InputError(
