@@ -483,9 +483,7 @@ def describe(case: Case | SpecimenCase | SystemCase) -> Description | SpecimenDe
 
 def _described(case: AnyCase, doubts: Sequence[Sequence[str]]) -> dict[str, Any]:
     """Parts of a description that every case has."""
-    free = isinstance(case, SystemCase) or any(motion.free for motion in case.motions.values())
-    settings = None if case.response is None else case.response.chosen(free=free)
-    over_time: dict[str, Any] = {}
+    settings, over_time = case.response, dict[str, Any]()
     if settings is not None:
         over_time = {key: getattr(settings, key) for key in ("start", "duration", "step", "integrator")}
         doubts = (*doubts, settings.warnings)
