@@ -236,7 +236,7 @@ def test_result_carries_what_plots_need() -> None:
     n = len(result.time)
     assert result.displacement.shape == (n, 1, 3) and result.q.shape == result.qd.shape == (n, 2)
     np.testing.assert_allclose(result.base.a_WO_B[:, 2], RAMP(result.time))
-    assert (result.model, result.environment, result.integrator, result.step) == ("FOAM", "flight", "newmark", 1e-3)
+    assert (result.model, result.environment, result.integrator, result.step) == ("FOAM", "flight", "gauss", 1e-3)
     assert result.hub is None and result.axes is None
     assert of_tip("x", result.time, result.tip).tip.shape == (n, 3)
 

@@ -114,11 +114,11 @@ CASES = {
     ),
     "foreign parameter": (
         'duration = "4 s"', 'duration = "4 s"\nalpha = 0.1', "response.alpha",
-        "does not belong to newmark", "it takes beta and gamma", "alpha",
+        "does not belong to gauss", 'give integrator = "hht" with it', "alpha",
     ),
-    "parameter of none": (
-        'duration = "4 s"', 'duration = "4 s"\nintegrator = "gauss"\nbeta = 0.1', "response.beta",
-        "does not belong to gauss", "it has no parameters", "beta",
+    "parameter of another": (
+        'duration = "4 s"', 'duration = "4 s"\nintegrator = "newmark"\nalpha = 0.1', "response.alpha",
+        "does not belong to newmark", "it takes beta and gamma", "alpha",
     ),
     "step too long": (
         'duration = "4 s"', 'duration = "4 s"\nstep = "5 s"', "response.step",

@@ -53,12 +53,10 @@ def describe(case: Case) -> Description:
     masses, centres = zip(*(_mass(system.bodies[name]) for name in system.order), strict=True)
     total, roots = float(sum(masses)), zip(system.at_start.roots, centres, strict=True)
     moment = np.einsum("b,bi->i", masses, [root.p + root.R @ centre for root, centre in roots])
-    free = system.alone is None or any(motion.free for motion in case.motions.values())
-    chosen = None if settings is None else settings.chosen(free=free)
     over_time: dict[str, Any] = {}
-    doubts = [*_doubts(case), *(() if chosen is None else chosen.warnings)]
-    if chosen is not None:
-        over_time = {key: getattr(chosen, key) for key in ("start", "duration", "step", "integrator")}
+    doubts = [*_doubts(case), *(() if settings is None else settings.warnings)]
+    if settings is not None:
+        over_time = {key: getattr(settings, key) for key in ("start", "duration", "step", "integrator")}
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
     return Description(
         title=case.title,

@@ -183,7 +183,7 @@ def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Mo
 
     if table.parameters:
         # Only to refuse wrong parameters: the analysis makes its own scheme.
-        parts.attempt("response", SCHEMES[table.scheme], **table.parameters)
+        parts.attempt("response", SCHEMES[table.integrator], **table.parameters)
     flights = {name: motion for name, motion in motions.items() if isinstance(motion, Flight)}
     records = {name: flight for name, flight in flights.items() if flight.record is not None}
     covered = [extent for flight in records.values() if (extent := flight.acceleration.extent) is not None]

@@ -82,7 +82,7 @@ peaks = "3 %"  # error of every peak of the load above idle
 duration = "6 s"  # of the profile above; leave it out beside a record, which is flown to its end
 stations = ["100 mm", "200 mm", "300 mm"]  # positions from the root for the output
 step = "auto"
-integrator = "newmark"  # newmark | hht | generalized-alpha | gauss
+integrator = "gauss"  # gauss | newmark | hht | generalized-alpha
 """
 
 _HUB = """\
@@ -115,7 +115,7 @@ rate = { profile = "smooth-step", level = "2 rad/s", duration = "30 s" }
 duration = "50 s"
 residual_from = "30 s"  # the vibration left after the manoeuvre is measured from here to the end
 step = "auto"
-integrator = "newmark"  # newmark | hht | generalized-alpha | gauss
+integrator = "gauss"  # gauss | newmark | hht | generalized-alpha
 """
 
 _SYSTEM = """\

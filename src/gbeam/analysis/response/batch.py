@@ -178,9 +178,8 @@ def _responses(
         motion = motion.over(settings.start, settings.start + settings.duration)
         if traced or holds_jax(motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
-        chosen = settings.chosen(free=motion.free)
-        *longer, step = first_steps(structure, motion, chosen)
-        posed = pose(structure, motion, chosen, *step)
+        *longer, step = first_steps(structure, motion, settings)
+        posed = pose(structure, motion, settings, *step)
         if longer or posed.before or posed.after:
             yield index, simulate(structure, motion, settings)
             continue

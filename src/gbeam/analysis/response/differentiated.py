@@ -119,7 +119,6 @@ class Differentiated:
     ) -> None:
         self.grid, self.name, self.axes = grid, name, axes
         self._own_axes: AxesResult | None = None
-        settings = settings.chosen(free=motion.free)
         self.settings = replace(settings, estimate=False, loads=loads)
         start, duration = settings.start, settings.duration
         motion = motion.over(start, start + duration)

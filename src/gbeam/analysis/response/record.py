@@ -65,11 +65,10 @@ class StructureRun(Run):
 
     @classmethod
     def prepared(cls, structure: Structure, motion: Motion | None, settings: ResponseSettings) -> Prepared:
-        """The motion over the flight's times, and the settings with an integrator; InputError without a motion."""
+        """The motion over the flight's times, and the settings; InputError without a motion."""
         if motion is None:
             raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
         structure.require_damping("the response")
-        settings = settings.chosen(free=motion.free)
         return motion.over(settings.start, settings.start + settings.duration), settings
 
     @classmethod

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TypedDict
 
 from gbeam.analysis.response.problem import Initial, begun
@@ -25,7 +25,7 @@ class Settings(TypedDict, total=False):
     duration: float | str
     start: float | str
     step: float | str | None
-    integrator: Integrator | None
+    integrator: Integrator
     parameters: Mapping[Parameter, float]
     tolerance: float | str
     residual_from: float | str | None
@@ -48,8 +48,8 @@ class ResponseSettings(Value):
         Initial time, s.
     step : float or None
         s; None for an automatic one.
-    integrator : str or None
-        newmark, hht, generalized-alpha or gauss; None for gauss of systems and on free hubs, newmark otherwise.
+    integrator : str
+        gauss, of fourth order; or newmark, the papers' method, hht or generalized-alpha, of second order.
     parameters : mapping of str to float
         The integrator's own: beta and gamma; alpha; rho_inf.
     tolerance : float
@@ -81,15 +81,15 @@ class ResponseSettings(Value):
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
     >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
     >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
-    >>> settings = gb.ResponseSettings(duration=6.0, integrator="gauss", tolerance=0.001)
+    >>> settings = gb.ResponseSettings(duration=6.0, integrator="newmark", tolerance=0.001)
     >>> gb.simulate(structure, turn, settings).integrator
-    'gauss'
+    'newmark'
     """
 
     duration: float
     start: float = 0.0
     step: float | None = None
-    integrator: Integrator | None = None
+    integrator: Integrator = "gauss"
     parameters: Mapping[Parameter, float] = field(default_factory=dict)
     tolerance: float = 1e-2
     residual_from: float | None = None
@@ -133,12 +133,6 @@ class ResponseSettings(Value):
         """Sentence about the errors that are not estimated; "" if all are."""
         lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
         return "" if self.estimate else f"{lacking}: the settings say estimate = false"
-
-    def chosen(self, *, free: bool) -> ResponseSettings:
-        """Settings with an integrator; gauss on a `free` base, whose nonlinear equations cost less in few steps."""
-        if self.integrator is not None:
-            return self
-        return replace(self, integrator="gauss" if free and not self.parameters else "newmark")
 
     def kept_every(self, samples: int, step: float, stride: int = 1) -> int:
         """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file: those of the results'

@@ -44,12 +44,15 @@ Plan = Generator[tuple[float, str], R, tuple[R, StepErrors]]
 
 def scheme_of(settings: ResponseSettings) -> Scheme:
     """The integration scheme that the settings name."""
-    choice("response.integrator", str(settings.integrator), SCHEMES)
-    scheme = SCHEMES[str(settings.integrator)]
+    choice("response.integrator", settings.integrator, SCHEMES)
+    scheme = SCHEMES[settings.integrator]
     takes = tuple(inspect.signature(scheme).parameters)
     for name in settings.parameters:
         if name not in takes:
-            fix = advise(name, takes, listed="it takes") if takes else "leave it out: it has no parameters"
+            owners = [owner for owner, each in SCHEMES.items() if name in inspect.signature(each).parameters]
+            fix = f'give integrator = "{owners[0]}" with it' if owners else "leave it out: it has no parameters"
+            if takes:
+                fix = advise(name, takes, listed="it takes")
             raise InputError(f"parameters.{name}", f"does not belong to {settings.integrator}", fix)
     return scheme(**{str(name): value for name, value in settings.parameters.items()})
 

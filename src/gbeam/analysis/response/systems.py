@@ -76,9 +76,8 @@ class SystemRun(Run):
 
     @classmethod
     def prepared(cls, system: System, motion: Motion | None, settings: ResponseSettings) -> Prepared:
-        """The motion over the flight's times, and the settings with an integrator; InputError for what systems lack."""
+        """The motion over the flight's times, and the settings; InputError for what systems lack."""
         system.require_damping("the response")
-        settings = settings.chosen(free=True)
         if motion is not None:
             if motion.free:
                 raise InputError("motion", "is a hub that turns freely", "give it as a body on a revolute joint")

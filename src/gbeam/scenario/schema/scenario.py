@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
@@ -142,8 +142,10 @@ class Response(Table):
         "answers of one time are asked for, such as modes"
     )
     step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Annotated[Integrator | None, Formerly("newmark", until=(0, 2))] = optional(
-        "time integrator; left out gauss of systems and on free hubs, newmark otherwise"
+    integrator: Annotated[Integrator, Formerly("newmark", until=(0, 2))] = Field(
+        default="gauss",
+        description="time integrator: gauss, of fourth order; or newmark, the papers' method, hht or "
+        "generalized-alpha, of second order, which need more steps",
     )
     beta: Ratio | None = optional("parameter of newmark")
     gamma: Ratio | None = optional("parameter of newmark")
@@ -175,14 +177,9 @@ class Response(Table):
     )
 
     @property
-    def scheme(self) -> Integrator:
-        """Integrator that takes the parameters."""
-        return self.integrator or "newmark"
-
-    @property
     def parameters(self) -> dict[Parameter, float]:
         """Parameters of the integrator that are written."""
-        named = {name: getattr(self, name) for name in PARAMETERS[self.scheme]}
+        named = {name: getattr(self, name) for name in PARAMETERS[self.integrator]}
         return {name: value for name, value in named.items() if value is not None}
 
     @field_validator("integrator", mode="before")
@@ -196,11 +193,12 @@ class Response(Table):
     @model_validator(mode="after")
     def _consistent(self) -> Response:
         def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
-            takes = PARAMETERS[self.scheme]
-            for name in get_args(Parameter):
-                if name not in takes and getattr(self, name) is not None:
-                    hint = f"it takes {' and '.join(takes)}" if takes else "it has no parameters"
-                    yield (name,), wrong(f"does not belong to {self.scheme}", hint, mark="key")
+            takes = PARAMETERS[self.integrator]
+            for owner, names in PARAMETERS.items():
+                for name in names:
+                    if name not in takes and getattr(self, name) is not None:
+                        hint = f"it takes {' and '.join(takes)}" if takes else f'give integrator = "{owner}" with it'
+                        yield (name,), wrong(f"does not belong to {self.integrator}", hint, mark="key")
             if self.duration is not None and self.step != "auto" and self.step > self.duration:
                 hint = "give a time before the end, {response.duration}"
                 yield ("step",), wrong("{value} is longer than the computation", hint)
