@@ -40,7 +40,8 @@ def case(seed: int) -> Former:
         of_motion = "outward hub"
     structure = SPECIMENS[kind](random, of_motion)
     period = 2 * np.pi / float(structure.rest[0][0]) if structure.size else 0.02
-    per_unit = abs(float(gb.static(structure, acceleration=(0, 0, 1.0)).tip[2])) if structure.size else 1e-6
+    moved = abs(float(gb.static(structure, acceleration=(0, 0, 1.0)).tip[2])) if structure.size else 1e-6
+    per_unit = float(f"{moved:.6g}")  # of which no machine has other digits
     size = float(np.exp(random.uniform(np.log(1e-4), np.log(0.03)))) * LENGTH / max(per_unit, 1e-6)
     duration = float(random.uniform(3, 6)) * period
     motion = _motion(random, of_motion, min(size, 300.0), period, duration)

@@ -503,7 +503,7 @@ def _poles(state: SteadySystem, subject: Subject) -> tuple[dict[str, Any], tuple
         f"{motion.growth_rate:.4g} 1/s"
         for motion in instabilities(state, state.moving, subject.directions)
     )
-    return {"frequency": frequency, "errors": subject.noting(errors), **turning}, (*doubts, *growing)
+    return {"frequency": frequency, "errors": errors, **turning}, (*doubts, *growing)
 
 
 @typed

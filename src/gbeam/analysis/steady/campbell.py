@@ -271,7 +271,7 @@ def campbell(
         critical=lost if lost.value is not None else None,
         unstable=unstable,
         **_framed(followed, index),
-        errors=subject.noting(errors),
+        errors=errors,
         warnings=warnings,
         notes=notes_on({name: motion}),
     )

@@ -131,7 +131,7 @@ CLOSE = 1e-6  # of the critical value: tolerance of its root
 
 def judged(critical: Critical, path: Path, subject: Subject, progress: Progress = None) -> Critical:
     """The critical value with errors estimated by richer models, and warnings if above one in a hundred."""
-    system, critical = subject.system, replace(critical, error_note=subject.noted(left_unjudged(subject.system)))
+    system, critical = subject.system, replace(critical, error_note=left_unjudged(subject.system))
     if critical.value == 0 or critical.kind == NOT_KNOWN or not judged_bodies(system):
         return critical
     if critical.value is None:
@@ -194,7 +194,7 @@ def _unseen(critical: Critical, path: Path, system: System, progress: Progress) 
 
 
 def _lost(
-    rich: Any,
+    rich: System,
     path: Path,
     near: float,
     progress: Progress,
@@ -212,10 +212,10 @@ def _lost(
 
     from scipy.optimize import brentq
 
-    low = 0.0
+    low, kinds = 0.0, " and ".join(sorted({body.kind for body in rich.flexible.values()}))
     for i, value in enumerate(_in_turn(path, rich, [share * near for share in shares])):
         done = (part[0] + i / len(shares)) / part[1]
-        tell(progress, f"errors of the critical value, by {rich.kind} with more shapes", done)
+        tell(progress, f"errors of the critical value, by {kinds} with more shapes", done)
         if margin(value) < 0:
             return brentq(margin, low, value, xtol=CLOSE * near, maxiter=200)
         low = value

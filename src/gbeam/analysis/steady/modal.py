@@ -166,4 +166,4 @@ def modes(
         # Modes above those that are known have their own warning.
         reached = math.inf if subject.body else computed.reached
         computed = replace(computed, warnings=computed.warnings + doubtful(stated[~(computed.frequency > reached)]))
-    return replace(computed, errors=subject.noting(stated))
+    return replace(computed, errors=stated)

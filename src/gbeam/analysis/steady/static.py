@@ -36,11 +36,10 @@ def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tu
     solution, structure = state.standing(subject.system), subject.structure
     steps, start = stepless(subject.system), subject.system.undeformed
     errors, off_axis = system_errors(lambda _: solution, state.standing, steps, start=start, tolerance=LIMIT)
-    note = LOST if FAR in errors.note else subject.noted(errors.note)
-    errors = replace(errors, note=note)
+    errors = replace(errors, note=LOST) if FAR in errors.note else errors
     if not structure.judged:
         return errors, ()
-    if note == LOST:
+    if errors.note == LOST:
         return errors, (LOST,)
     return errors, (*_doubtful(errors), *off_axis, *_sideways(subject, state))
 

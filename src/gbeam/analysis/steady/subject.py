@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import BEAM, unjudged
+from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.steady.hinged import turned_by_effort
-from gbeam.analysis.system.richer import left_unjudged
 from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
@@ -20,7 +19,6 @@ from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Steady
-from gbeam.results.errors import FrequencyErrors
 from gbeam.results.modal import outermost
 from gbeam.results.parts import Base
 
@@ -122,14 +120,6 @@ class Subject:
         structure, time = self.structure, state.drive.time
         doubts = input_warnings(structure, self.motion, name=name, span=(time, time), base=self.base(state))
         return doubts + tuple(bent_far(structure, bend(structure, state.q[self.columns(state)])))
-
-    def noted(self, note: str) -> str:
-        """Note on errors, which of one body says without its name that it is not judged."""
-        return unjudged(self.structure) if self.body and note == left_unjudged(self.system) else note
-
-    def noting(self, errors: FrequencyErrors | None) -> FrequencyErrors | None:
-        """Errors of frequencies with such a note."""
-        return None if errors is None else replace(errors, note=self.noted(errors.note))
 
     @property
     def unstiffened(self) -> bool:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.correction import IntArray
-from gbeam.analysis.accuracy.estimate import NO_MESH
+from gbeam.analysis.accuracy.estimate import NO_MESH, unjudged
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory, theory_of
@@ -42,6 +42,8 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 def left_unjudged(system: System) -> str:
     """Sentence about bodies that are not judged at all, and about meshes that are not judged; may be empty."""
+    if len(system.flexible) == 1:
+        return unjudged(*system.flexible.values())
     judged = judged_bodies(system)
     others = [name for name, body in system.flexible.items() if body.size and name not in judged]
     sentences = [NOT_ALL.format(", ".join(others))] if others else []
