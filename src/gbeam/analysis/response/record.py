@@ -274,6 +274,9 @@ def response_of(
         recovered = _recovered(structure, motion, at_all.time, base_then, at_all.q[:, beam], name, peaks)
         if looked < stride and "solid" in recovered:
             recovered["solid"] = recovered["solid"].sampled(np.searchsorted(at_all.time, time))
+    # Of what cannot be judged the steps alone are known.
+    known = settings.estimate and not structure.judged and math.isnan(errors.displacement.total)
+    stated = errors.displacement.step if known else errors.displacement.total
     flown = motion.flight if isinstance(motion, Centrifuge) else motion
     span = settings.start, settings.start + settings.duration
     whole = flown.part_of(*span) if isinstance(flown, Flight) else None
@@ -298,7 +301,7 @@ def response_of(
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=sum(len(part.time) - 1 for part in (up, trajectory, down) if part is not None),
-        error_estimate=errors.displacement.total,
+        error_estimate=stated,
         errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
         hub=hub,
