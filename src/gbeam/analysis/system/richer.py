@@ -42,7 +42,8 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 def left_unjudged(system: System) -> str:
     """Sentence about bodies that are not judged at all, and about meshes that are not judged; may be empty."""
-    if len(system.flexible) == 1:
+    heavy = [name for name, body in system.bodies.items() if name not in system.flexible and body.mass > 0]
+    if len(system.flexible) == 1 and not heavy:  # beside a free hub at most
         return unjudged(*system.flexible.values())
     judged = judged_bodies(system)
     others = [name for name, body in system.flexible.items() if body.size and name not in judged]
