@@ -10,16 +10,16 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import Joint
-from gbeam.mechanics.tree.system import Place, RigidBody, System
+from gbeam.mechanics.tree.system import CLAMP, Place, RigidBody, System
 from gbeam.motion.protocol import Motion
 
-HUB, HINGE, RIM, CLAMP = "hub", "hinge", "rim", "clamp"  # names of a free hub, its joint, its rim, what holds there
+HUB, HINGE, RIM = "hub", "hinge", "rim"  # names of a free hub, its joint, and its point that holds the structure
 
 
 def on_motion(structure: Structure, motion: Motion | None, name: str = "beam") -> tuple[System, Motion | None]:
     """System of a structure alone in a motion, and the motion of the system's ground: none under a free hub."""
     if motion is None or not motion.free:
-        return System({name: structure}, {CLAMP: Joint("fixed", name)}), motion
+        return System.of(structure, name), motion
     return on_free_hub(structure, motion, name), None
 
 
