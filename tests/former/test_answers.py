@@ -16,7 +16,7 @@ SLIGHT = 1e-7  # a stated error below is that of rounding
 # Differences that are faults of what was, of stated errors by the theory of slender beams. Thick beams were linearised
 # about straight ones, which leaves out the twist that bending couples to, see tests of bent strips;
 # and where fast modes ring, they were read at the coarser times of a first look. They change by 18 % at most.
-FAULTS = {seed: ["errors"] for seed in (7, 56, 76, 105, 132)}
+FAULTS = {seed: {"errors"} for seed in (7, 56, 76, 105, 132)}
 
 
 def apart(before: Answers, now: Answers) -> list[str]:
@@ -47,7 +47,7 @@ def often(seed: int) -> bool:
     ],
 )
 def test_it_is_as_it_was(before: Answers) -> None:
-    assert apart(before, answers(before["seed"])) == FAULTS.get(before["seed"], [])
+    assert set(apart(before, answers(before["seed"]))) <= FAULTS.get(before["seed"], set())
 
 
 def test_every_kind_is_among_those_that_are_tried_often() -> None:
