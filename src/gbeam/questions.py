@@ -268,10 +268,11 @@ def static(
     if all(body.work is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
         case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
+    moved = {name: prepared(case, name) for name in names}
 
     def ask(case: Case) -> Any:
         structure = _subject(case, needs)
-        return tuple(static(structure, prepared(case, name), time, name=name) for name in names)
+        return tuple(static(structure, base, time, name=name) for name, base in moved.items())
 
     return sufficient(case, ask, lambda rests: [each.errors for each in rests])[1]
 
@@ -297,10 +298,11 @@ def modes(
     name, time = motion_of(case.environments, motion), _time(case, at)
     errors = needs.errors or case.automatic
     options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": errors, "name": name}
+    base = prepared(case, name)
 
     def ask(case: Case) -> Any:
         structure = _subject(case, replace(needs, errors=True))  # the source has the sections: twist shows at edges
-        return modal.modes(structure, prepared(case, name), time, **options)
+        return modal.modes(structure, base, time, **options)
 
     return sufficient(case, ask, lambda modes: [of_lowest(modes.frequency, modes.errors)])[1]
 

@@ -42,7 +42,7 @@ class Lacking(Protocol):
         ...
 
 
-def known(*values: float) -> float:
+def largest_known(*values: float) -> float:
     """Largest of the values that are known; zero if none is."""
     return max((float(value) for value in values if math.isfinite(value)), default=0.0)
 
@@ -70,12 +70,12 @@ class ErrorEstimate(Lacking, Part):
     @property
     def few_shapes(self) -> float:
         """Error by too few shapes; zero where it is not known."""
-        return known(self.shapes)
+        return largest_known(self.shapes)
 
     @property
     def few_strains(self) -> float:
         """Error of the theory of slender beams; zero where it is not known."""
-        return known(self.beam_theory)
+        return largest_known(self.beam_theory)
 
     @property
     def slender(self) -> float:
@@ -160,12 +160,12 @@ class Errors(Part):
     @property
     def few_shapes(self) -> float:
         """Largest error by too few shapes, of displacement and loads."""
-        return known(self.displacement.shapes, self.loads.shapes)
+        return largest_known(self.displacement.shapes, self.loads.shapes)
 
     @property
     def few_strains(self) -> float:
         """Largest error of the theory of slender beams, of displacement, loads and stress."""
-        return known(*(each.beam_theory for each in (self.displacement, self.loads, self.stress)))
+        return largest_known(*(each.beam_theory for each in (self.displacement, self.loads, self.stress)))
 
     def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
         """Return the errors whose total is above a tolerance, by what they are of, in words."""
@@ -211,12 +211,12 @@ class FrequencyErrors(Part):
     @property
     def few_shapes(self) -> float:
         """Largest error by too few shapes."""
-        return known(*self.shapes)
+        return largest_known(*self.shapes)
 
     @property
     def few_strains(self) -> float:
         """Largest error of the theory of slender beams; infinite where frequencies are unseen."""
-        return math.inf if self.unseen else known(*self.beam_theory)
+        return math.inf if self.unseen else largest_known(*self.beam_theory)
 
     @property
     def slender(self) -> Floats:

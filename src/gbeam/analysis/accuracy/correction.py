@@ -25,6 +25,7 @@ Quantity = tuple[str, str]  # a body or "", and the name of what is read: deflec
 Reading = Mapping[Quantity, Floats]  # over time, (t, ...)
 State = tuple[Floats, Floats]  # coordinates and rates, (n,) each
 PLACE: Quantity = ("", "place")
+LOADS = "force", "moment", "stress"  # of a body, whose errors are estimated
 DEFLECTION = "deflection"  # of a body, relative to its root
 MOVED = PLACE[1], DEFLECTION  # whose peaks are not judged apart
 LOOKED = 61  # times at which M, C and K are found; between them they are straight lines

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE
+from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE
 from gbeam.analysis.accuracy.estimate import BEAM, NOTHING, unjudged
 from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import describe, effort, inaccuracies
@@ -51,7 +51,6 @@ from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
 from gbeam.structure.beam import names_at
 
-LOADS = "force", "moment", "stress"  # whose errors are estimated
 Prepared = tuple[Motion, ResponseSettings]
 
 

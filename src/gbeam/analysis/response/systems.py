@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import largest
-from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, Quantity, pieces
+from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity, pieces
 from gbeam.analysis.accuracy.estimate import UNMOVED
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.response.outcome import yielding
@@ -59,7 +59,6 @@ from gbeam.structure.beam import names_at
 
 LONG = 3_000  # steps: more of them follow deflections within the tolerance only
 LOOKS = 30  # steps of a run at which its mass matrix is checked
-LOADS = "force", "moment", "stress"  # of a beam, whose errors are estimated
 BEYOND = 1e-8  # of a coordinate's range: a stop is not met by less
 STOPPED = 10  # times in which friction alone would stop a coordinate: held is what is slow for longer
 LITTLE = 1e-3  # of a coordinate's way: less is no creep

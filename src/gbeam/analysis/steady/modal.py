@@ -18,6 +18,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
+from gbeam.numerics.eigen import Vibrations
 from gbeam.progress import Progress, tell
 from gbeam.results.modal import Modes
 from gbeam.results.system import SystemModes
@@ -25,13 +26,15 @@ from gbeam.results.system import SystemModes
 AnyModes = TypeVar("AnyModes", Modes, SystemModes)
 
 
-def modes_of_body(subject: Subject, state: SteadySystem, *, gyroscopic: bool = True, name: str = "") -> Modes:
-    """Modes of one body about a steady state, each scaled to a largest component of one."""
+def modes_of_body(
+    subject: Subject, state: SteadySystem, moving: Vibrations, *, gyroscopic: bool = True, name: str = ""
+) -> Modes:
+    """Modes, among those `moving`, of one body about a steady state, each scaled to a largest component of one."""
     structure, columns = subject.structure, subject.columns(state)
     q, others = state.q[columns], len(state.names) - len(columns)
     rigid = others if others and not np.abs(state.linear.stiffness[:, 0]).any() else 0
     # With the mode of a hub that a spring holds, and those of the body that are its own.
-    moving = state.vibrations(gyroscopic=gyroscopic).oscillating(slice(structure.resolved + others - rigid))
+    moving = moving.oscillating(slice(structure.resolved + others - rigid))
     coordinates, direction = moving.modes[columns], subject.directions(state, moving.modes)
     shape = np.moveaxis(structure.station_slopes(q) @ coordinates, -1, 0)
     # Turn each shape so that its largest component is 1.
@@ -149,10 +152,11 @@ def modes(
     if not subject.body:
         subject.system.require_damping("that of its modes")
     state = settled(subject.system, subject.drive(time))
+    moving = state.vibrations(gyroscopic=gyroscopic)
     computed: Any = (
-        modes_of_body(subject, state, gyroscopic=gyroscopic, name=name)
+        modes_of_body(subject, state, moving, gyroscopic=gyroscopic, name=name)
         if subject.body
-        else system_modes(state, state.vibrations(gyroscopic=gyroscopic), time, name)
+        else system_modes(state, moving, time, name)
     )
     computed = decided(computed, state.bend)
     if not errors:
@@ -160,8 +164,7 @@ def modes(
     stated = unknown_errors(subject.system, len(computed.eigenvalue))
     if judged_bodies(subject.system):
         tell(progress, BY_RICHER, 0.5)
-        which = slice(len(computed.eigenvalue))
-        moving = state.vibrations(gyroscopic=gyroscopic).oscillating(which)
+        moving = moving.oscillating(slice(len(computed.eigenvalue)))
         stated = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
         # Modes above those that are known have their own warning.
         reached = math.inf if subject.body else computed.reached

@@ -46,7 +46,7 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import SLIPS
 from gbeam.mechanics.tree.system import System
-from gbeam.results.errors import ErrorEstimate, Errors
+from gbeam.results.errors import ErrorEstimate, Errors, largest_known
 from gbeam.results.parts import Base
 
 Again = Callable[[System], Solution]  # solution of another system, at the results' times
@@ -173,10 +173,11 @@ def system_errors(
     if finer < stride * skipped:
         solution = every(finer)
         errors, _, lacking = judge(solution, solution.read(judged))
-    moved = [warning for name, body in judged.items() for warning in of_bodies(
-        body, name if len(judged) > 1 else "", lacking.causes.get(name, {}), lacking.bodies.get(name, np.zeros(0)),
-        sizes[name, DEFLECTION], tolerance,
-    )]  # fmt: skip
+    moved = list[str]()
+    for name, body in judged.items():
+        causes, distances = lacking.causes.get(name, {}), lacking.bodies.get(name, np.zeros(0))
+        named = name if len(judged) > 1 else ""
+        moved += of_bodies(body, named, causes, distances, sizes[name, DEFLECTION], tolerance)
     return errors, tuple(moved)
 
 
@@ -272,14 +273,15 @@ def _judged(
         known.peaks_by_step, known.friction,
     )  # fmt: skip
 
-    def of_bodies(error: Callable[[str], ErrorEstimate]) -> list[ErrorEstimate]:
-        """Errors of the bodies; the model is unknown of those that have no other."""
-        alone = [name for name, body in judged.items() if body.source is None and body.exact]
-        return [replace(error(name), **({"model": math.nan} if name in alone else {})) for name in judged]
+    def by_body(error: Callable[[str], ErrorEstimate]) -> list[ErrorEstimate]:
+        """Errors of each body; the model is unknown of one that has no other."""
+        without = [body.source is None and body.exact for body in judged.values()]
+        errors = zip(map(error, judged), without, strict=True)
+        return [replace(each, model=math.nan) if alone else each for each, alone in errors]
 
     of_places = judgement.error(PLACE)
-    bent = of_bodies(lambda name: judgement.error((name, DEFLECTION)))
-    loads, stress = of_bodies(judgement.loads), of_bodies(lambda name: judgement.error((name, "stress")))
+    bent = by_body(lambda name: judgement.error((name, DEFLECTION)))
+    loads, stress = by_body(judgement.loads), by_body(lambda name: judgement.error((name, "stress")))
     deforms = any((name, DEFLECTION) not in known.nothing for name in judged)
     return Errors(
         displacement=worst(bent) if deforms else of_places,
@@ -333,7 +335,7 @@ def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
         parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh, error.friction
         if what == "deflections are" and error is errors.place:
             continue
-        stated = max(filter(math.isfinite, (error.total, error.step)), default=0.0)
+        stated = largest_known(error.total, error.step)
         if not stated > tolerance:
             continue
         share = percent(stated)

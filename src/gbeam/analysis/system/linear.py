@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, Quantity
+from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity
 from gbeam.analysis.accuracy.estimate import LIMIT, not_known
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.system.accuracy import doubts, system_errors
@@ -38,7 +38,7 @@ from gbeam.results.system import BeamShape, SystemModes, SystemRest
 
 def stepless(system: System) -> dict[Quantity, float]:
     """Errors of the time steps of a state of rest, which takes none: zero of every quantity."""
-    kinds = (DEFLECTION, "force", "moment", "stress", "sheared")
+    kinds = (DEFLECTION, *LOADS, "sheared")
     return {PLACE: 0.0} | {(name, kind): 0.0 for name in system.flexible for kind in kinds}
 
 
