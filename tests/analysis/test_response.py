@@ -175,6 +175,7 @@ def test_progress_is_told() -> None:
         "integrating",
         "checking with twice the step",
         "checking with four times the step",
+        "errors of shapes and models",
     }
     assert told[-1][1] == 1.0
 

@@ -6,6 +6,7 @@ shorter than a step, rounded or not.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -16,8 +17,7 @@ from numpy.polynomial import legendre
 
 from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
 from gbeam.analysis.response.peaks import peaks_of_coordinates
-from gbeam.analysis.response.problem import problem_of
-from gbeam.analysis.response.run import Run
+from gbeam.analysis.response.posed import Posed, pose, prepared
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import observed_order
 from gbeam.analysis.response.stepping import answered, refine
@@ -69,19 +69,25 @@ INTEGRALS = np.stack(
 )
 
 
+def posed(name: str) -> Posed:
+    structure, motion, duration, _ = CASES[name]
+    settings = ResponseSettings(duration)
+    return pose(prepared(structure, motion, settings), settings, duration / 100)
+
+
 @cache
 def states(name: str) -> tuple[np.ndarray, np.ndarray]:
     """Ends of panels, of which none has a corner inside, and the solution (q, q̇) at each one's start and its points.
 
     The equations are linear: all panels are solved at once for what their starts and the loads bring, then joined.
     """
-    structure, motion, duration, corners = CASES[name]
-    problem = problem_of(structure, motion, 0.0)
+    structure, _, duration, corners = CASES[name]
+    problem = posed(name)
     equations: Any = problem.equations
     fastest = float(structure.rest[0][-1])
     stretches = pairwise([0.0, *corners, duration])
     ends = np.concatenate([[0.0], *(np.linspace(a, b, 4 + int((b - a) * fastest))[1:] for a, b in stretches)])
-    widths, n = np.diff(ends), len(problem.q)
+    widths, n = np.diff(ends), len(problem.start.y)
     time = (ends[:-1, None] + widths[:, None] * POINTS).ravel()
     c, k, f = equations.matrices(equations.drive(time))
     rates, arguments = np.zeros((len(time), 2 * n, 2 * n)), np.zeros((len(time), 2 * n))
@@ -100,7 +106,7 @@ def states(name: str) -> tuple[np.ndarray, np.ndarray]:
         axis=2,
     )
     at_points = np.linalg.solve(np.eye(m * size) - coupling, right).reshape(panels, m, size, size + 1)
-    state, values = np.concatenate([problem.q, problem.qd]), np.empty((panels, m + 1, size))
+    state, values = np.concatenate([problem.start.y, problem.start.yd]), np.empty((panels, m + 1, size))
     for p in range(panels):
         values[p, 0], values[p, 1:] = state, at_points[p] @ np.append(state, 1.0)
         state = state + scaled[p, -1] @ (np.einsum("iab,ib->ia", rates[p], values[p, 1:]) + arguments[p])
@@ -116,7 +122,7 @@ def truth(name: str, time: np.ndarray) -> tuple[np.ndarray, Any]:
     through = np.linalg.inv(legendre.legvander(np.append(-1.0, 2 * POINTS - 1), len(POINTS)))
     both = np.einsum("tk,tks->ts", legendre.legvander(places, len(POINTS)), (through @ values)[panel])
     q, qd = np.split(both, 2, axis=1)
-    equations: Any = problem_of(structure, motion, 0.0).equations
+    equations: Any = posed(name).equations
     c, k, f = equations.matrices(equations.drive(time))
     force = f - (k @ q[..., None] + c @ qd[..., None])[..., 0]
     qdd, base = np.linalg.solve(equations.mass, force.T).T, motion.base(time)
@@ -215,24 +221,30 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
     def vector(q: np.ndarray) -> np.ndarray:
         return np.asarray(q * np.array([0.0, 0.0, 1.0]))
 
-    class Wave(Run):
-        prepared = poses = by_steps = traced = described = None
+    @dataclass(frozen=True)
+    class Wave:
+        flight: Trajectory
+        step: float
+        whole, bends, missed = True, False, ()
 
         @property
         def moved(self) -> list[np.ndarray]:
-            return [vector(self.trajectory.q)]
+            return [vector(self.flight.q)]
 
         @property
         def peaks(self) -> list[np.ndarray]:
-            return [peaks_of_coordinates(self.trajectory, self.moved[0], vector)] * 2
+            return [peaks_of_coordinates(self.flight, self.moved[0], vector)] * 2
+
+        def aims(self, aim: float, enough: float) -> list[float]:
+            return [aim]
 
         def loads(self, stride: int) -> list[np.ndarray]:
             return []
 
-    def run(step: float, _: str) -> Run:
+    def run(step: float, _: str) -> Wave:
         time = step * np.arange(round(10 / step) + 1)
         q, qd = ((1 + error(step)) * wave(time)[:, None] for wave in (np.sin, np.cos))
-        return Wave(Trajectory(time, q, qd, -q), step, None)
+        return Wave(Trajectory(time, q, qd, -q), step)
 
     assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
     answer, errors = answered(refine(0.02, 2, settings), run)

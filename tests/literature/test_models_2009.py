@@ -12,10 +12,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gbeam import Hub, Sine, SmoothStep
-from gbeam.analysis.response.problem import problem_of
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.schemes import newmark
+from gbeam import Hub, ResponseSettings, Sine, SmoothStep
+from gbeam.analysis.response.posed import pose, prepared
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH
 from validation.published.tables import SLEWS, TORQUES
 
@@ -40,12 +38,11 @@ def tip(kind: str, counts: tuple[int, int], drive: str, level: float, mt: float)
         if drive == "slew"
         else Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, torque=Sine(level, 10.0))
     )
-    problem = problem_of(beam, motion, 0.0)
-    end = 50.0 if drive == "slew" else 20.0
-    still = np.zeros_like(problem.q)
-    answer = integrate(problem.equations, newmark(), problem.q, still, step=STEP, count=round(end / STEP))
+    settings = ResponseSettings(50.0 if drive == "slew" else 20.0, step=STEP, integrator="newmark")
+    posed = pose(prepared(beam, motion, settings), settings, STEP)
+    answer = posed.integrated(STEP)
     assert answer.converged
-    return beam.displacement(answer.q[:, problem.first :])[:, -1, 1]
+    return beam.displacement(answer.q[:, posed.columns("beam")])[:, -1, 1]
 
 
 def sizes(drive: str, history: np.ndarray) -> tuple[float, float]:

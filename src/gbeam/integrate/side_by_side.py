@@ -155,6 +155,11 @@ class Run:
             return None
         return "linear", len(self.q), magnitude, self.parts
 
+    @property
+    def linear(self) -> bool:
+        """True if its equations are linear."""
+        return isinstance(self.equations, LinearEquations)
+
     @cached_property
     def residual(self) -> tuple[list[Array], Any]:
         """Arrays and form of the residual of nonlinear equations."""

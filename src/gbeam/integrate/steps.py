@@ -7,6 +7,7 @@ first order, whatever the scheme; a corner one of third, which only schemes of f
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -103,6 +104,20 @@ def fitted(start: float, step: float, count: int, corners: Corners | None = None
         return _fitted(start, step, count, corners)
     key = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())
     return _shared(start, step, count, key)
+
+
+def joined(parts: Sequence[Steps]) -> Steps:
+    """Steps of parts that follow one another; a scheme starts anew where their lengths differ."""
+    if len(parts) == 1:
+        return parts[0]
+    whole = Steps(
+        *(np.concatenate([getattr(part, field.name) for part in parts]) for field in dataclasses.fields(Steps))
+    )
+    last = np.cumsum([len(part) for part in parts[:-1]]) - 1
+    following, resume = (values.copy() for values in (whole.following, whole.resume))
+    following[last], resume[last] = whole.length[last + 1], whole.first[last + 1]
+    anew = whole.jump | (following != whole.length)
+    return dataclasses.replace(whole, following=following, resume=resume, anew=anew)
 
 
 @lru_cache(maxsize=8)

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.analysis.control.linearization import linearize
 from gbeam.analysis.response.differentiated import Differentiated, Grid
 from gbeam.analysis.response.peaks import half_ranges
-from gbeam.analysis.response.posed_system import PosedSystem, state_at
+from gbeam.analysis.response.posed import pose, prepared
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
@@ -25,7 +25,6 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import accelerations, slopes
-from gbeam.integrate.steps import fitted
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
@@ -323,13 +322,12 @@ class OnJoint:
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
         tree, k = system.tree, system.coordinates.index(self.coordinate)
-        start, count = state_at(system, None, settings), round(settings.duration / settings.step)
-        posed = PosedSystem(system, None, settings, settings, start, settings.step)
-        corners = posed.felt.felt_by(scheme)
-        grid = fitted(settings.start, settings.duration / count, count, corners)
+        kept = settings.duration / round(settings.duration / settings.step)
+        posed = pose(prepared(system, None, settings), settings, kept)
+        grid = posed.steps(kept)
         # Derivatives need the states at all ends of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
-        run = through(posed.equations, scheme, *start, steps)
+        run = through(posed.equations, scheme, posed.start.y, posed.start.yd, steps)
 
         def command(profile: Profile, time: Floats) -> Floats:
             """The effort (t, 1), or angle, rate and acceleration (t, 3)."""
@@ -355,19 +353,19 @@ class OnJoint:
             changed = np.stack([command(more, time) - command(less, time) for less, more in pairs], axis=-1) / width
             return mass, damping, stiffness, -slope @ changed
 
-        kept = np.append(0, 1 + np.flatnonzero(grid.kept))
+        ends = np.append(0, 1 + np.flatnonzero(grid.kept))
 
         def moved(by: Floats | float) -> Ran:
             """The run with `by` added to its free coordinates."""
-            q = np.zeros((len(kept), tree.size))
-            q[:, tree.free] = run.q[kept] + by
-            tip, left = self._tip(system, run.time[kept], q, settings)
-            return Ran(run.time[kept], tip, "done", "", left, settings.step or np.nan)
+            q = np.zeros((len(ends), tree.size))
+            q[:, tree.free] = run.q[ends] + by
+            tip, left = self._tip(system, run.time[ends], q, settings)
+            return Ran(run.time[ends], tip, "done", "", left, settings.step or np.nan)
 
         def varied() -> Iterator[tuple[Ran, Ran]]:
             still = np.zeros((len(tree.free), len(pairs)))
             changes = tangent(linear, scheme, steps, run, still, still, accelerations=False)[0]
-            for change in np.moveaxis(width / 2 * changes[kept], -1, 0):
+            for change in np.moveaxis(width / 2 * changes[ends], -1, 0):
                 yield moved(-change), moved(change)
 
         return moved(0.0), varied()

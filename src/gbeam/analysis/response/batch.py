@@ -10,20 +10,21 @@ from typing import Any, TypeVar, Unpack
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
-from gbeam.analysis.response.posed import Posed, pose
-from gbeam.analysis.response.record import StructureRun, response_of
+from gbeam.analysis.response.posed import Posed, poses, prepared
+from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.simulation import settings_of, simulate
-from gbeam.analysis.response.stepping import Plan, first_steps, scheme_of
+from gbeam.analysis.response.simulation import described, settings_of, simulate
+from gbeam.analysis.response.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Bar, Progress, tell
 from gbeam.results.errors import StepErrors
-from gbeam.results.response import Response
+from gbeam.results.parts import Base
 
 Item = TypeVar("Item")
 TOGETHER = 32  # cases: their states stay in a processor's cache, and its vectors are full
@@ -37,7 +38,7 @@ class _Case:
 
     index: int
     posed: Posed
-    plan: Plan[StructureRun]
+    plan: Plan[Run]
     step: float
     run: Any
 
@@ -46,7 +47,7 @@ class _Case:
         """Key, equal for cases that can be integrated together; None for a case to be integrated alone."""
         if 3 * self.run.q.size * len(self.run.steps) * TOGETHER > LONGEST:
             return None
-        return None if self.run.shape is None else (self.posed.motion.kind, self.posed.structure.linear, self.run.shape)
+        return self.run.shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,21 +56,21 @@ class _Ended:
 
     index: int
     posed: Posed
-    run: StructureRun
+    run: Run
     errors: StepErrors
     known: dict[str, Any]
 
 
 @typed
 def simulate_batch(
-    cases: Iterable[tuple[Structure, Motion]],
+    cases: Iterable[tuple[Structure | System, Motion | None]],
     settings: ResponseSettings | None = None,
     *,
     together: int = TOGETHER,
     one_structure: bool = False,
     progress: Progress = None,
     **options: Unpack[Settings],
-) -> Iterator[tuple[int, Response]]:
+) -> Iterator[tuple[int, Any]]:
     """Compute the responses of many cases.
 
     Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes: of one
@@ -131,9 +132,7 @@ def simulate_batch(
     return _told(_responses(cases, settings, together, one_structure), cases, progress)
 
 
-def _told(
-    responses: Iterator[tuple[int, Response]], cases: Iterable[Any], progress: Progress
-) -> Iterator[tuple[int, Response]]:
+def _told(responses: Iterator[tuple[int, Any]], cases: Iterable[Any], progress: Progress) -> Iterator[tuple[int, Any]]:
     """The responses, and a word after each."""
     count = len(cases) if isinstance(cases, Sized) else 0
     of = f" of {count}" if count else ""
@@ -145,8 +144,11 @@ def _told(
 
 
 def _responses(
-    cases: Iterable[tuple[Structure, Motion]], settings: ResponseSettings, together: int, one_structure: bool
-) -> Iterator[tuple[int, Response]]:
+    cases: Iterable[tuple[Structure | System, Motion | None]],
+    settings: ResponseSettings,
+    together: int,
+    one_structure: bool,
+) -> Iterator[tuple[int, Any]]:
     """Yield index and response of each case, integrating `together` cases as soon as so many of one shape wait."""
     waiting: dict[Hashable, list[_Case]] = {}
 
@@ -156,7 +158,7 @@ def _responses(
         queue.append(case)
         return waiting.pop(case.shape) if len(queue) == together else []
 
-    def through(queue: list[_Case]) -> Iterator[tuple[int, Response]]:
+    def through(queue: list[_Case]) -> Iterator[tuple[int, Any]]:
         """Integrate a queue together, then the queues that its cases fill as they wait for their next runs."""
         ready = [queue]
         while ready:
@@ -167,23 +169,23 @@ def _responses(
                     ready.append(more)
 
     first, last, traced = None, None, False
+    structure: Any
     for index, (structure, motion) in enumerate(cases):
         first = first or structure
         if one_structure and structure is not first:
             fix = "leave out one_structure, or give the same object"
             raise InputError("one_structure", f"is true, and case {index} has another structure than the first", fix)
         if structure is not last:
-            structure.require_damping("the response")
             last, traced = structure, structure.holds_jax
-        motion = motion.over(settings.start, settings.start + settings.duration)
-        if traced or holds_jax(motion):
+        subject = prepared(structure, motion, settings)
+        if traced or holds_jax(subject.motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
-        *longer, step = first_steps(structure, motion, settings)
-        posed = pose(structure, motion, settings, *step)
-        if longer or posed.before or posed.after:
-            yield index, simulate(structure, motion, settings)
+        *longer, posed = poses(subject, settings)
+        if longer or posed.before or posed.after or posed.controllers is not None:
+            yield index, simulate(structure, subject.motion, settings)
             continue
-        case = _going_on(index, posed, structure.equations if one_structure else None, posed.plan())
+        common = [body.equations for body in posed.system.flexible.values()] if one_structure else None
+        case = _going_on(index, posed, common, posed.plan())
         if isinstance(case, _Ended):
             yield from _responses_of([case])
         elif queue := full(case):
@@ -196,8 +198,8 @@ def _going_on(
     index: int,
     posed: Posed,
     common: Any,
-    plan: Plan[StructureRun],
-    run: StructureRun | None = None,
+    plan: Plan[Run],
+    run: Run | None = None,
     known: dict[str, Any] | None = None,
 ) -> _Case | _Ended:
     """Send a run to a plan; return the case with the run that it wants next, or ended. `known` belongs to the run sent,
@@ -206,44 +208,47 @@ def _going_on(
     from gbeam.integrate import side_by_side
 
     scheme = scheme_of(posed.settings)
-    q, qd = (np.asarray(x) for x in (posed.problem.q, posed.problem.qd))
+    q, qd = np.asarray(posed.start.y), np.asarray(posed.start.yd)
     try:
         while True:
             step, _ = next(plan) if run is None else plan.send(run)
-            wanted = side_by_side.Run(posed.problem.equations, q, qd, posed.steps(step), scheme, common)
+            wanted = side_by_side.Run(posed.equations, q, qd, posed.steps(step), scheme, common)
             case = _Case(index, posed, plan, step, wanted)
             if case.shape is not None:
                 return case
-            run, known = StructureRun.by_steps(posed, step), None
+            run, known = Run.by_steps(posed, step), None
     except StopIteration as end:
         chosen, errors = end.value
     return _Ended(index, posed, chosen, errors, known if known and chosen is run else {})
 
 
-def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Response]]:
+def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Any]]:
     """Integrate a queue; yield cases that wait for another run, and index and response of those that have ended."""
     from gbeam.integrate.side_by_side import integrate_together
 
     # Filled up with the last case: one compiled program serves queues of any length, without a change of digits.
     filling = [queue[-1].run] * (together - len(queue))
     trajectories = integrate_together([case.run for case in queue] + filling)[: len(queue)]
-    numbers = 3 * len(queue[0].run.steps) * max(len(case.posed.structure.stations) for case in queue)
-    count = max(1, SHORT // numbers)
+    stations = max(sum(len(body.stations) for body in case.posed.system.flexible.values()) for case in queue)
+    count = max(1, SHORT // (3 * len(queue[0].run.steps) * max(stations, 1)))
     for k in range(0, len(queue), count):
         yield from _read(queue[k : k + count], trajectories[k : k + count])
 
 
-def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator[_Case | tuple[int, Response]]:
+def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator[_Case | tuple[int, Any]]:
     """Send the cases their trajectories; yield those that wait for another run, and the responses of the others."""
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
-        posed, known = case.posed, None
+        posed, known = case.posed, dict[str, Any]()
         if trajectory is None or posed.too_far(trajectory.q, moved) is not None:
-            run = StructureRun.by_steps(posed, case.step)  # which stops where its model ceases to hold
+            run = Run.by_steps(posed, case.step)  # which stops where its model ceases to hold
         else:
-            run, known = StructureRun(trajectory, case.step, posed), {"moved": moved}
-            if posed.structure.linear and not posed.motion.free and run.stride == 1:
-                known["base"], _ = case.run.at_times or (None, None)
+            run = Run(trajectory, case.step, posed)
+            if posed.subject.body:
+                known["moved"] = moved[posed.subject.body]
+                if run.stride == 1 and case.run.linear and (roots := case.run.at_times) is not None:
+                    ((root, _),) = roots
+                    known["base"] = Base(root.a, root.w, root.alpha)
         after = _going_on(case.index, posed, case.run.common, case.plan, run, known)
         if isinstance(after, _Case):
             yield after
@@ -252,34 +257,39 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
     yield from _responses_of(ended)
 
 
-def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[Any]:
-    """For each trajectory the displacements (t, s, 3) m of the stations at every step; None for None."""
-    displacements: list[Any] = [None] * len(queue)
+def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[dict[str, Any]]:
+    """For each trajectory the displacements (t, s, 3) m of the stations of each body at every step; none for None."""
+    displacements: list[dict[str, Any]] = [{} for _ in queue]
     completed = [
-        (k, case.posed, t) for k, (case, t) in enumerate(zip(queue, trajectories, strict=True)) if t is not None
+        (k, body, case.posed.columns(name), name, trajectory)
+        for k, (case, trajectory) in enumerate(zip(queue, trajectories, strict=True))
+        for name, body in case.posed.system.flexible.items()
+        if trajectory is not None
     ]
-    for group in _alike(completed, lambda item: (id(item[1].structure), len(item[2].time))):
-        posed = group[0][1]
-        q = np.stack([trajectory.q[:, posed.beam] for _, _, trajectory in group])
-        for (k, _, _), moved in zip(group, np.asarray(posed.structure.displacement(q)), strict=True):
-            displacements[k] = moved
+    for group in _alike(completed, lambda item: (id(item[1]), len(item[-1].time))):
+        body = group[0][1]
+        q = np.stack([trajectory.q[:, columns] for _, _, columns, _, trajectory in group])
+        for (k, _, _, name, _), moved in zip(group, np.asarray(body.displacement(q)), strict=True):
+            displacements[k][name] = moved
     return displacements
 
 
-def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Response]]:
+def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Any]]:
     """Indices and responses of cases that have ended; peaks are computed together for each structure and grid."""
 
     def key(case: _Ended) -> Hashable:
-        return id(case.posed.structure), case.run.trajectory.time.tobytes()
+        return id(case.posed.subject.structure), case.run.trajectory.time.tobytes()
 
     for group in _alike([case for case in ended if case.known], key):
         posed, moved = group[0].posed, np.stack([case.known["moved"] for case in group])
         trajectories, late = [case.run.trajectory for case in group], posed.settings.residual_from
-        peaks = displacement_peaks(posed.structure, trajectories, posed.problem.first, moved, late)
+        subject = posed.subject
+        first = posed.columns(subject.body).start
+        peaks = displacement_peaks(subject.structure, trajectories, first, moved, late)
         for case, displacement, case_peaks in zip(group, moved, peaks, strict=True):
             case.known.update(moved=displacement.copy(), peaks=case_peaks)
     for case in ended:
-        yield case.index, response_of(case.run, case.errors, "", **case.known)
+        yield case.index, described(case.run, case.errors, "", **case.known)
 
 
 def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:

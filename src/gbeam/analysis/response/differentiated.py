@@ -16,62 +16,74 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.posed import Posed
-from gbeam.analysis.response.problem import problem_of
-from gbeam.analysis.response.record import StructureRun, response_of
+from gbeam.analysis.response.posed import Posed, begun, first_step, pose, prepared
+from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.stepping import first_step, scheme_of, steps_beyond
+from gbeam.analysis.response.simulation import described
+from gbeam.analysis.response.stepping import scheme_of
 from gbeam.arrays.types import Floats
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations, slopes
 from gbeam.integrate.schemes import Scheme, added, stepped
-from gbeam.integrate.steps import Steps, fitted
-from gbeam.integrate.tangent import System, tangent
-from gbeam.mechanics.equations.dalembert import OnBase
+from gbeam.integrate.steps import Steps
+from gbeam.integrate.tangent import System as Tangent
+from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.response import Response
 
 Pair = tuple[Posed, Posed]  # the problems with less and with more of a parameter
 Within = tuple[Scheme, Steps]  # a scheme and its fitted steps
 
 
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """Residual of linear equations, with terms added to their M and C (n, n)."""
+
+    equations: LinearEquations
+    mass: Floats | float = 0.0
+    damping: Floats | float = 0.0
+
+    def slopes(self, inputs: Any) -> tuple[Floats, Floats, Floats, Floats]:
+        """M, C, K (t, n, n) and F (t, n) at inputs (t, ...)."""
+        c, k, f = self.equations.matrices(inputs)
+        return np.broadcast_to(self.equations.mass + self.mass, k.shape), c + self.damping, k, f
+
+    def __call__(self, q: Floats, qd: Floats, qdd: Floats, inputs: Any) -> Floats:
+        mass, c, k, f = self.slopes(inputs)
+        forces = mass @ qdd[..., None] + c @ qd[..., None] + k @ q[..., None]
+        return np.asarray(forces[..., 0] - f)
+
+
 def _residual(posed: Posed, within: Within | None) -> Any:
     """The residual of a problem or, `within` fitted steps, that of the modified equations which these solve."""
-    equations: Any = posed.problem.equations
+    equations: Any = posed.equations
     if not isinstance(equations, LinearEquations):
-        return equations.residual if within is None else stepped(equations, *within, len(posed.problem.q))
-    c = posed.structure.coefficients
-    if within is not None:
-        mass, damping = added(equations, within[0], within[1].longest)
-        c = replace(c, mass=c.mass + mass, damping=c.damping + damping)
-    return OnBase(c)
+        return equations.residual if within is None else stepped(equations, *within, len(posed.start.y))
+    return _Linear(equations, *(() if within is None else added(equations, within[0], within[1].longest)))
 
 
-def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> System:
+def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> Tangent:
     """Function of times and states of the nominal problem that returns M, C, K (t, n, n) and the forces (t, n, p) by
     parameters, each of which differs by its `width` (p,) in a pair; `within` as in `_residual`.
     """
     residual = _residual(nominal, within)
     residuals = [[_residual(posed, within) for posed in pair] for pair in pairs]
-    linear = isinstance(nominal.problem.equations, LinearEquations)
 
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         inputs = nominal.drive(time)
-        if linear:
-            base, loads = inputs
-            c, k, f = residual.equations.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
-            mass = np.broadcast_to(residual.equations.mass, k.shape)
+        if isinstance(residual, _Linear):
+            mass, c, k, f = residual.slopes(inputs)
             qdd = np.linalg.solve(mass[0], (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
         else:
             qdd = accelerations(residual, q, qd, inputs)
             k, c, mass = slopes(residual, q, qd, qdd, inputs)
         forces = np.empty((*q.shape, len(pairs)))
         for j, pair in enumerate(pairs):
-            # A parameter of the beam alone leaves the motion as it is.
+            # A parameter of the bodies alone leaves the motion as it is.
             less, more = (
                 residual_of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.drive(time))
                 for residual_of, posed in zip(residuals[j], pair, strict=True)
@@ -82,7 +94,7 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Wit
     return system
 
 
-Variant = tuple[Structure | None, Motion | None]  # None: that of the nominal problem
+Variant = tuple[Structure | System | None, Motion | None]  # None: that of the nominal problem
 _BYTES = 256 * 2**20  # of derivatives in memory at once
 _SAME_TIME = 1e-9  # of the duration
 
@@ -95,12 +107,13 @@ class Grid:
     stride: int
 
     @staticmethod
-    def of(structure: Structure, motion: Motion, settings: ResponseSettings, done: Response) -> Grid:
+    def of(structure: Structure | System, motion: Motion | None, settings: ResponseSettings, done: Any) -> Grid:
         """Grid of the run that a response comes from."""
         if settings.step is not None:
             return Grid(done.step, 1)
-        prepared = motion.over(settings.start, settings.start + settings.duration)
-        return Grid(done.step, max(1, round(first_step(structure, prepared, settings) / done.step)))
+        subject = prepared(structure, motion, settings)
+        kept = first_step(subject, begun(subject, settings, settings.start), settings)
+        return Grid(done.step, max(1, round(kept / done.step)))
 
 
 class Differentiated:
@@ -108,8 +121,8 @@ class Differentiated:
 
     def __init__(
         self,
-        structure: Structure,
-        motion: Motion,
+        structure: Structure | System,
+        motion: Motion | None,
         settings: ResponseSettings,
         grid: Grid,
         name: str,
@@ -120,32 +133,20 @@ class Differentiated:
         self.grid, self.name, self.axes = grid, name, axes
         self._own_axes: AxesResult | None = None
         self.settings = replace(settings, estimate=False, loads=loads)
-        start, duration = settings.start, settings.duration
-        motion = motion.over(start, start + duration)
         self.scheme = scheme_of(settings)
-        kept = grid.stride * grid.step
-        before, after = steps_beyond(motion, settings, kept)
-        self.begin = start - before * kept
-        self.nominal = self._posed((structure, motion))
+        subject = prepared(structure, motion, self.settings)
+        self.given: tuple[Structure | System, Motion | None] = structure, subject.motion
+        self.nominal = pose(subject, self.settings, grid.stride * grid.step)
         self.jumps = self._jumps(self.nominal)
-        count = round(duration / grid.step)
-        up, down = fitted(self.begin, kept, before), fitted(start + kept * (count // grid.stride), kept, after)
-        felt = self.nominal.felt.felt_by(self.scheme)
-        self.parts = up, fitted(start, grid.step, count, felt), down
+        self.steps = self.nominal.steps(grid.step)
         # Derivatives need the states at all ends of split steps, too.
-        problem = self.nominal.problem
-        q, qd = problem.q, problem.qd
-        self.runs: list[Trajectory | None] = []
-        for part in self.parts:
-            run = None
-            if len(part):
-                run = through(problem.equations, self.scheme, q, qd, replace(part, kept=np.ones(len(part), dtype=bool)))
-                q, qd = run.q[-1], run.qd[-1]
-            self.runs.append(run)
+        every = replace(self.steps, kept=np.ones(len(self.steps), dtype=bool))
+        start = self.nominal.start
+        self.run = through(self.nominal.equations, self.scheme, start.y, start.yd, every)
 
     def pair(self, less: Variant, more: Variant) -> Pair:
         """Pose the problems with a little less and a little more of a parameter."""
-        return self._posed(less), self._posed(more)
+        return self._varied(less), self._varied(more)
 
     def jumps_move(self, pair: Pair) -> bool:
         """True if the jumps of either problem are not at the nominal times: steps fixed at those would miss them."""
@@ -157,52 +158,42 @@ class Differentiated:
                 return True
         return False
 
-    def unvaried(self) -> Response:
+    def unvaried(self) -> Any:
         """Response of the run itself."""
-        return self._response(self.nominal, [None] * 3)
+        return self._response(self.nominal, None)
 
-    def responses(self, pairs: Sequence[Pair], width: Floats) -> Iterator[tuple[Response, Response]]:
+    def responses(self, pairs: Sequence[Pair], width: Floats) -> Iterator[tuple[Any, Any]]:
         """Responses with less and with more of each parameter, which differ by its `width` (p,)."""
-        size = 24 * self.nominal.problem.q.size * sum(len(part) + 1 for part in self.parts)  # bytes of one parameter
+        size = 24 * self.nominal.start.y.size * (len(self.steps) + 1)  # bytes of one parameter
         count = max(1, _BYTES // size)
         for first in range(0, len(pairs), count):
             chosen, widths = pairs[first : first + count], width[first : first + count]
             slopes = self._slopes(chosen, widths)
             for k, (pair, w) in enumerate(zip(chosen, widths, strict=True)):
-                moves = [None if part is None else tuple(x[..., k] * w / 2 for x in part) for part in slopes]
-                back = [None if part is None else tuple(-x for x in part) for part in moves]
-                yield self._response(pair[0], back), self._response(pair[1], moves)
+                moves = tuple(x[..., k] * w / 2 for x in slopes)
+                yield self._response(pair[0], tuple(-x for x in moves)), self._response(pair[1], moves)
 
-    def _slopes(self, pairs: Sequence[Pair], width: Floats) -> list[tuple[Floats, ...] | None]:
-        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of kept steps of spin-up, flight, spin-down; None without."""
-        system = linearised(self.nominal, pairs, width)
+    def _slopes(self, pairs: Sequence[Pair], width: Floats) -> tuple[Floats, ...]:
+        """Derivatives of q, q̇, q̈ (t, n, p) at the ends of kept steps."""
         less, more = zip(*pairs, strict=True)
         q, qd = (
-            np.stack([getattr(b.problem, x) - getattr(a.problem, x) for a, b in zip(less, more, strict=True)], 1)
-            / width
-            for x in ("q", "qd")
+            np.stack([getattr(b.start, x) - getattr(a.start, x) for a, b in zip(less, more, strict=True)], 1) / width
+            for x in ("y", "yd")
         )
-        slopes: list[tuple[Floats, ...] | None] = []
-        for steps, run in zip(self.parts, self.runs, strict=True):
-            if run is None:
-                slopes.append(None)
-                continue
-            within = linearised(self.nominal, pairs, width, (self.scheme, steps))
-            histories = tangent(system, self.scheme, steps, run, q, qd, within=within)
-            q, qd = histories[0][-1], histories[1][-1]
-            kept = np.append(True, steps.kept)
-            slopes.append(tuple(x[kept] for x in histories))
-        return slopes
+        system = linearised(self.nominal, pairs, width)
+        within = linearised(self.nominal, pairs, width, (self.scheme, self.steps))
+        histories = tangent(system, self.scheme, self.steps, self.run, q, qd, within=within)
+        kept = np.append(True, self.steps.kept)
+        return tuple(x[kept] for x in histories)
 
-    def _response(self, posed: Posed, moves: Sequence[tuple[Floats, ...] | None]) -> Response:
-        """Response of a problem by the nominal run's histories, changed by `moves` in each part."""
-        up, flight, down = (
-            None if run is None else _moved(run, steps, by)
-            for run, steps, by in zip(self.runs, self.parts, moves, strict=True)
-        )
-        assert flight is not None
-        run = StructureRun(flight, self.grid.step, posed, up, down)
-        return response_of(run, StepErrors(), self.name, axes_of=self._axes)
+    def _response(self, posed: Posed, by: tuple[Floats, ...] | None) -> Any:
+        """Response of a problem by the nominal run's histories, at the ends of kept steps, changed `by` q, q̇ and q̈."""
+        kept = np.append(True, self.steps.kept)
+        histories = [x[kept] for x in (self.run.q, self.run.qd, self.run.qdd)]
+        if by is not None:
+            histories = [x + dx for x, dx in zip(histories, by, strict=True)]
+        moved = Trajectory(self.run.time[kept], *histories)
+        return described(Run(moved, self.grid.step, posed), StepErrors(), self.name, axes_of=self._axes)
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
         """The machine's axes if wanted; those of the nominal motion are computed once."""
@@ -215,26 +206,13 @@ class Differentiated:
             self._own_axes = axes
         return axes
 
-    def _posed(self, variant: Variant) -> Posed:
-        """Pose the problem of a variant from the start of the nominal run."""
-        structure, motion = variant
-        structure = structure or self.nominal.structure
-        if motion is None:
-            motion = self.nominal.motion
-        else:
-            motion = motion.over(self.settings.start, self.settings.start + self.settings.duration)
-        problem = problem_of(structure, motion, self.begin, self.settings.begin)
-        return Posed(structure, motion, self.settings, problem, self.grid.stride * self.grid.step)
+    def _varied(self, variant: Variant) -> Posed:
+        """Pose the problem of a variant from the start of the nominal run, with its spin-up and spin-down."""
+        (structure, motion), (structure_now, motion_now) = variant, self.given
+        structure, motion = structure or structure_now, motion or motion_now
+        subject, nominal = prepared(structure, motion, self.settings), self.nominal
+        return replace(nominal, subject=subject, start=begun(subject, self.settings, nominal.begin))
 
     def _jumps(self, posed: Posed) -> Floats:
         """Times at which something jumps."""
         return posed.felt.time[posed.felt.jump]
-
-
-def _moved(run: Trajectory, steps: Steps, by: tuple[Floats, ...] | None) -> Trajectory:
-    """Trajectory at the ends of the kept steps, with `by` added to its q, q̇ and q̈ (t, n)."""
-    kept = np.append(True, steps.kept)
-    histories = [x[kept] for x in (run.q, run.qd, run.qdd)]
-    if by is not None:
-        histories = [x + dx for x, dx in zip(histories, by, strict=True)]
-    return Trajectory(run.time[kept], *histories)

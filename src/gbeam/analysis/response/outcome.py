@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import BENT_FAR, FEW_MODES, ROUGH_MESH, cure_of_theory, percent
-from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.equilibrium import expanded
 from gbeam.arrays.namespace import Array
@@ -173,14 +172,16 @@ NOTICED = math.log(2)  # growth below this is not warned of
 
 def describe(
     structure: Structure,
-    problem: Problem,
+    stable: bool,
     trajectory: Trajectory,
     base: Base,
     peaks: Peaks,
     time: Floats,
     q: Floats,
 ) -> tuple[str, str, tuple[str, ...]]:
-    """Outcome, message and warnings of a run; base, time (t,) and q (t, n) are at the samples that are kept."""
+    """Outcome, message and warnings of a run; base, time (t,) and q (t, n) are at the samples that are kept. It is
+    not `stable` that starts from an equilibrium that is not.
+    """
     end = trajectory.time[-1]
     if not (trajectory.stopped or trajectory.converged):
         return (
@@ -232,7 +233,7 @@ def describe(
             f"{lost}, to t = {loss.end:.4g} s: whatever deviates grows {math.exp(loss.growth):.2g}-fold meanwhile"
             f"{unknown}"
         )
-    elif not problem.stable:
+    elif not stable:
         warnings.append(
             "the run starts from an equilibrium that is not stable, which no beam would keep"
             f"{unknown or '; `gbeam critical-speed` finds where that begins'}"

@@ -1,171 +1,320 @@
-"""A structure in an environment posed as a problem, ready for runs by any step."""
+"""A system on the ground or on a moving base posed as a problem, ready for runs by any step."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import pairwise
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import UNMOVED
-from gbeam.analysis.response.problem import Problem, problem_of
+from gbeam.analysis.response.problem import STATE_WORDS, start_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import (
+    LOADS_STEPS,
     MAX_STEPS,
+    RIGID,
     Plan,
-    corners,
+    even_steps,
     once,
     planned,
     scheme_of,
     steps_beyond,
+    steps_to_try,
 )
-from gbeam.arrays.namespace import Array
+from gbeam.analysis.steady.subject import Subject, subject_of
+from gbeam.analysis.system.feedback import SystemControllers
+from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
+from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.types import Floats
+from gbeam.constants import State
+from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import Trajectory
-from gbeam.integrate.steps import Corners, Steps, fitted
+from gbeam.integrate.driver import through
+from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
+from gbeam.integrate.steps import Corners, Steps, fitted, joined
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.bodies import Body
-from gbeam.mechanics.tree.system import terms_of
+from gbeam.mechanics.tree.equations import SLIP, Inputs
+from gbeam.mechanics.tree.frames import Frame
+from gbeam.mechanics.tree.linear import is_linear, linear_equations
+from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
-from gbeam.progress import Progress, tell
 from gbeam.results.errors import StepErrors
-from gbeam.results.parts import Base
-from gbeam.results.response import HubResult
+
+LEAST = 500  # steps of the results
+PER_PERIOD = 20  # steps of the results to a period of the slowest vibration
+
+
+@dataclass(frozen=True)
+class Begun:
+    """Coordinates and rates (n,) in which a run begins; `stable` is False if they are of an equilibrium that is not."""
+
+    y: Array
+    yd: Array
+    stable: bool = True
 
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A structure in an environment posed as a problem, to be run by any step; `kept`, s, is that of the results."""
+    """A system in an environment posed from the state `start`, to be run by any step; `kept`, s, is that of the
+    results. The settings' times are the flight's: a machine spins up in `before` steps of the results ahead of these,
+    and down in `after` of them behind.
+    """
 
-    structure: Structure
-    motion: Motion
+    subject: Subject
     settings: ResponseSettings
-    problem: Problem
+    start: Begun
     kept: float
     limit: int = MAX_STEPS  # steps of a run at most
-    before: int = 0  # steps of the results in which a machine spins up
-    after: int = 0  # steps of the results in which it spins down
-    up: Trajectory | None = None  # the spin-up, once it is run
+    before: int = 0
+    after: int = 0
+    slip: float = SLIP  # rad/s or m/s, rate below which friction is smooth
 
     @property
-    def beam(self) -> slice:
-        """The structure's coordinates among the unknowns."""
-        return slice(self.problem.first, None)
+    def system(self) -> System:
+        """The system of bodies."""
+        return self.subject.system
 
     @property
-    def drive(self) -> Any:
-        """Function that returns the inputs of the equations at times (t,) s."""
-        return self.problem.equations.drive
+    def motion(self) -> Motion | None:
+        """Motion of the ground; None where it rests."""
+        return self.subject.ground
+
+    @property
+    def begin(self) -> float:
+        """Time at which the run begins, s."""
+        return self.settings.start - self.before * self.kept
+
+    @property
+    def end(self) -> float:
+        """Time at which the run ends, s."""
+        return self.settings.start + self.settings.duration + self.after * self.kept
+
+    @cached_property
+    def controllers(self) -> SystemControllers | None:
+        """Controllers in the loop; None without any."""
+        return SystemControllers(self.system) if self.system.controllers else None
+
+    def drive(self, t: Array) -> Inputs:
+        """Inputs of the equations at times (t,) s, without controllers."""
+        return self.system.inputs(t, self.motion)
+
+    @cached_property
+    def equations(self) -> LinearEquations | NonlinearEquations:
+        """Equations of the system, with its controllers, if any, in the loop; linear where they are so without."""
+        tree = self.system.tree.slipping(self.slip)
+        if self.controllers is not None:
+            return NonlinearEquations(tree, self.drive, self.controllers)
+        if is_linear(tree):
+            return linear_equations(tree, self.drive)
+        return NonlinearEquations(tree, self.drive, vibrates=bool(self.subject.body) and len(tree.links) > 1)
 
     def driven_as(self, other: Posed) -> bool:
-        """True if motion and loads are the same objects as those of another."""
-        return self.motion is other.motion and self.structure.history is other.structure.history
+        """True if the motion of the ground and all loads are the same objects as those of another problem."""
+        bodies, others = self.system.flexible, other.system.flexible
+        same = all(body.history is others[name].history for name, body in bodies.items())
+        return same and self.subject.motion is other.subject.motion
 
     @cached_property
     def felt(self) -> Corners:
-        """Corners and jumps of motion and loads within the flight's times."""
-        times = corners(self.structure, self.motion, self.kept)
-        start, end = self.settings.start, self.settings.start + self.settings.duration
-        return Corners.of(times, self.drive, start, end)
-
-    def moving(
-        self, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
-    ) -> tuple[Base, HubResult | None]:
-        """Motion of the root at times (t,) and unknowns (t, n), or the `base` if known; and of the hub, or None."""
-        motion: Any = self.motion
-        hub = None
-        if motion.free:
-            angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
-            base = motion.mount.base(angle, rate, acceleration)
-            hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
-        else:
-            base = motion.base(time) if base is None else base
-            if motion.kind == "hub":
-                axis = motion.mount.R_HB[2]
-                hub = HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
-        return base, hub
+        """Corners and jumps of the inputs, and jumps of the controllers' commands."""
+        felt = Corners.of(corners(self.subject, self.kept), self.drive, self.begin, self.end)
+        if self.controllers is None:
+            return felt
+        commands = self.commands.time
+        commands = commands[np.abs(commands[:, None] - felt.time).min(axis=1, initial=np.inf) > 1e-9]
+        times, jumps = np.append(felt.time, commands), np.append(felt.jump, np.ones(len(commands), dtype=bool))
+        return Corners(np.sort(times), jumps[np.argsort(times)])
 
     @property
-    def stuck(self) -> bool:
-        """True if the spin-up failed before its end."""
-        return self.up is not None and not self.up.whole
+    def commands(self) -> Corners:
+        """Times at which controllers sample and their commands jump, as jumps."""
+        if self.controllers is None:
+            return Corners(np.zeros(0), np.zeros(0, dtype=bool))
+        times = np.unique(np.round(self.controllers.corners(self.begin, self.end), 12))
+        return Corners(times, np.ones(len(times), dtype=bool))
+
+    def counts(self, step: float) -> tuple[int, int, int]:
+        """Numbers of steps in which a machine spins up, of the flight, of a length, s, and in which it spins down. A
+        length that does not divide the duration goes beyond its end, where nothing spins down.
+        """
+        count = math.ceil(self.settings.duration / step - 1e-6)
+        whole = math.isclose(count * step, self.settings.duration, rel_tol=1e-6)
+        return self.before, count, self.after if whole else 0
+
+    def steps(self, step: float, cut: Corners | None = None) -> Steps:
+        """Steps of a run, of a length, s, in the flight, of the results' in a machine's spin-up and spin-down, `cut` at
+        corners, by default those that the scheme feels.
+        """
+        cut = self.felt.felt_by(scheme_of(self.settings)) if cut is None else cut
+        before, count, after = self.counts(step)
+        start, kept = self.settings.start, self.kept
+        parts = (self.begin, kept, before), (start, step, count), (start + self.settings.duration, kept, after)
+        return joined([fitted(*part, cut) for part in parts if part[-1]])
+
+    def integrated(self, step: float, cut: Corners | None = None, progress: Any = None) -> Trajectory:
+        """Integrate by steps of a length, s, until the model of a body ceases to hold."""
+        how: Any = {} if is_jax(self.start.y) or self.system.holds_jax else {"stop": self.too_far}
+        y, yd, steps = self.start.y, self.start.yd, self.steps(step, cut)
+        return through(self.equations, scheme_of(self.settings), y, yd, steps, progress=progress, **how)
 
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
-        if self.stuck:
-            return once(self.kept, StepErrors())
-        if not self.structure.size:  # nothing is integrated
+        if not len(self.system.tree.free):  # nothing is integrated
             return once(self.kept, StepErrors(0.0, 0.0, 0.0))
         return planned(self.settings, self.kept, self.limit)
 
-    def steps(self, step: float) -> Steps:
-        """Steps of a length, s, cut at corners; a length that does not divide the duration goes beyond the end."""
-        count = math.ceil(self.settings.duration / step - 1e-6)
-        return fitted(self.settings.start, step, count, self.felt.felt_by(scheme_of(self.settings)))
+    def columns(self, body: str) -> slice:
+        """Coordinates that deform a body, among the unknown ones."""
+        names = [self.system.coordinates[k] for k in self.system.tree.free]
+        chosen = deforming(names, body)
+        return slice(chosen[0], chosen[-1] + 1) if chosen else slice(0, 0)
 
-    def begun(self, progress: Progress) -> Posed:
-        """Run a machine's spin-up, if there is any; return the problem that starts from its end."""
-        up = self._ramp(-self.before, self.before, partial(tell, progress, "spinning up"))
-        return self if up is None else replace(self, up=up, problem=self._after(up))
-
-    def spun_down(self, run: Trajectory, progress: Progress) -> Trajectory | None:
-        """Run a machine's spin-down from the last state of a run; None if there is no spin-down."""
-        first = round(self.settings.duration / self.kept)
-        ended = replace(self, problem=self._after(run))
-        return ended._ramp(first, self.after, partial(tell, progress, "spinning down"))
-
-    def _after(self, run: Trajectory) -> Problem:
-        """The problem from the last state of a run."""
-        return replace(self.problem, q=run.q[-1], qd=run.qd[-1])
-
-    def _ramp(self, first: int, count: int, progress: Any) -> Trajectory | None:
-        """Run `count` steps of the results from the one numbered `first`, counted from the flight's start."""
-        if not count:
-            return None
-        start, scheme, problem = self.settings.start, scheme_of(self.settings), self.problem
-        how: Any = {"step": self.kept, "count": count, "start": start + self.kept * first, "progress": progress}
-        run = integrate(problem.equations, scheme, problem.q, problem.qd, stop=self.too_far, **how)
-        # The times of the flight's grid, to the last digit.
-        time = start + self.kept * (first + np.arange(len(run.time)))
-        return replace(run, time=np.asarray(time, dtype=np.float64))
-
-    def too_far(self, y: Floats, moved: Floats | None = None) -> int | None:
-        """Number of steps until a displacement exceeds the beam's length, or the bound of particles, where the model
-        ceases to hold; None if none does. `moved` (t, s, 3) m are the displacements at unknowns y (t, n), if known.
+    def too_far(self, y: Floats, moved: Mapping[str, Floats] = MappingProxyType({})) -> int | None:
+        """Number of steps until the displacement of a body exceeds the length of a beam, or the bound of particles,
+        where its model ceases to hold; None if none does. `moved` (t, s, 3) m are the displacements of bodies by name
+        at unknowns y (t, n), where they are known.
         """
-        if self.structure.kind == "exact":
-            return None
-        moved = self.structure.displacement(y[:, self.beam]) if moved is None else moved
-        limit = BOUNDLESS if self.structure.field is None else self.structure.length
-        far = np.abs(moved).max(axis=(1, 2)) > limit
+        far = np.zeros(len(y), dtype=bool)
+        for name, body in self.system.flexible.items():
+            if body.size and body.kind != "exact":
+                limit = BOUNDLESS if body.field is None else body.length
+                displaced = moved[name] if name in moved else body.displacement(y[:, self.columns(name)])
+                far |= np.abs(displaced).max(axis=(1, 2)) > limit
         return int(np.argmax(far)) + 1 if far.any() else None
 
-    def tip(self, y: Floats) -> Floats:
-        """Displacement (..., 3) m of the tip; components that are rounding, as under a torque alone, are zero."""
-        tip = np.asarray(self.structure.tip(y[..., self.beam]))
-        return np.where(np.abs(tip) > UNMOVED * self.structure.length, tip, 0.0)
-
-    def moment(self, y: Floats) -> Floats:
-        """Root moment (..., 3) N m of the straight beam by the inertia that balances the elastic forces K q."""
-        c = self.structure.coefficients
-        return np.asarray(y[..., self.beam] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
-
-    @cached_property
-    def terms(self) -> Body:
-        """Terms of the structure's equations from which the loads at its root are computed."""
-        return terms_of(self.structure)
+    def of(self, system: System) -> Posed:
+        """Return the problem of another system, which begins at its own initial state."""
+        subject = replace(self.subject, system=system)
+        return replace(self, subject=subject, start=begun(subject, self.settings, self.begin))
 
 
-def pose(structure: Structure, motion: Motion, settings: ResponseSettings, kept: float, limit: int) -> Posed:
-    """Pose a problem with a step of the results, s, from the start of a machine's spin-up; InputError if too long."""
-    size = 8.0 * (3 * structure.size + 9 * len(structure.stations))  # bytes of a step
+def prepared(structure: Structure | System, motion: Motion | None, settings: ResponseSettings) -> Subject:
+    """Subject of a response, with its motion over the flight's times; InputError where it has no motion, or one too
+    many.
+    """
+    if motion is not None:
+        motion = motion.over(settings.start, settings.start + settings.duration)
+    subject = subject_of(structure, motion)
+    if subject.body and motion is None:
+        raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
+    structure.require_damping("the response")
+    if subject.ground is not None and subject.ground.free:
+        raise InputError("motion", "is a hub that turns freely", "give it as a body on a revolute joint")
+    if subject.ground is not None and subject.system.gravity is not None:
+        fix = "leave one out: a motion carries its own, as specific force"
+        raise InputError("gravity", "is given beside a motion of the base", fix)
+    begin = settings.begin
+    if not subject.body and begin != type(begin)(begin.state):
+        fix = 'give "equilibrium", "undeformed" or "relief"; joints have initial values'
+        raise InputError("initial", "displaces a tip", fix)
+    return subject
+
+
+def poses(subject: Subject, settings: ResponseSettings) -> Iterator[Posed]:
+    """Yield the problem with each of the steps of results to try, the longest first."""
+    start, bends = begun(subject, settings, settings.start), partial(corners, subject)
+    limit = MAX_STEPS if is_linear(subject.system.tree) else LOADS_STEPS
+    for kept, most in steps_to_try(first_step(subject, start, settings), limit, bends, settings):
+        yield pose(subject, settings, kept, most, start)
+
+
+def pose(
+    subject: Subject, settings: ResponseSettings, kept: float, limit: int = MAX_STEPS, start: Begun | None = None
+) -> Posed:
+    """Pose a problem with a step of the results, s, from the start of a machine's spin-up; InputError if too long. The
+    `start` of the flight serves where nothing spins up.
+    """
+    before, after = (0, 0) if subject.ground is None else steps_beyond(subject.ground, settings, kept)
+    refuse_long(subject.system, settings, kept)
+    if start is None or before:
+        start = begun(subject, settings, settings.start - before * kept)
+    return Posed(subject, settings, start, kept, limit, before, after)
+
+
+def corners(subject: Subject, step: float) -> Floats:
+    """Times, s, that steps of a length should not pass unseen, of a system and its motion."""
+    of_motion = [] if subject.motion is None else [subject.motion.corners(step)]
+    return np.concatenate([subject.system.corners(step), *of_motion])
+
+
+def begun(subject: Subject, settings: ResponseSettings, time: float) -> Begun:
+    """Coordinates and rates (n,) in which a system begins at a time, s."""
+    system, initial = subject.system, settings.begin
+    if subject.body:
+        q, qd, stable = start_of(subject.structure, subject.motion, time, initial)
+        ahead = len(system.tree.free) - subject.structure.size
+        q, qd = (namespace(each).concatenate([np.zeros(ahead), each]) for each in (q, qd))
+        return Begun(q, qd, stable)
+    if system.holds_jax:
+        return Begun(*started_traced(system, subject.ground, time, initial.state))
+    point = started(system, subject.ground, time, initial.state)
+    return Begun(point.y, point.yd)
+
+
+def begun_in_words(system: System, initial: State) -> str:
+    """Sentence on the state in which a system begins."""
+    floating = [name for name in system.flexible if name in system.floating]
+    held = [name for name in system.flexible if name not in floating]
+    how = STATE_WORDS[initial]
+    if initial == "equilibrium" and floating:
+        of_held = f"with {', '.join(held)} in relative equilibrium, {', '.join(floating)} " if held else ""
+        how = f"{of_held}undeformed ({'it floats' if len(floating) == 1 else 'they float'})"
+    deforms = system.flexible or unknown_at_start(system, initial)[0].any()
+    return f"begins {how}, joints at their initial values" if deforms else "begins with joints at their initial values"
+
+
+def refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
+    """Raise InputError for controllers that the run cannot sample, and for too many samples or steps."""
+    for key, controller in system.controllers.items():
+        fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
+        samples = settings.duration / controller.sample
+        refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
+    if system.controllers and not len(system.tree.free):
+        raise InputError("controllers", "have nothing to move: all motion is prescribed", "leave them out, or a rate")
+    if system.controllers and settings.integrator != "gauss":
+        fix = "leave it out: controllers are sampled by Gauss's method"
+        raise InputError("integrator", f"is {settings.integrator!r}", fix)
+    stations = sum(len(body.stations) for body in system.flexible.values())
+    size = 8.0 * (3 * system.tree.size + 16 * len(system.points) + 9 * stations)  # bytes of a step
     most = min(STEPS, int(HISTORY_BYTES / size))
-    fix = f"give {most * kept:.3g} s or less, or fewer stations"
-    refuse_more("response.duration", "steps", settings.duration / kept, most, size, fix)
-    before, after = steps_beyond(motion, settings, kept)
-    problem = problem_of(structure, motion, settings.start - before * kept, settings.begin)
-    return Posed(structure, motion, settings, problem, kept, limit, before, after)
+    fix = f"give {most * step:.3g} s or less, longer steps, or fewer stations"
+    refuse_more("response.duration", "steps", settings.duration / step, most, size, fix)
+
+
+def first_step(subject: Subject, start: Begun, settings: ResponseSettings) -> float:
+    """Step of the results, s: that of the settings, rounded to a whole number of steps. If automatic, 500 steps or more
+    and twenty to the period of the slowest vibration (of those that the most steps would resolve) on a ground that
+    rests, none longer than from corner to corner; LOADS_STEPS at most.
+    """
+    if settings.step is not None:
+        return settings.duration / max(1, round(settings.duration / settings.step))
+    system, bends = subject.system, partial(corners, subject)
+    largest = settings.duration / LEAST
+    if not len(system.tree.free):
+        largest = min(largest, RIGID)
+        return settings.duration / even_steps(largest, bends(largest), settings)
+    _, k, _, m = Point(system.tree, start.y, start.yd, 0 * start.y, _resting(subject, settings.start)).local.slopes()
+    square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k)))
+    oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
+    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
+    if oscillating.size:
+        largest = min(largest, 2 * math.pi / float(oscillating.min()) / PER_PERIOD)
+    return settings.duration / min(even_steps(largest, bends(largest), settings), LOADS_STEPS)
+
+
+def _resting(subject: Subject, time: float) -> Inputs:
+    """Inputs at a time, s, on a ground that rests, without loads on bodies."""
+    inputs, zero = subject.system.inputs(np.asarray(time), subject.ground), np.zeros(3)
+    a = inputs.ground.a if subject.ground is None else zero
+    return replace(inputs, ground=Frame(np.eye(3), zero, zero, zero, a, zero), loads=(None,) * len(inputs.loads))
+
+
+def split(count: Any) -> list[slice]:
+    """Slices of the steps of a run's parts, from their numbers of steps; each begins where the last one ends."""
+    return [slice(a, b + 1) for a, b in pairwise([0, *np.cumsum(count)])]

@@ -10,16 +10,14 @@ import numpy as np
 
 from gbeam.analysis.steady.equilibrium import solve_equilibrium
 from gbeam.analysis.system.point import solve_start
-from gbeam.arrays.namespace import Array, is_jax, namespace
+from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import Value, each_leaf
 from gbeam.arrays.types import Numbers
 from gbeam.constants import Across, State
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Base
 
 STATE_WORDS: dict[State, str] = {
@@ -175,48 +173,6 @@ def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) ->
     solve = namespace(stiffness, force, slopes).linalg.solve
     unconstrained, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
     return unconstrained + shapes @ solve(slopes @ shapes, value - slopes @ unconstrained)
-
-
-EQUILIBRIUM = Initial()
-
-
-@dataclass(frozen=True)
-class Problem:
-    """Equations and initial state (n,) for the integrator; the beam's coordinates are from `first` on; `stable` is
-    False if they start from an equilibrium that is not stable.
-    """
-
-    equations: LinearEquations | NonlinearEquations
-    q: Array
-    qd: Array
-    first: int
-    stable: bool
-
-
-def problem_of(structure: Structure, motion: Motion, start: float, initial: Initial = EQUILIBRIUM) -> Problem:
-    """Pose the equations of a structure in a motion, from an initial state at the `start`, s."""
-    hub: Any = motion if motion.free else None
-
-    def drive(t: Array) -> tuple[Any, Any]:
-        return driven(structure, motion, t)
-
-    q, qd, stable = start_of(structure, motion, start, initial)
-    if hub is None and structure.linear:
-        c = structure.coefficients
-        terms = c.terms
-
-        def features(inputs: tuple[Base, Any]) -> Array:
-            now, loads = inputs
-            return c.features(now.a_WO_B, now.w_WB_B, now.alpha_WB_B, loads)
-
-        # No derivative is taken through the modes: those of equal frequencies have none.
-        rest = None if any(map(is_jax, (c.mass, c.damping, c.stiffness))) else (c.damping, c.stiffness)
-        equations = LinearEquations(c.mass, lambda x: terms.at(features(x)), drive, terms, features, rest)
-        return Problem(equations, q, qd, 0, stable)
-    residual = structure.residual(hub)
-    if hub is not None:
-        q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
-    return Problem(NonlinearEquations(residual, drive, vibrates=hub is not None), q, qd, residual.first, stable)
 
 
 def driven(structure: Structure, motion: Any, t: Array) -> tuple[Any, Any]:

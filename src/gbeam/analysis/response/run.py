@@ -1,74 +1,63 @@
-"""A run of a structure or of a system: how it is posed and made, and what errors and the response need of it."""
+"""Runs of systems: a trajectory by steps of one length, and what the choice of steps, errors and the response read."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
 
-from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.arrays.types import Floats
-from gbeam.integrate.equations import Trajectory
-from gbeam.progress import Progress
-from gbeam.results.errors import StepErrors
+import numpy as np
+
+from gbeam.analysis.accuracy.beam_theory import largest
+from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity, pieces
+from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
+from gbeam.analysis.response.contacts import creeping, missed_stop, turned_over
+from gbeam.analysis.response.peaks import peaks_of_coordinates
+from gbeam.analysis.response.posed import Posed, split
+from gbeam.analysis.response.problem import start_of
+from gbeam.analysis.response.step_errors import difference
+from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
+from gbeam.analysis.system.feedback import SystemControllers, loop_of
+from gbeam.analysis.system.histories import Carried, beams_of, carried, deflections, histories, loads_of
+from gbeam.analysis.system.point import Point, unknown_at_start
+from gbeam.analysis.system.solution import Solution
+from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.types import Floats, Indices
+from gbeam.integrate.equations import Trajectory, slopes
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import LinearBody
+from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.signals import local_names
+from gbeam.mechanics.tree.steps import continuous
+from gbeam.mechanics.tree.system import System
+from gbeam.numerics.eigen import positive_definite
+from gbeam.progress import Progress, tell
+from gbeam.results.errors import Errors, StepErrors
+from gbeam.results.parts import Loads
+from gbeam.results.system import Loop
+
+LONG = 3_000  # steps: more of them follow deflections of several bodies within the tolerance only
+LOOKS = 30  # steps of a run at which its mass matrix is checked
 
 
 @dataclass(frozen=True)
-class Run(ABC):
-    """A trajectory of a structure or a system, the length of its steps, s, and the problem that was run."""
+class Run:
+    """A trajectory of a system, the length of its steps in the flight, s, and the problem that was run."""
 
     trajectory: Trajectory
     step: float
-    posed: Any
+    posed: Posed
 
     @classmethod
-    @abstractmethod
-    def prepared(cls, structure: Any, motion: Any, settings: ResponseSettings) -> tuple[Any, ResponseSettings]:
-        """The motion over the flight's times, and the settings with an integrator; InputError if they cannot be run."""
-
-    @classmethod
-    @abstractmethod
-    def poses(cls, structure: Any, motion: Any, settings: ResponseSettings) -> Iterator[Any]:
-        """Yield the problem with each of the steps of results to try, the longest first."""
-
-    @classmethod
-    @abstractmethod
-    def by_steps(cls, posed: Any, step: float, progress: Progress = None) -> Self:
+    def by_steps(cls, posed: Posed, step: float, progress: Progress = None) -> Run:
         """Run a problem by steps of a length, s."""
-
-    @classmethod
-    @abstractmethod
-    def traced(cls, structure: Any, motion: Any, settings: ResponseSettings, step: float, name: str) -> Any:
-        """Response traced by JAX, by given steps: no branch depends on its values."""
-
-    @abstractmethod
-    def described(self, errors: StepErrors, name: str, progress: Progress = None) -> Any:
-        """Response made of the run, with the errors of the steps and others that the settings ask for."""
+        return cls(posed.integrated(step, progress=progress), step, posed)
 
     @property
     def stride(self) -> int:
-        """Number of steps of the run in one step of the results."""
-        return 1 if self.posed.settings.step is not None else round(self.posed.kept / self.step)
-
-    @property
-    def bends(self) -> bool:
-        """True if a force law has corners within steps, so that errors do not fall by the order of the scheme."""
-        return False
-
-    @property
-    def missed(self) -> tuple[str, ...]:
-        """Warning of events that the steps may miss, which makes their error unknown; else empty."""
-        return ()
-
-    @property
-    def followed(self) -> bool:
-        """True if automatic steps are refined until errors of loads are small, too."""
-        return True
-
-    def aims(self, aim: float, enough: float) -> list[float]:
-        """Errors of each history that :attr:`moved` at which automatic steps aim; `enough` is the largest."""
-        return [aim] * len(self.moved)
+        """Number of steps of the flight in one step of the results."""
+        return 1 if self.posed.settings.step is not None else max(1, round(self.posed.kept / self.step))
 
     @property
     def whole(self) -> bool:
@@ -76,17 +65,281 @@ class Run(ABC):
         return self.trajectory.whole
 
     @property
-    @abstractmethod
-    def moved(self) -> Sequence[Floats]:
-        """Displacement of the tip, or of each body's points and of all places side by side, (t, 3 p) m each."""
+    def in_flight(self) -> slice:
+        """The steps of the flight; all where a machine's spin-up failed before it."""
+        _, flight, _ = split(self.posed.counts(self.step))
+        return flight if len(self.trajectory.time) > flight.start + 1 else slice(0, None)
+
+    @cached_property
+    def flight(self) -> Trajectory:
+        """The trajectory over the flight's times."""
+        return self.trajectory.at(self.in_flight)
+
+    def sampled(self, stride: int) -> Indices:
+        """Indices of the steps of spin-up and spin-down, and of every `stride`-th of the flight."""
+        steps, flight = np.arange(len(self.trajectory.time)), self.in_flight
+        inside = steps[flight]
+        after = steps[flight.stop :] if flight.stop is not None else inside[:0]
+        return np.concatenate([steps[: flight.start], inside[::stride], after])
+
+    def flown(self, stride: int) -> slice:
+        """The flight among the steps that are :meth:`sampled`."""
+        return slice(self.in_flight.start, self.in_flight.start + len(self.flight.time[::stride]))
 
     @property
-    @abstractmethod
-    def peaks(self) -> list[Floats]:
-        """Peaks of the tip's displacement and of the root's moment, (4,) each; empty if histories alone are judged."""
+    def deforming(self) -> dict[str, Structure]:
+        """Bodies that have coordinates, by name."""
+        return {name: body for name, body in self.posed.system.flexible.items() if body.size}
 
-    @abstractmethod
-    def loads(self, stride: int) -> Sequence[Floats]:
-        """Histories (t, ..., k) of force, moment and stress of each body in turn, at every `stride`-th step; no stress
-        of a structure without an estimate of errors.
+    @cached_property
+    def bends(self) -> bool:
+        """True if the force law of a joint has corners within steps, so that errors do not fall by an order."""
+        return any(joint.holder.bends for joint in self.posed.system.joints.values())
+
+    def aims(self, aim: float, enough: float) -> list[float]:
+        """Errors of each history that :attr:`moved` at which automatic steps aim; of deflections of several bodies
+        `enough` in long runs, where small ones that commands or blows make ring would need many times the steps.
         """
+        count = sum(kind == DEFLECTION for _, kind in self._moving)
+        of_deflections = aim if count < 2 or len(self.flight.time) <= LONG else enough
+        return [of_deflections if kind == DEFLECTION else aim for _, kind in self._moving]
+
+    @property
+    def _moving(self) -> list[Quantity]:
+        """Quantities of which :attr:`moved` has the histories: deflections, and places where joints may move."""
+        deforming = [(name, DEFLECTION) for name in self.deforming]
+        jointed = len(self.posed.system.tree.free) > sum(body.size for body in self.deforming.values())
+        return [*deforming, PLACE] if jointed else deforming
+
+    @cached_property
+    def moved(self) -> list[Floats]:
+        """Displacements (t, 3 p) m over the flight: of each flexible body's points relative to its root, and of all
+        points from their first places, with three on each rigid body that has none off its root. Zero where they are
+        rounding.
+        """
+        solution, histories = self.solution(1), list[Floats]()
+        for name, kind in self._moving:
+            if kind == DEFLECTION:
+                body = self.posed.system.flexible[name]
+                bent = deflections(body, self.flight.q[:, self.posed.columns(name)])
+                histories.append(np.zeros_like(bent) if largest(bent) <= UNMOVED * body.length else bent)
+                continue
+            places = np.concatenate([solution.read(())[PLACE], solution.turning()], axis=1)
+            moved = places - places[0]
+            histories.append(np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved)
+        return [np.asarray(each).reshape(len(each), -1) for each in histories]
+
+    @cached_property
+    def peaks(self) -> list[Floats]:
+        """Peaks (4,), over the flight, of the displacement of the end of each flexible body, relative to its root, and
+        of the moment there by its elastic forces.
+        """
+        flight, peaks = self.flight, list[Floats]()
+        for name, body in self.deforming.items():
+            tip, moment = (
+                partial(_tip, body, self.posed.columns(name)),
+                partial(_moment, body, self.posed.columns(name)),
+            )
+            peaks += [peaks_of_coordinates(flight, of(flight.q), of) for of in (tip, moment)]
+        return peaks
+
+    def loads(self, stride: int) -> list[Floats]:
+        """Root force and moment (t, 3) of every flexible body, zero where they are rounding, at every `stride`-th step
+        of the flight, and its stress: at every section (t, s, 1), or a solid's (t, c).
+        """
+        system, out = self.posed.system, list[Floats]()
+        chosen = np.arange(len(self.trajectory.time))[self.in_flight][::stride]
+        states = {name: list[Carried]() for name in self.deforming}
+        for part in pieces(len(chosen), system.tree.size):
+            at, inputs = self.trajectory.at(chosen[part]), self.inputs(system, chosen[part])
+            state = system.tree.motion(at.q, at.qd, at.qdd, inputs)
+            *_, acting = system.tree.demanded(state, inputs)
+            for name, of_body in states.items():
+                of_body.append(carried(system, state, name, acting))
+        for name, of_body in states.items():
+            body = system.flexible[name]
+            loads = loads_of(body, of_body, self.trajectory.time[chosen])
+            force, moment = loads.root_force, loads.root_moment
+            sizes = np.abs(force).max() * body.length, np.abs(moment).max()
+            out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
+            sides = [loads.stress_tension, loads.stress_compression]
+            if loads.von_mises is not None and np.isfinite(loads.von_mises).all():
+                sides.append(loads.von_mises)  # under torsion alone the normal stresses are rounding
+            stress = np.concatenate(sides, axis=1)[..., None]
+            if body.recovery is not None:
+                stress = np.asarray(body.recovery.felt(np.concatenate([each.q for each in of_body])))
+            out.append(stress)
+        return out
+
+    def _by_step(self, errors: StepErrors) -> dict[Quantity, float]:
+        """Errors of the steps by quantity; root force and moment of a body have the larger of theirs."""
+        by_step = dict.fromkeys([PLACE, *((name, DEFLECTION) for name in self.deforming)], errors.displacement)
+        by_step |= dict(zip(self._moving, errors.moved, strict=False))
+        rigid = self.posed.system.flexible.keys() - self.deforming.keys()
+        by_step |= dict.fromkeys([(name, load) for name in rigid for load in LOADS[:2]], errors.loads)
+        for k, (name, body) in enumerate(self.deforming.items()):
+            force, moment, stress = errors.each[3 * k : 3 * k + 3] or (math.nan,) * 3
+            by_step |= dict.fromkeys([(name, "force"), (name, "moment")], max(force, moment))
+            by_step |= {(name, "stress"): stress} if _stressed(body) else {}
+        return by_step
+
+    def errors(self, of_steps: StepErrors, progress: Progress = None) -> tuple[Errors, tuple[str, ...]]:
+        """Errors of the response over the flight's times, by those of the steps, and warnings of masses off the axis of
+        a beam and of controllers that lose what has more shapes.
+        """
+        posed, settings = self.posed, self.posed.settings
+        of_steps = StepErrors() if self.missed else of_steps  # unknown where steps may miss a stop
+        by_step, say = self._by_step(of_steps), "errors of shapes and models"
+        if not (settings.estimate and self.whole):
+            return unjudged(posed.system, by_step, note=settings.not_estimated), ()
+
+        judged = self._rerun_by if posed.system.controllers else self
+
+        def again(system: System) -> Solution:
+            return Run.by_steps(posed.of(system), judged.step, partial(tell, progress, say)).solution(judged.stride)
+
+        tell(progress, say, 0.0)
+        of_loads = [(name, load) for name in self.deforming for load in LOADS]
+        rerun = again if posed.system.controllers else None
+        rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
+        friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
+        more: Any = {"peaks_by_step": dict(zip(of_loads, of_steps.peaks, strict=False)), "friction": friction}
+        more |= {"stride": judged.stride, "tolerance": settings.tolerance, "starting": self._starting}
+        stated, doubts = system_errors(judged.solution, rerun, by_step, **more)
+        if not friction and posed.system.rubbing:
+            stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
+        if rerun is not None:
+            from gbeam.analysis.steady.loop_errors import unstable_with_more  # takes SciPy's linear algebra
+
+            doubts += unstable_with_more(posed.system, posed.motion, settings.start)
+        tell(progress, say, 1.0)
+        return stated, doubts
+
+    @property
+    def _rerun_by(self) -> Run:
+        """Run by the steps of the results, which richer systems in a loop are run by: steps that resolve what rings in
+        the loads would cost many times as much, and leave the differences of shapes and models as they are.
+        """
+        if self.stride == 1:
+            return self
+        rough = Run.by_steps(self.posed, self.posed.kept)
+        return rough if rough.whole else self
+
+    @property
+    def _starting(self) -> Starting | None:
+        """Start of richer systems; None where all is in equilibrium with a motion that is prescribed."""
+        posed, begin = self.posed, self.posed.settings.begin
+        jointed = len(posed.system.tree.free) > sum(body.size for body in self.deforming.values())
+        if not jointed and (posed.before or begin.settled):
+            return None
+        subject, flags = posed.subject, partial(unknown_at_start, initial=begin.state)
+        if not subject.body:
+            return Starting(flags)
+        return Starting(flags, lambda body: start_of(body, subject.motion, posed.settings.start, begin)[:2])
+
+    def _of_friction(self, progress: Progress) -> list[float]:
+        """Errors by the smooth law of friction, of :attr:`moved` and of :meth:`loads`, which go as the rate below which
+        it is smooth: by a run with half of that, or twice where this fails. Empty without friction, or where both fail.
+        """
+        for times, share in ((0.5, 2.0), (2.0, 1.0)) if self.posed.system.rubbing else ():
+            other = Run.by_steps(replace(self.posed, slip=times * self.posed.slip), self.step, progress)
+            if other.whole:
+                mine, others = ((*run.moved, *run.loads(self.stride)) for run in (self, other))
+                return [share * difference(a, b, 1) for a, b in zip(others, mine, strict=True)]
+        return []
+
+    @cached_property
+    def loop(self) -> Loop | None:
+        """Record of the controllers at the times of the run; None without controllers."""
+        controllers, samples = self.posed.controllers, self.trajectory.samples
+        if controllers is None or samples is None or not samples.begun:
+            return None
+        return loop_of(controllers, samples, self.trajectory.time)
+
+    @cached_property
+    def without_mass(self) -> int | None:
+        """Index of the first step looked at where M is not positive definite, or None. Second-order models may come to
+        that where a joint carries little inertia but that of deformed bodies.
+        """
+        system, run = self.posed.system, self.trajectory
+        if is_jax(run.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+            return None
+        steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
+        q, qd, still = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])
+        if Point(system.tree, q[0], qd[0], still[0], self.inputs(system, steps[0])).minimal:
+            mass = slopes(system.tree, q, qd, still, self.inputs(system, steps))[2]
+        else:  # by Euler parameters it is singular
+            states = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
+            mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in states])
+        return next((int(step) for step, m in zip(steps, mass, strict=True) if not positive_definite(m)), None)
+
+    @cached_property
+    def missed(self) -> tuple[str, ...]:
+        """Warning of a stop that the steps may miss; empty if there is none."""
+        return missed_stop(self.posed.system, self.trajectory, lambda: self.driven)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Warnings of stops, of springs that a ball turns over, and of friction that lets creep."""
+        system, run = self.posed.system, self.trajectory
+        over = turned_over(system, run, lambda: self.driven)
+        return self.missed + over + creeping(system, run, lambda: self.driven, self._inertia)
+
+    def _inertia(self, name: str, step: int) -> float:
+        """Inertia, kg or kg m², that an effort on a local coordinate accelerates at a step, the others being free."""
+        system, run = self.posed.system, self.trajectory
+        state = run.q[step], run.qd[step], 0 * run.q[step]
+        local, names = Point(system.tree, *state, self.inputs(system, step)).local, local_names(system.coordinates)
+        k = [names[each] for each in local.tree.free].index(name)
+        return float(1 / np.linalg.inv(local.slopes()[3])[k, k])
+
+    @cached_property
+    def driven(self) -> Inputs:
+        """Inputs at all steps."""
+        return self.inputs(self.posed.system, slice(None))
+
+    def inputs(self, of: System, steps: Any) -> Inputs:
+        """Inputs, at an index or slice of the steps, of its system or of another one with the same controllers."""
+        plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
+        return plain if self.loop is None else SystemControllers(of).driven(plain, self.loop.applied[steps])
+
+    def solution(self, stride: int) -> Solution:
+        """Solution at every `stride`-th step of the flight."""
+        steps = np.arange(len(self.trajectory.time))[self.in_flight][::stride]
+        return Solution(self.posed.system, self.trajectory.at(steps), lambda of, times: self.inputs(of, steps[times]))
+
+    def histories(self, steps: Indices, *, loads: bool) -> tuple[dict[str, Any], dict[str, Loads]]:
+        """Histories by key at indices of the steps and, if `loads`, the loads along each beam by name."""
+        system, inertial = self.posed.system, self.posed.motion is None
+        columns, beams = dict[str, list[Floats]](), dict[str, list[Carried]]()
+        for part in pieces(len(steps), system.tree.size):  # for memory: all frames of a part are held at once
+            at, inputs = self.trajectory.at(steps[part]), self.inputs(system, steps[part])
+            values, of_beams = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
+            for key, value in values.items():
+                columns.setdefault(key, []).append(value)
+            for name, beam in of_beams.items():
+                beams.setdefault(name, []).append(beam)
+        time = self.trajectory.time[steps]
+        along = {name: loads_of(beams_of(system)[name], parts, time) for name, parts in beams.items() if loads}
+        over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
+        return over_time | {"attitude": continuous(over_time["attitude"])}, along
+
+
+def _tip(body: Structure, columns: slice, y: Floats) -> Floats:
+    """Displacement (..., 3) m of the end of a body; components that are rounding, as under a torque alone, are zero."""
+    tip = np.asarray(body.tip(y[..., columns]))
+    return np.where(np.abs(tip) > UNMOVED * body.length, tip, 0.0)
+
+
+def _moment(body: Structure, columns: slice, y: Floats) -> Floats:
+    """Root moment (..., 3) N m of a straight body by the inertia that balances the elastic forces K q; zero where it
+    does not bend.
+    """
+    c = body.coefficients
+    moment = np.asarray(y[..., columns] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)
+    return np.where(np.any(_tip(body, columns, y), axis=-1, keepdims=True), moment, 0.0)
+
+
+def _stressed(body: Structure) -> bool:
+    """True if a body has a stress: of sections, or of a solid."""
+    return bool(body.size) and (body.sections is not None or body.recovery is not None)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, Unpack, overload
 
-from gbeam.analysis.response.record import StructureRun
+from gbeam.analysis.response.posed import Posed, pose, poses, prepared
+from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.stepping import answered, enough
-from gbeam.analysis.response.systems import SystemRun
+from gbeam.analysis.response.systems import system_response_of
+from gbeam.analysis.steady.subject import Subject
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -18,6 +20,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
+from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
 from gbeam.results.system import SystemResponse
 
@@ -103,24 +106,36 @@ def simulate(
     >>> print(f"{1e3 * response.peaks.max_abs[2]:.3f} mm, error {response.error_estimate:.0e}")
     2.302 mm, error 1e-02
     """
-    kind: type[Run] = SystemRun if isinstance(structure, System) else StructureRun
-    motion, settings = kind.prepared(structure, motion, settings_of(settings, options))
-    if structure.holds_jax or holds_jax(motion):
+    settings = settings_of(settings, options)
+    subject = prepared(structure, motion, settings)
+    if subject.system.holds_jax or holds_jax(motion):
         if settings.step is None:
             raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
-        step = settings.duration / max(1, round(settings.duration / settings.step))
-        return kind.traced(structure, motion, settings, step, name)
-    for posed in kind.poses(structure, motion, settings):
-        posed = posed.begun(progress)
-        run, errors = answered(posed.plan(), partial(_run, kind, posed, progress))
+        posed = pose(subject, settings, settings.duration / max(1, round(settings.duration / settings.step)))
+        run, errors = Run(posed.integrated(posed.kept, posed.commands), posed.kept, posed), StepErrors()
+    else:
+        run, errors = _answered(subject, settings, progress)
+    return described(run, errors, name, progress)
+
+
+def _answered(subject: Subject, settings: ResponseSettings, progress: Progress) -> tuple[Run, StepErrors]:
+    """Run that counts, of those that the settings need, and the errors of its steps."""
+    for posed in poses(subject, settings):
+        run, errors = answered(posed.plan(), partial(_run, posed, progress))
         if enough(run, errors, settings):
             break
-    return run.described(errors, name, progress)
+    return run, errors
 
 
-def _run(kind: type[Run], posed: Any, progress: Progress, step: float, what: str) -> Run:
+def _run(posed: Posed, progress: Progress, step: float, what: str) -> Run:
     """Run a problem by steps of a length, s, telling its progress as `what`."""
-    return kind.by_steps(posed, step, partial(tell, progress, what))
+    return Run.by_steps(posed, step, partial(tell, progress, what))
+
+
+def described(run: Run, errors: StepErrors, name: str, progress: Progress = None, **known: Any) -> Any:
+    """Response made of a run, with the errors of its steps and others that the settings ask for, and what is known."""
+    of = response_of if run.posed.subject.body else system_response_of
+    return of(run, errors, name, progress, **known)
 
 
 def settings_of(settings: ResponseSettings | None, options: Settings) -> ResponseSettings:

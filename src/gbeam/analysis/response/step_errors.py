@@ -12,10 +12,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any, Protocol
 
 import numpy as np
 
-from gbeam.analysis.response.run import Run
 from gbeam.arrays.types import Floats
 from gbeam.numerics.peaks import peaks_apart
 from gbeam.results.errors import StepErrors
@@ -23,6 +23,53 @@ from gbeam.results.errors import StepErrors
 # Limits of the observed order of histories: runs that hardly converge differ by less than their error.
 LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
 _SAMPLES = 2000  # times at most at which the loads of two runs are compared
+
+
+class Stepped(Protocol):
+    """A run by steps of one length, s, as the choice of steps and their errors see it."""
+
+    @property
+    def step(self) -> float:
+        """Length of the steps in the flight, s."""
+        ...
+
+    @property
+    def flight(self) -> Any:
+        """Trajectory over the flight's times."""
+        ...
+
+    @property
+    def whole(self) -> bool:
+        """True if the run came to its end."""
+        ...
+
+    @property
+    def bends(self) -> bool:
+        """True if a force law has corners within steps, so that errors do not fall by the order of the scheme."""
+        ...
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """Warning of events that the steps may miss, which makes their error unknown; else empty."""
+        ...
+
+    @property
+    def moved(self) -> Sequence[Floats]:
+        """Histories (t, k) of displacements."""
+        ...
+
+    @property
+    def peaks(self) -> Sequence[Floats]:
+        """Peaks (4,) of vectors."""
+        ...
+
+    def aims(self, aim: float, enough: float) -> Sequence[float]:
+        """Errors of each history that :attr:`moved` at which automatic steps aim; `enough` is the largest."""
+        ...
+
+    def loads(self, stride: int) -> Sequence[Floats]:
+        """Histories (t, ..., k) of force, moment and stress of each body in turn, at every `stride`-th step."""
+        ...
 
 
 def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
@@ -52,12 +99,12 @@ def observed_order(before: float, now: float, ratios: tuple[int, int], highest: 
     return low
 
 
-def ratio(coarse: Run, fine: Run) -> int:
+def ratio(coarse: Stepped, fine: Stepped) -> int:
     """Number of steps of one run in one of the other."""
     return round(coarse.step / fine.step)
 
 
-def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> float:
+def share(runs: Sequence[Stepped], differences: Sequence[float], highest: float) -> float:
     """Error of the last of two or three runs over its difference from the one before, by the order observed, `highest`
     at most.
     """
@@ -68,7 +115,7 @@ def share(runs: Sequence[Run], differences: Sequence[float], highest: float) -> 
     return 1 / (ratio(runs[-2], runs[-1]) ** order - 1)
 
 
-def left(runs: Sequence[Run], differences: Sequence[float], highest: float) -> float:
+def left(runs: Sequence[Stepped], differences: Sequence[float], highest: float) -> float:
     """Error of the last of two or three runs, by their differences and the order observed. A law that bends within
     steps has no order, and two runs may agree by chance: there the larger difference counts.
     """
@@ -89,7 +136,7 @@ class Estimate:
     promised_peaks: float
 
     @staticmethod
-    def of(runs: Sequence[Run], order: int) -> Estimate:
+    def of(runs: Sequence[Stepped], order: int) -> Estimate:
         """Estimate from runs with falling steps, by a scheme of an order."""
         pairs = [(ratio(a, b), a.moved, b.moved) for a, b in pairwise(runs)]
         differences = [[difference(a, b, jump) for a, b in zip(*both, strict=True)] for jump, *both in pairs]
@@ -109,16 +156,16 @@ def _apart(coarse: Floats, fine: Floats) -> float:
     return float(np.abs(coarse - fine).max() / fine.max()) if fine.max() > 0 else 0.0
 
 
-def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
+def of_everything(runs: Sequence[Stepped], order: int) -> StepErrors:
     """Errors of the last run: of displacements, of the roots' loads and of stress, which are NaN if not known."""
     moved = Estimate.of(runs, order).moved
-    known = StepErrors(max(moved), moved=moved)
+    known = StepErrors(max(moved, default=0.0), moved=moved)
     if not all(run.whole for run in runs[-2:]):
         return known
     runs, differences, of_peaks = runs if runs[0].whole else runs[-2:], [], []
     for coarse, fine in pairwise(runs):
-        stride = max(1, (len(coarse.trajectory.time) - 1) // _SAMPLES)
-        time, both = coarse.trajectory.time[::stride], (coarse.loads(stride), fine.loads(stride * ratio(coarse, fine)))
+        stride = max(1, (len(coarse.flight.time) - 1) // _SAMPLES)
+        time, both = coarse.flight.time[::stride], (coarse.loads(stride), fine.loads(stride * ratio(coarse, fine)))
         differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
         of_peaks.append([_peaks_apart(time, a, b) for a, b in zip(*both, strict=True)])
     errors = [left(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
@@ -129,7 +176,10 @@ def of_everything(runs: Sequence[Run], order: int) -> StepErrors:
         of_peaks[-1] = [max(now, before / times) for before, now in zip(*of_peaks[-2:], strict=True)]
     peaks = tuple(left(runs, each, 4 / order) for each in zip(*of_peaks, strict=True))
     # Force, moment and stress of each body in turn.
-    loads, stress = max(errors[::3] + errors[1::3]), max(errors[2::3], default=math.nan)
+    loads, stress = (
+        max(errors[::3] + errors[1::3]),
+        max((each for each in errors[2::3] if not math.isnan(each)), default=math.nan),
+    )
     return replace(known, loads=loads, stress=stress, each=tuple(errors), peaks=peaks)
 
 

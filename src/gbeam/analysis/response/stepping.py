@@ -5,25 +5,17 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import replace
-from functools import partial
-from itertools import pairwise
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
-from gbeam.analysis.response.problem import Problem
-from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Estimate, of_everything, ratio
-from gbeam.arrays.namespace import is_traced, namespace
+from gbeam.analysis.response.step_errors import Estimate, Stepped, of_everything, ratio
+from gbeam.arrays.namespace import is_traced
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import Trajectory
 from gbeam.integrate.schemes import SCHEMES, Scheme
-from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion
 from gbeam.printable import advise
 from gbeam.results.errors import StepErrors
@@ -35,10 +27,10 @@ FEW = 5_000, 20_000, 40_000  # numbers of steps tried first; an error of a third
 ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # numbers of steps that a step is divided into; a check joins four, three or two of these
 BENT = 4  # the largest division where a law bends, so that errors can be seen to fall
-RIGID = 2e-3  # s: step of a specimen without coordinates
+RIGID = 2e-3  # s: longest step of the results where nothing is unknown
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
 # Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
-R = TypeVar("R", bound=Run)
+R = TypeVar("R", bound=Stepped)
 Plan = Generator[tuple[float, str], R, tuple[R, StepErrors]]
 
 
@@ -55,25 +47,6 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
                 fix = advise(name, takes, listed="it takes")
             raise InputError(f"parameters.{name}", f"does not belong to {settings.integrator}", fix)
     return scheme(**{str(name): value for name, value in settings.parameters.items()})
-
-
-def first_step(structure: Structure, motion: Motion, settings: ResponseSettings) -> float:
-    """Step of the results, s: that of the settings, rounded to a whole number of steps; if automatic, an even number of
-    steps, at least 500 and 20 to the lowest period, none longer than the shortest time between corners.
-    """
-    if settings.step is not None:
-        return settings.duration / max(1, round(settings.duration / settings.step))
-    period = 2 * math.pi / float(structure.rest[0][0]) if structure.size else 20 * RIGID
-    largest = min(period / 20, settings.duration / 500)
-    return settings.duration / even_steps(largest, corners(structure, motion, largest), settings)
-
-
-def first_steps(structure: Structure, motion: Motion, settings: ResponseSettings) -> list[tuple[float, int]]:
-    """Steps of the results to try, s, each with the most steps of a run."""
-    step = first_step(structure, motion, settings)
-    if not structure.size:
-        return [(step, MAX_STEPS)]
-    return steps_to_try(step, MAX_STEPS, partial(corners, structure, motion), settings)
 
 
 def steps_to_try(
@@ -96,7 +69,7 @@ def steps_to_try(
     return tries
 
 
-def enough(run: Run, errors: StepErrors, settings: ResponseSettings) -> bool:
+def enough(run: Stepped, errors: StepErrors, settings: ResponseSettings) -> bool:
     """True if a run misses no stop, and its step errors are within a third of the tolerance."""
     return not run.missed and max(errors.displacement, errors.loads) <= settings.tolerance / 3
 
@@ -106,12 +79,6 @@ def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> i
     gaps = np.diff(np.unique(np.clip(corners - settings.start, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
     return 2 * math.ceil(settings.duration / largest / 2)
-
-
-def corners(structure: Structure, motion: Motion, step: float) -> Floats:
-    """Times at which the motion or the loads have a corner or jump, or what steps of a length could pass unseen, s."""
-    loads = [] if structure.history is None else [structure.history.corners(step)]
-    return np.concatenate([motion.corners(step), *loads])
 
 
 def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:
@@ -175,10 +142,10 @@ def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = M
         if both and left <= 1 and not new.missed and not (new.bends and len(runs) < 3):
             errors = of_everything(runs[-3:], order)
             excess, most = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
-            if not (excess > 1 and new.followed):  # errors of loads that are NaN are not followed
+            if not excess > 1:  # errors of loads that are NaN are not followed
                 return new, errors
         finer = min(finer_by(excess, order), BENT if new.bends else JUMPS[-1])
-        stuck = not (runs[-2].whole or new.whole) and (new.trajectory.stopped or len(runs) > 3)
+        stuck = not (runs[-2].whole or new.whole) and (new.flight.stopped or len(runs) > 3)
         if stuck or settings.duration / new.step * finer > most:
             break
         runs.append((yield refined(new.step / finer)))
@@ -191,7 +158,7 @@ def finer_by(excess: float, order: int) -> int:
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
-def _left(runs: Sequence[Run], order: int, aims: tuple[float, float], enough: float) -> tuple[float, float]:
+def _left(runs: Sequence[Stepped], order: int, aims: tuple[float, float], enough: float) -> tuple[float, float]:
     """Largest of the errors of displacements and peaks over their aims: by the order observed, and by the scheme's."""
     error, (aim, of_peaks) = Estimate.of(runs, order), aims
     each = runs[-1].aims(aim, enough)
@@ -202,7 +169,7 @@ def _left(runs: Sequence[Run], order: int, aims: tuple[float, float], enough: fl
     return left, promised
 
 
-def _check_needed(runs: Sequence[Run], left: float) -> float | None:
+def _check_needed(runs: Sequence[Stepped], left: float) -> float | None:
     """Step, s, of a cheaper run to check that errors fall by the order, or None if no check is needed. After a large
     jump of the step unresolved modes may make the error look too small.
     """
@@ -222,30 +189,3 @@ def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tup
         raise InputError("spin_up", "is found from the load, and JAX traces the machine", fix)
     before, after = (math.ceil(float(time) / step - 1e-6) for time in beyond)
     return before, after
-
-
-def integrated(problem: Problem, settings: ResponseSettings, step: float, **how: Any) -> Trajectory:
-    """Integrate a problem over the times of the settings by steps of a length, s."""
-    # A step that does not divide the duration, twice the one given, goes beyond the end.
-    how |= {"step": step, "count": math.ceil(settings.duration / step - 1e-6), "start": settings.start}
-    return integrate(problem.equations, scheme_of(settings), problem.q, problem.qd, **how)
-
-
-def split(trajectory: Trajectory, *counts: int) -> list[Trajectory | None]:
-    """Split a trajectory into parts of so many steps, one after the other; None for a part without steps."""
-    ends = [0, *np.cumsum(counts)]
-    return [trajectory.at(slice(a, b + 1)) if b > a else None for a, b in pairwise(ends)]
-
-
-def joined(up: Trajectory | None, flight: Trajectory, down: Trajectory | None, stride: int) -> tuple[Trajectory, slice]:
-    """Every step of spin-up and spin-down with every `stride`-th of the flight, and the slice of the flight's."""
-    parts = [flight.at(slice(None, None, stride))]
-    if up is not None:
-        parts.insert(0, up.at(slice(None, -1)))
-    if down is not None:
-        parts.append(down.at(slice(1, None)))
-    xp = namespace(flight.q)
-    q, qd, qdd = (xp.concatenate([getattr(part, name) for part in parts]) for name in ("q", "qd", "qdd"))
-    time = np.concatenate([part.time for part in parts])
-    first = 0 if up is None else len(up.time) - 1
-    return replace(flight, time=time, q=q, qd=qd, known=qdd), slice(first, first + len(flight.time[::stride]))
