@@ -76,13 +76,14 @@ class LinearEquations:
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
     """r(q, q̇, q̈; inputs(t)) = 0, (..., n), analytic and linear in q̈; leading axes of its arguments are broadcast. Its
-    arrays are arguments of a compiled program. Where it `vibrates`, steps are fitted to its modes at q = 0.
+    arrays are arguments of a compiled program. Steps are fitted to its modes at q = 0 under the inputs `idle` of one
+    time (1, ...), which drive nothing; None where these are not its modes elsewhere.
     """
 
     residual: Any
     drive: Drive
     controllers: Any = None
-    vibrates: bool = False
+    idle: Any = None
 
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
         """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""

@@ -23,6 +23,7 @@ from gbeam.analysis.response.stepping import (
 from gbeam.analysis.system.feedback import SystemControllers
 from gbeam.analysis.system.point import Point, started, unknown_at_start
 from gbeam.arrays.namespace import Array
+from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.constants import State
 from gbeam.errors import InputError
@@ -30,7 +31,7 @@ from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners
 from gbeam.mechanics.tree.equations import SLIP
-from gbeam.mechanics.tree.linear import is_linear, linear_equations
+from gbeam.mechanics.tree.linear import idle_inputs, is_linear, linear_equations
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress
@@ -63,9 +64,12 @@ class PosedSystem:
     def equations(self) -> LinearEquations | NonlinearEquations:
         """Equations of the system, with its controllers, if any, in the loop; linear where they are so without."""
         tree, drive = self.system.tree.slipping(self.slip), partial(self.system.inputs, motion=self.motion)
-        if self.controllers is not None:
-            return NonlinearEquations(tree, drive, self.controllers)
-        return linear_equations(tree, drive) if is_linear(tree) else NonlinearEquations(tree, drive)
+        if self.controllers is None and is_linear(tree):
+            return linear_equations(tree, drive)
+        at_start = self.system.inputs(np.array([self.settings.start]))
+        idle = idle_inputs(tree, at_start) if self.controllers is None else None
+        ground = each_leaf(lambda leaf: leaf[0], at_start.ground) if self.motion is None else None
+        return NonlinearEquations(tree.contracted(ground), drive, self.controllers, idle)
 
     @cached_property
     def felt(self) -> Corners:

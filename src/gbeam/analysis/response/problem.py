@@ -216,7 +216,8 @@ def problem_of(structure: Structure, motion: Motion, start: float, initial: Init
     residual = structure.residual(hub)
     if hub is not None:
         q, qd = (namespace(x).append(0.0, x) for x in (q, qd))
-    return Problem(NonlinearEquations(residual, drive, vibrates=hub is not None), q, qd, residual.first, stable)
+    idle = None if hub is None else each_leaf(lambda leaf: np.zeros(np.shape(leaf)), drive(np.array([start])))
+    return Problem(NonlinearEquations(residual, drive, idle=idle), q, qd, residual.first, stable)
 
 
 def driven(structure: Structure, motion: Any, t: Array) -> tuple[Any, Any]:
