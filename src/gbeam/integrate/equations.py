@@ -160,6 +160,12 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array
     return np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
 
 
+def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
+    """M (t, n, n) of equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...), as :func:`slopes` gives it."""
+    steps = 1j * STEP * np.eye(q.shape[1])[:, None]
+    return np.moveaxis(residual(q, qd, np.repeat(steps, len(q), axis=1), inputs).imag / STEP, 0, 2)
+
+
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
     pieces, n = [], q.shape[1]

@@ -66,10 +66,11 @@ class PosedSystem:
         tree, drive = self.system.tree.slipping(self.slip), partial(self.system.inputs, motion=self.motion)
         if self.controllers is None and is_linear(tree):
             return linear_equations(tree, drive)
-        at_start = self.system.inputs(np.array([self.settings.start]))
-        idle = idle_inputs(tree, at_start) if self.controllers is None else None
+        at_start = self.system.inputs(np.array([self.settings.start]))  # on a ground that rests
         ground = each_leaf(lambda leaf: leaf[0], at_start.ground) if self.motion is None else None
-        return NonlinearEquations(tree.contracted(ground), drive, self.controllers, idle)
+        contracted = tree.contracted(ground)
+        idle = idle_inputs(contracted, at_start) if self.controllers is None else None
+        return NonlinearEquations(contracted, drive, self.controllers, idle)
 
     @cached_property
     def felt(self) -> Corners:

@@ -63,8 +63,8 @@ class Body(Protocol):
         """Mass kg, and its first moment (..., 3) kg m about the root, its axes."""
         ...
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        """Kinetic energy (...) J, and momentum N s and angular momentum N m s about the root, its axes."""
+    def elastic(self, q: Array) -> Array:
+        """Forces (..., n) of the strain energy on the coordinates."""
         ...
 
 
@@ -118,11 +118,8 @@ class Rigid:
     def mass_moment(self, q: Array) -> tuple[Array, Array]:
         return self.mass, self.mass * self.centre + 0 * q.sum(axis=-1, keepdims=True)
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        velocity, spin = root.v + cross(root.w, self.centre), root.w @ self.inertia
-        push = self.mass * velocity
-        energy = ((push * velocity).sum(axis=-1) + (root.w * spin).sum(axis=-1)) / 2
-        return energy, Wrench(push, spin + cross(self.centre, push))
+    def elastic(self, q: Array) -> Array:
+        return q
 
 
 @record
@@ -213,13 +210,8 @@ class FieldBody:
         inertia = self.equations.inertia
         return inertia.mass.sum(), (inertia.mass[:, None] * inertia.field.positions(q)).sum(axis=-2)
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        inertia = self.equations.inertia
-        r, rd, _ = inertia.field.paths(q, qd, 0 * qd)
-        velocity = root.v[..., None, :] + cross(root.w[..., None, :], r) + rd
-        push = inertia.mass[:, None] * velocity
-        energy = (push * velocity).sum(axis=(-2, -1)) / 2
-        return energy, Wrench(push.sum(axis=-2), cross(r, push).sum(axis=-2))
+    def elastic(self, q: Array) -> Array:
+        return q @ self.equations.stiffness
 
 
 @record
@@ -325,17 +317,18 @@ class LinearBody:
     def mass_moment(self, q: Array) -> tuple[Array, Array]:
         return self.coefficients.rigid[0], self._moments(q, 0 * q)[0]
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        S, _, Sd, J, _, h, _ = self._moments(q, qd)
-        c = self.coefficients
-        push = c.rigid[0] * root.v + cross(root.w, S) + Sd
-        spin = cross(S, root.v) + turned(J, root.w) + h
-        energy = (push * root.v + spin * root.w + Sd * root.v + h * root.w).sum(axis=-1)
-        energy = energy + ((qd @ c.mass) * qd).sum(axis=-1)
-        if self.carried is not None:
-            v, w = _mean_motion(c.rigid[0], S, J, Sd, h)
-            energy = energy + (v * Sd + w * h).sum(axis=-1) - ((qd @ self.carried) * qd).sum(axis=-1)
-        return energy / 2, Wrench(push, spin)
+    def elastic(self, q: Array) -> Array:
+        return self.coefficients.elastic(q)
+
+
+def momentum(body: Body, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
+    """Kinetic energy (...) J, and momentum N s and angular momentum N m s about the root, its axes: the forces that
+    accelerations demand of what rests are momenta where rates take their place.
+    """
+    still = 0 * root.w
+    along, wrench = body.demanded(q, 0 * qd, qd, Frame(None, None, None, still, root.v, root.w), None)
+    energy = (wrench.force * root.v + wrench.moment * root.w).sum(axis=-1)
+    return (energy + ((along - body.elastic(q)) * qd).sum(axis=-1)) / 2, wrench
 
 
 def carried(c: Coefficients) -> Array | None:

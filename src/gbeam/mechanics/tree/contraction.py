@@ -12,7 +12,9 @@ with constants that are contractions of the body's coefficients: one matrix prod
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -84,15 +86,15 @@ def _span(samples: Floats, told: Floats) -> tuple[Pivots, Floats] | None:
     """
     if not (np.isfinite(samples).all() and np.isfinite(told).all()):
         return None
-    left, pivots = samples.copy(), list[int]()
-    for k, size in enumerate(np.linalg.norm(samples, axis=0)):
-        share = np.linalg.norm(left[:, k]) / size if size > 0 else 0.0
-        if PARALLEL < share < INDEPENDENT:
+    left, pivots, sizes = samples.copy(), list[int](), np.sqrt((samples**2).sum(axis=0))
+    for k in np.flatnonzero(sizes):
+        size = math.sqrt(left[:, k] @ left[:, k])
+        if PARALLEL * sizes[k] < size < INDEPENDENT * sizes[k]:
             return None
-        if share >= INDEPENDENT:
-            unit = left[:, k] / np.linalg.norm(left[:, k])
-            left = left - unit[:, None] * (unit @ left)
-            pivots.append(k)
+        if size >= INDEPENDENT * sizes[k]:
+            unit = left[:, k] / size
+            left -= unit[:, None] * (unit @ left)
+            pivots.append(int(k))
     rows = np.linalg.lstsq(samples[:, pivots], told, rcond=None)[0]
     parts, largest = np.abs(rows) * np.abs(samples).max(axis=0)[pivots, None], np.abs(told).max(axis=0)
     if (np.abs(samples[:, pivots] @ rows - told) > PARALLEL * largest).any():
@@ -135,9 +137,16 @@ def _factors(twists: Floats) -> tuple[Floats, Floats, Floats]:
     """Factors of mass (t, 12), first moment (t, 12, 3) and moments of inertia (t, 12, 3, 3) in the work along `twists`
     (t, 6) of the wrench that each of twelve features demands of a rigid body.
     """
-    V, turns, unit = twists[:, :3], twists[:, 3:], np.eye(3)
+    by_mass, by_S, by_J = (np.tensordot(twists, each, 1) for each in _unit_factors())
+    return by_mass, by_S, by_J
+
+
+@cache
+def _unit_factors() -> tuple[Floats, Floats, Floats]:
+    """Factors as :func:`_factors`, of each component of a twist."""
+    unit, (V, turns) = np.eye(3), np.eye(6).reshape(6, 2, 3).swapaxes(0, 1)
     across, whirl = (np.einsum("abc,tb->tca", EPSILON, each) for each in (V, turns))  # v × e_c and Ω × e_c
-    by_mass, by_S, by_J = np.zeros((len(V), 12)), np.zeros((len(V), 12, 3)), np.zeros((len(V), 12, 3, 3))
+    by_mass, by_S, by_J = np.zeros((6, 12)), np.zeros((6, 12, 3)), np.zeros((6, 12, 3, 3))
     for k, (i, j) in enumerate(PAIRS):
         for first, second in {(i, j), (j, i)}:
             by_S[:, k] += np.cross(across[:, first], unit[second])

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, concatenated, holds_jax, namespace
+from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import record, static
-from gbeam.mechanics.tree.bodies import Acting, Body, LinearBody, Rigid
+from gbeam.mechanics.tree.bodies import Acting, Body, LinearBody, Rigid, momentum
 from gbeam.mechanics.tree.contraction import Roots
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
@@ -315,7 +315,7 @@ class Tree:
         """Return the same equations, of unknown coordinates alone, in fewer sums: bodies with constant coefficients
         contracted with the motions that their roots can have, on a `ground` with this constant motion (3,), or any.
         """
-        if holds_jax(self) or not any(isinstance(link.body, LinearBody) for link in self.links):
+        if holds_jax(self):
             return self
         random = np.random.default_rng(0)  # any numbers: none of a root's motions is left out but by chance
         y, yd, ydd = random.normal(size=(3, SAMPLES, self.size))
@@ -406,15 +406,17 @@ class Tree:
         force = moment = kinetic = elastic = weight = 0.0
         for k, link in enumerate(self.links):
             q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)
-            energy, momentum = link.body.moving(q[-1], qd[-1], root)
-            push, spin = turned(root.R, momentum.force), turned(root.R, momentum.moment)
+            energy, impulse = momentum(link.body, q[-1], qd[-1], root)
+            push, spin = turned(root.R, impulse.force), turned(root.R, impulse.moment)
             force, moment = force + push, moment + spin + cross(root.p, push)
             kinetic = kinetic + energy
             elastic = elastic + link.body.stored(q[-1])
             if not link.loose:
                 elastic = elastic + link.stored(q[:-1], qd[:-1])
-            mass, first_moment = link.body.mass_moment(q[-1])
-            weight = weight - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
+            weight = weight + 0.0 * kinetic
+            if is_jax(gravity) or gravity.any():
+                mass, first_moment = link.body.mass_moment(q[-1])
+                weight = weight - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
         return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
 
     def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:

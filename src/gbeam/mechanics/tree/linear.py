@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.equations import Drive, LinearEquations, LinearTerms, slopes
+from gbeam.integrate.equations import Drive, LinearEquations, LinearTerms, masses
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.tree.bodies import Body, LinearBody
 from gbeam.mechanics.tree.equations import Inputs, Tree
@@ -55,7 +55,7 @@ def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
     three = each_leaf(lambda leaf: np.repeat(leaf, 3, axis=0), idle)
     if prescribed is not None:
         three.prescribed[:, 0] += np.array([0.0, -0.7, 1.3])[:, None]
-    mass = slopes(tree, y, still, still, three)[2]
+    mass = masses(tree, y, still, three)
     size = np.abs(mass).max()
     same = np.isfinite(mass).all() and (np.abs(mass - mass[0].T) <= SAME * size).all() and positive_definite(mass[0])
     return idle if same else None
