@@ -88,12 +88,12 @@ def test_nonlinear_equations_are_fitted_as_linear_ones_are(ratio: float) -> None
     def residual(q: Any, qd: Any, qdd: Any, t: Any) -> Any:
         return qdd @ linear.mass + qd @ damping + q @ stiffness
 
-    equations = NonlinearEquations(residual, lambda t: t, vibrates=True)
+    equations = NonlinearEquations(residual, lambda t: t, idle=np.zeros(1))
 
     def run(of: Any) -> Any:
         return integrate(of, gauss(), np.array([1.0, -0.5]), np.array([0.3, 0.2]), step=STEP, count=50)
 
-    expected, fitted, plain = map(run, (linear, equations, replace(equations, vibrates=False)))
+    expected, fitted, plain = map(run, (linear, equations, replace(equations, idle=None)))
     for name in ("q", "qd", "qdd"):
         want, size = getattr(expected, name), np.abs(getattr(expected, name)).max()
         np.testing.assert_allclose(getattr(fitted, name), want, atol=1e-9 * size)
@@ -101,7 +101,7 @@ def test_nonlinear_equations_are_fitted_as_linear_ones_are(ratio: float) -> None
 
 
 def test_fitted_steps_of_nonlinear_equations_have_the_order_of_the_scheme() -> None:
-    fitted, start = replace(PENDULUM, vibrates=True), (np.array([0.8]), np.array([0.3]))
+    fitted, start = replace(PENDULUM, idle=np.zeros(1)), (np.array([0.8]), np.array([0.3]))
     truth = integrate(PENDULUM, gauss(), *start, step=4 / 2560, count=2560).q[-1]
     errors = [
         np.abs(integrate(fitted, gauss(), *start, step=4 / count, count=count).q[-1] - truth).max()

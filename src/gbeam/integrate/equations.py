@@ -76,13 +76,14 @@ class LinearEquations:
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
     """r(q, q̇, q̈; inputs(t)) = 0, (..., n), analytic and linear in q̈; leading axes of its arguments are broadcast. Its
-    arrays are arguments of a compiled program. Where it `vibrates`, steps are fitted to its modes at q = 0.
+    arrays are arguments of a compiled program. Steps are fitted to its modes at q = 0 under the inputs `idle` of one
+    time (1, ...), which drive nothing; None where these are not its modes elsewhere.
     """
 
     residual: Any
     drive: Drive
     controllers: Any = None
-    vibrates: bool = False
+    idle: Any = None
 
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
         """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""
@@ -157,6 +158,12 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array
         values = residual(*(value + steps[:, :, k] for k, value in enumerate(state)), inputs_piece)
         pieces.append(values.imag / STEP)
     return np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
+
+
+def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
+    """M (t, n, n) of equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...), as :func:`slopes` gives it."""
+    steps = 1j * STEP * np.eye(q.shape[1])[:, None]
+    return np.moveaxis(residual(q, qd, np.repeat(steps, len(q), axis=1), inputs).imag / STEP, 0, 2)
 
 
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:

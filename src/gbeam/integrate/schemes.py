@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import holds_jax
-from gbeam.arrays.tree import each_leaf, record
+from gbeam.arrays.tree import record
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.integrate.equations import Fitted, LinearEquations, NonlinearEquations, slopes
@@ -212,15 +212,14 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
 
 
 def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
-    """Residual of n coordinates that steps solve: fitted to its modes at q = 0 without drive, or the equations' own
-    where these do not vibrate, the scheme does not fit steps, or JAX traces the residual.
+    """Residual of n coordinates that steps solve: fitted to its modes at q = 0, or the equations' own where these do
+    not keep them, the scheme does not fit steps, or JAX traces the residual.
     """
     residual = equations.residual
-    if scheme.exponent is None or not equations.vibrates or holds_jax(residual):
+    if scheme.exponent is None or equations.idle is None or holds_jax(residual):
         return residual
-    no_drive = each_leaf(lambda leaf: np.zeros(np.shape(leaf)), equations.drive(steps.first[:1]))
     zero = np.zeros((1, n))
-    stiffness, damping, mass = (symmetric(slope[0]) for slope in slopes(residual, zero, zero, zero, no_drive))
+    stiffness, damping, mass = (symmetric(slope[0]) for slope in slopes(residual, zero, zero, zero, equations.idle))
     return Fitted(residual, *to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
 
 

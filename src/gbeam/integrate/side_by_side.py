@@ -150,7 +150,7 @@ class Run:
         magnitude = ceil(log(len(steps), NEARLY))  # equal for numbers of steps that are nearly equal
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
-            return "nonlinear", form, *map(np.shape, leaves), self.equations.vibrates, magnitude
+            return "nonlinear", form, *map(np.shape, leaves), self.equations.idle is None, magnitude
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None
         return "linear", len(self.q), magnitude, self.parts
@@ -303,13 +303,13 @@ def _residuals(runs: Sequence[Run]) -> Residuals:
 
 def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
     """The residuals that steps solve: fitted to their modes, as by :func:`gbeam.integrate.schemes.stepped`."""
-    exponent, equations = runs[0].scheme.exponent, cast(NonlinearEquations, runs[0].equations)
-    if exponent is None or not equations.vibrates:
+    exponent, equations = runs[0].scheme.exponent, [cast(NonlinearEquations, run.equations) for run in runs]
+    if exponent is None or equations[0].idle is None:
         return residuals
     form, axes, leaves = residuals
-    zero, first = np.zeros((len(runs), len(runs[0].q))), runs[0].steps.first[:1]
-    no_drive = jax.tree.map(lambda leaf: np.zeros((len(runs), *np.shape(leaf)[1:])), equations.drive(first))
-    k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, no_drive))
+    zero = np.zeros((len(runs), len(runs[0].q)))
+    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *(each.idle for each in equations))
+    k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, idle))
     added_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
     leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), *added_terms))
     return form, (*axes, 0, 0), leaves

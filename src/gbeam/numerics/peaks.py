@@ -131,16 +131,18 @@ def _resolved(time: Floats, q: Floats, qd: Floats) -> Any:
 
 
 def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:
-    """Times (u, p) and values (u, p, c) in the two steps beside samples `at` (u,), from values (t, c) alone. Where the
-    polynomial of sixth degree does not converge, as at a jump, the sample stands for all.
+    """Times (u, p) and values (u, p, c) in the two steps beside samples `at` (u,), from values (t, c) alone, or (b, t,
+    c) of runs, through all of which they count. Where the polynomial of sixth degree does not converge, as at a jump,
+    the sample stands for all.
     """
     if len(time) < FEWEST:
         at = at[:0]
-    t, n = _subdivided(time, at), max(len(time), FEWEST)
+    run, sample = np.divmod(at, len(time))
+    t, n, values = _subdivided(time, sample), max(len(time), FEWEST), values.reshape(-1, values.shape[-1])
     high, low, parabola = (
-        _lagrange(time[k], t) @ values[k]
+        _lagrange(time[k], t) @ values[run[:, None] * len(time) + k]
         for m in (7, 5, 3)
-        for k in [np.clip(at - m // 2, 0, n - m)[:, None] + np.arange(m)]
+        for k in [np.clip(sample - m // 2, 0, n - m)[:, None] + np.arange(m)]
     )
     sampled = values[at][:, None]
     change = np.abs(high - low).max(axis=1, keepdims=True)
@@ -185,10 +187,14 @@ def _vertex(t: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 
 def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
-    """Largest sizes of components and length of a vector (t, 3), (4,), and their times, between samples."""
-    each = sizes(vectors[:, None])
-    t, between = seven_point(time, vectors, near_maxima(time, each))
-    return maxima(time, each, t, sizes(between[:, :, None]))
+    """Largest sizes of components and length of vectors (..., t, 3), (..., 4), and their times, between samples."""
+    runs = vectors.reshape(-1, *vectors.shape[-2:])
+    each = sizes(runs[:, :, None])
+    at = near_maxima(time, each)
+    t, between = seven_point(time, runs, at)
+    value, when = maxima(time, each, t, sizes(between[:, :, None]), at)
+    shape = *vectors.shape[:-2], 4
+    return value.reshape(shape), when.reshape(shape)
 
 
 def sizes(vectors: Floats) -> Floats:
@@ -200,10 +206,10 @@ def sizes(vectors: Floats) -> Floats:
 
 def column_peaks(time: Floats, columns: Floats) -> tuple[Floats, Floats]:
     """Largest values (k,) of histories (t, k), each looked at by itself, and their times, between samples."""
-    each = (column[:, None] for column in columns.T)
-    largest = [maxima(time, one, *seven_point(time, one, near_maxima(time, one))) for one in each]
-    value, when = np.reshape(largest, (-1, 2)).T
-    return value, when
+    runs = np.ascontiguousarray(columns.T)[..., None]
+    at = near_maxima(time, runs)
+    value, when = maxima(time, runs, *seven_point(time, runs, at), at)
+    return value[:, 0], when[:, 0]
 
 
 def extremes(time: Floats, values: Floats) -> Floats:

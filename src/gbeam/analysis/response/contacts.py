@@ -75,7 +75,7 @@ def _states(
     if inputs.prescribed is not None:
         states = [system.tree.whole(state, inputs.prescribed[..., k, :]) for k, state in enumerate(states)]
     names = {joint.body: name for name, joint in system.joints.items()}
-    by_link = zip(*map(system.tree.parted, states), strict=True)
+    by_link = zip(*system.tree.parted(*states), strict=True)
     for body, link, (q, qd) in zip(system.order, system.tree.links, by_link, strict=True):
         if not link.loose:
             yield names[body], system.joints[names[body]], link, q[:-1], qd[:-1]  # the last are the body's own

@@ -135,8 +135,8 @@ def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) 
 
     def of_points(vectors: Floats) -> tuple[Floats, Floats]:
         """Largest lengths (p,) of vectors (t, p, 3), and their times."""
-        peaks = np.reshape([vector_peaks(time, each) for each in np.moveaxis(vectors, 1, 0)], (-1, 2, 4))
-        return peaks[:, 0, 3], peaks[:, 1, 3]
+        value, when = vector_peaks(time, np.moveaxis(vectors, 1, 0))
+        return value[:, 3], when[:, 3]
 
     def of_ground(key: str) -> VectorPeaks:
         value, when = vector_peaks(time, over_time[key])

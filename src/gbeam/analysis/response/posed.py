@@ -30,6 +30,7 @@ from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.feedback import SystemControllers
 from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
 from gbeam.arrays.namespace import Array, is_jax, namespace
+from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.constants import State
 from gbeam.errors import InputError
@@ -40,7 +41,7 @@ from gbeam.integrate.steps import Corners, Steps, fitted, joined
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import SLIP, Inputs
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.linear import is_linear, linear_equations
+from gbeam.mechanics.tree.linear import idle_inputs, is_linear, linear_equations
 from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -108,11 +109,13 @@ class Posed:
     def equations(self) -> LinearEquations | NonlinearEquations:
         """Equations of the system, with its controllers, if any, in the loop; linear where they are so without."""
         tree = self.system.tree.slipping(self.slip)
-        if self.controllers is not None:
-            return NonlinearEquations(tree, self.drive, self.controllers)
-        if is_linear(tree):
+        if self.controllers is None and is_linear(tree):
             return linear_equations(tree, self.drive)
-        return NonlinearEquations(tree, self.drive, vibrates=bool(self.subject.body) and len(tree.links) > 1)
+        at_start = self.system.inputs(np.array([self.settings.start]))  # on a ground that rests
+        ground = each_leaf(lambda leaf: leaf[0], at_start.ground) if self.motion is None else None
+        contracted = tree.contracted(ground)
+        idle = idle_inputs(contracted, at_start) if self.controllers is None else None
+        return NonlinearEquations(contracted, self.drive, self.controllers, idle)
 
     def driven_as(self, other: Posed) -> bool:
         """True if the motion of the ground and all loads are the same objects as those of another problem."""

@@ -24,7 +24,7 @@ from gbeam.analysis.system.point import Point, unknown_at_start
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.types import Floats, Indices
-from gbeam.integrate.equations import Trajectory, slopes
+from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
@@ -267,7 +267,7 @@ class Run:
         steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
         q, qd, still = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])
         if Point(system.tree, q[0], qd[0], still[0], self.inputs(system, steps[0])).minimal:
-            mass = slopes(system.tree, q, qd, still, self.inputs(system, steps))[2]
+            mass = masses(system.tree, q, qd, self.inputs(system, steps))
         else:  # by Euler parameters it is singular
             states = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
             mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in states])

@@ -29,6 +29,7 @@ from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.plausibility import elastic_bend
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import momentum
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES, SPIN
@@ -375,7 +376,7 @@ class SteadySystem(Steady):
         for rates in (modes.real.T, modes.imag.T):
             state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, at_rest)
             for k, link in enumerate(tree.links):
-                energies[:, k] += link.body.moving(state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
+                energies[:, k] += momentum(link.body, state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
         return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
 
     def directions(self, modes: Complex) -> tuple[str, ...]:

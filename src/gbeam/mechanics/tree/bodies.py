@@ -7,6 +7,7 @@ A wrench is what motion demands: Σ m a outboard, less the loads. Forces on coor
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -19,6 +20,7 @@ from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
 from gbeam.mechanics.fields.vectors import split
+from gbeam.mechanics.tree.contraction import Contraction, RigidRows, Roots, contraction, rigid_rows
 from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, turned_back
 from gbeam.mechanics.tree.steps import rotation_by_vector, tangent_back
 
@@ -61,8 +63,8 @@ class Body(Protocol):
         """Mass kg, and its first moment (..., 3) kg m about the root, its axes."""
         ...
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        """Kinetic energy (...) J, and momentum N s and angular momentum N m s about the root, its axes."""
+    def elastic(self, q: Array) -> Array:
+        """Forces (..., n) of the strain energy on the coordinates."""
         ...
 
 
@@ -77,6 +79,7 @@ class Rigid:
     inertia: Array
     places: Array
     rotations: Array
+    contraction: RigidRows | None = None
 
     @property
     def size(self) -> int:
@@ -90,9 +93,21 @@ class Rigid:
         ]
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
+        if self.contraction is not None:
+            wrench = self.contraction.wrench(root.a, root.w, root.alpha)
+            return q, Wrench(wrench[..., :3], wrench[..., 3:])
         at_centre = root.a + cross(root.alpha, self.centre) + cross(root.w, cross(root.w, self.centre))
         force, spin = self.mass * at_centre, root.w @ self.inertia
         return q, Wrench(force, root.alpha @ self.inertia + cross(root.w, spin) + cross(self.centre, force))
+
+    def contracted(self, carrier: Roots, root: Roots) -> Rigid:
+        """The same body by the motion of its `carrier`, which tells that of its root; itself where that is in doubt."""
+        reach = carrier.reach(root)
+        if reach is None:
+            return self
+        square = (self.centre @ self.centre) * np.eye(3) - np.outer(self.centre, self.centre)
+        terms = self.mass, self.mass * self.centre, self.inertia + self.mass * square
+        return replace(self, contraction=rigid_rows(*terms, reach))
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         return q
@@ -103,11 +118,8 @@ class Rigid:
     def mass_moment(self, q: Array) -> tuple[Array, Array]:
         return self.mass, self.mass * self.centre + 0 * q.sum(axis=-1, keepdims=True)
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        velocity, spin = root.v + cross(root.w, self.centre), root.w @ self.inertia
-        push = self.mass * velocity
-        energy = ((push * velocity).sum(axis=-1) + (root.w * spin).sum(axis=-1)) / 2
-        return energy, Wrench(push, spin + cross(self.centre, push))
+    def elastic(self, q: Array) -> Array:
+        return q
 
 
 @record
@@ -198,13 +210,8 @@ class FieldBody:
         inertia = self.equations.inertia
         return inertia.mass.sum(), (inertia.mass[:, None] * inertia.field.positions(q)).sum(axis=-2)
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        inertia = self.equations.inertia
-        r, rd, _ = inertia.field.paths(q, qd, 0 * qd)
-        velocity = root.v[..., None, :] + cross(root.w[..., None, :], r) + rd
-        push = inertia.mass[:, None] * velocity
-        energy = (push * velocity).sum(axis=(-2, -1)) / 2
-        return energy, Wrench(push.sum(axis=-2), cross(r, push).sum(axis=-2))
+    def elastic(self, q: Array) -> Array:
+        return q @ self.equations.stiffness
 
 
 @record
@@ -223,12 +230,15 @@ class LinearBody:
 
     Without `hub_force` the root does not feel the rates of the coordinates: so is SFOAM as printed, 2009 (32), which
     conserves nothing.
+
+    With a `contraction` the wrench at the root has those components alone that the tree asks for.
     """
 
     coefficients: Coefficients
     points: Points
     carried: Array | None = None
     hub_force: bool = static(default=True)
+    contraction: Contraction | None = None
 
     @property
     def size(self) -> int:
@@ -239,6 +249,8 @@ class LinearBody:
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         c = self.coefficients
+        if self.contraction is not None:
+            return self._contracted(self.contraction, q, qd, qdd, root, loads)
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
         felt = qd if self.hub_force else 0 * qd  # by the root
         Sdd = turned(Si, qdd) + turned(_times(c.k_a, felt), qd)
@@ -264,6 +276,27 @@ class LinearBody:
             return along, self.demanded(q, 0 * qd, qdd, root, loads)[1]
         return along, Wrench(force, moment)
 
+    def _contracted(
+        self, by: Contraction, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None
+    ) -> tuple[Array, Wrench]:
+        """Forces and wrench as :meth:`demanded`, by constants that are contracted."""
+        c, (along, rows) = self.coefficients, by.demanded(q, qd, qdd, root.a, root.w, root.alpha)
+        if c.bending is not None:
+            along = along + c.bending.forces(q)
+        if loads is not None and c.loads is not None:
+            forces = c.loads.generalised(q, loads)
+            along, rows = along - forces[..., 6:], rows - forces[..., :6] @ by.loads
+        wrench = rows @ by.places
+        return along, Wrench(wrench[..., :3], wrench[..., 3:])
+
+    def contracted(self, carrier: Roots, root: Roots) -> LinearBody:
+        """The same body by the motion of its `carrier`, which tells that of its root; itself where that is in doubt, or
+        would not be faster.
+        """
+        reach = None if self.carried is not None else carrier.reach(root)
+        constants = None if reach is None else contraction(self.coefficients, reach, felt=self.hub_force)
+        return self if constants is None else replace(self, contraction=constants)
+
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
         """S, ∂S/∂q, Ṡ, J, ∂J/∂q, the momentum h = Σ h_i q̇_i, and the h_i."""
         c = self.coefficients
@@ -284,17 +317,18 @@ class LinearBody:
     def mass_moment(self, q: Array) -> tuple[Array, Array]:
         return self.coefficients.rigid[0], self._moments(q, 0 * q)[0]
 
-    def moving(self, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-        S, _, Sd, J, _, h, _ = self._moments(q, qd)
-        c = self.coefficients
-        push = c.rigid[0] * root.v + cross(root.w, S) + Sd
-        spin = cross(S, root.v) + turned(J, root.w) + h
-        energy = (push * root.v + spin * root.w + Sd * root.v + h * root.w).sum(axis=-1)
-        energy = energy + ((qd @ c.mass) * qd).sum(axis=-1)
-        if self.carried is not None:
-            v, w = _mean_motion(c.rigid[0], S, J, Sd, h)
-            energy = energy + (v * Sd + w * h).sum(axis=-1) - ((qd @ self.carried) * qd).sum(axis=-1)
-        return energy / 2, Wrench(push, spin)
+    def elastic(self, q: Array) -> Array:
+        return self.coefficients.elastic(q)
+
+
+def momentum(body: Body, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
+    """Kinetic energy (...) J, and momentum N s and angular momentum N m s about the root, its axes: the forces that
+    accelerations demand of what rests are momenta where rates take their place.
+    """
+    still = 0 * root.w
+    along, wrench = body.demanded(q, 0 * qd, qd, Frame(None, None, None, still, root.v, root.w), None)
+    energy = (wrench.force * root.v + wrench.moment * root.w).sum(axis=-1)
+    return (energy + ((along - body.elastic(q)) * qd).sum(axis=-1)) / 2, wrench
 
 
 def carried(c: Coefficients) -> Array | None:

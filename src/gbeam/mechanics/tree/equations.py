@@ -6,19 +6,21 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, concatenated, namespace
+from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import record, static
-from gbeam.mechanics.tree.bodies import Acting, Body
+from gbeam.mechanics.tree.bodies import Acting, Body, LinearBody, Rigid, momentum
+from gbeam.mechanics.tree.contraction import Roots
 from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
 
 SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
 SLIPS = f"{1e3 * SLIP:g} mm/s", f"{math.degrees(SLIP):.3g} °/s"  # in words, along and about
+SAMPLES = 40  # states by which the motions that roots can have are found
 STUCK = 3 * SLIP  # rate below which friction has less than 0.995 of its size
 
 
@@ -73,7 +75,7 @@ class Holder:
 @record
 class Link:
     """A body with the joint that holds it: a chain of steps from point `on` (index) of body `parent`, −1 for the
-    ground, and its springs, which act unless it is `loose`. A body's root is the point after its others.
+    ground, and its springs, which act unless it is `loose`. A body's root is the point after its others, or −1.
     """
 
     steps: tuple[Step, ...]
@@ -87,6 +89,11 @@ class Link:
     def sizes(self) -> tuple[int, ...]:
         """Numbers of coordinates of each step, and of the body."""
         return (*(step.size for step in self.steps), self.body.size)
+
+    @property
+    def idle(self) -> int:
+        """Number of steps before the first with coordinates."""
+        return next((k for k, step in enumerate(self.steps) if step.size), len(self.steps))
 
     def stored(self, q: list[Array], qd: list[Array]) -> Array:
         """Energy (...) of the joint's springs and stops, J, by coordinates of its steps and rates."""
@@ -134,6 +141,16 @@ class Force:
     follower: bool = static()
 
 
+def _unturned(steps: tuple[Step, ...], first: int) -> tuple[Step, ...]:
+    """Steps on a ground that rests, the `first` with coordinates without its turn, which nothing feels, if it turns
+    about one axis.
+    """
+    turned = [
+        replace(step, R0=None) for step in steps[first : first + 1] if isinstance(step, Rotation) and step.size == 1
+    ]
+    return (*turned, *steps[first + 1 :]) if turned else steps
+
+
 class State:
     """Motion of a tree's frames at all coordinates and rates: of each body's root, and of its points when asked for."""
 
@@ -142,7 +159,7 @@ class State:
         self.links, self._ground = tree.links, ground
         self._moved, self._relative = dict[int, tuple[list[Any], Frame]](), dict[int, list[Any]]()
         self._points = dict[int, list[Frame]]()
-        self.q, self.qd, self.qdd = (tree.parted(each) for each in (y, yd, ydd))
+        self.q, self.qd, self.qdd = tree.parted(y, yd, ydd)
 
     @cached_property
     def ground(self) -> Frame:
@@ -156,13 +173,17 @@ class State:
         """Motions of the steps of a body's joint, and that of its root."""
         if body not in self._moved:
             link, steps = self.links[body], list[Any]()
-            frame = self.ground if link.parent < 0 else self.points_of(link.parent)[link.on]
+            frame = self.ground if link.parent < 0 else self.point(link.parent, link.on)
             *joint, _ = zip(self.q[body], self.qd[body], self.qdd[body], strict=True)
             for step, coordinates in zip(link.steps, joint, strict=True):
                 steps.append(step.motion(*coordinates))
                 frame = frame.carried(steps[-1])
-            self._moved[body] = steps, frame
+            self._moved[body] = steps, frame.filled(self.shape)
         return self._moved[body]
+
+    def point(self, body: int, on: int) -> Frame:
+        """Motion of a body's point `on`, −1 its root."""
+        return self.moved(body)[1] if on < 0 else self.points_of(body)[on]
 
     @property
     def roots(self) -> list[Frame]:
@@ -191,11 +212,14 @@ class State:
 
 @record
 class Tree:
-    """A tree of links, each after its parent; `fixed` are the indices of prescribed coordinates among all."""
+    """A tree of links, each after its parent; `fixed` are the indices of prescribed coordinates among all. With `rests`
+    the ground does not move, and no equation depends on where a frame is.
+    """
 
     links: tuple[Link, ...]
     forces: tuple[Force, ...]
     fixed: tuple[int, ...] = static(default=())
+    rests: bool = static(default=False)
 
     @property
     def size(self) -> int:
@@ -251,12 +275,14 @@ class Tree:
             only_slid[body], first = slid and not link.body.size, first + link.body.size
         return [each for each in flags if each.any()]
 
-    def parted(self, y: Array) -> list[list[Array]]:
-        """Coordinates of each link: of each step of its joint, then of its body."""
-        sizes = [size for link in self.links for size in link.sizes]
-        ends = list(accumulate(sizes))
-        parts = iter([y[..., end - size : end] for end, size in zip(ends, sizes, strict=True)])
-        return [[next(parts) for _ in link.sizes] for link in self.links]
+    def parted(self, *coordinates: Array) -> list[list[list[Array]]]:
+        """Of each array of coordinates those of each link: of each step of its joint, then of its body."""
+        sizes, spans, end = [link.sizes for link in self.links], list[list[slice]](), 0
+        for of_link in sizes:
+            ends = list(accumulate(of_link, initial=end))
+            spans.append([slice(*pair) for pair in pairwise(ends)])
+            end = ends[-1]
+        return [[[y[..., span] for span in of_link] for of_link in spans] for y in coordinates]
 
     def whole(self, y: Array, prescribed: Array) -> Array:
         """All coordinates (..., n) from the unknown and the prescribed ones."""
@@ -268,16 +294,56 @@ class Tree:
 
     def motion(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> State:
         """Motion of every frame at the unknown coordinates and their rates (..., n)."""
+        return self._state(y, yd, ydd, inputs, inputs.ground)
+
+    def _state(self, y: Array, yd: Array, ydd: Array, inputs: Inputs, ground: Frame) -> State:
         if inputs.prescribed is not None:
             y, yd, ydd = (self.whole(each, inputs.prescribed[..., k, :]) for k, each in enumerate((y, yd, ydd)))
-        return State(self, y, yd, ydd, inputs.ground)
+        return State(self, y, yd, ydd, ground)
 
     def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
         """Residual (..., n) of the unknown coordinates; zero where the equations hold."""
-        if all(force.follower for force in self.forces):  # nothing asks where the frames are
-            ground = replace(inputs.ground, R=None, p=None, v=None)
-            inputs = replace(inputs, ground=ground)
-        return self.rows(y, yd, ydd, inputs)[0][..., self.free]
+        ground = inputs.ground
+        if self.rests:
+            ground = Frame(None, None, None, None, None, None)
+        elif all(force.follower for force in self.forces):  # nothing asks where the frames are
+            ground = Frame(None, None, None, ground.w, ground.a, ground.alpha)
+        rows = self._demanded(self._state(y, yd, ydd, inputs, ground), inputs, ground=False)[0]
+        return rows[..., self.free] if self.fixed else rows
+
+    def contracted(self, ground: Frame | None = None) -> Tree:
+        """Return the same equations, of unknown coordinates alone, in fewer sums: bodies with constant coefficients
+        contracted with the motions that their roots can have, on a `ground` with this constant motion (3,), or any.
+        """
+        if holds_jax(self):
+            return self
+        random = np.random.default_rng(0)  # any numbers: none of a root's motions is left out but by chance
+        y, yd, ydd = random.normal(size=(3, SAMPLES, self.size))
+        pushed, moving = ydd.copy(), random.normal(size=(3, SAMPLES, 3))
+        pushed[:, self.free] = random.normal(size=(SAMPLES, len(self.free)))
+        if ground is not None:
+            moving = np.broadcast_to(np.stack([ground.w, ground.a, ground.alpha])[:, None], moving.shape)
+        states = [State(self, y, yd, each, Frame(None, None, None, *moving)) for each in (ydd, pushed)]
+        rests = ground is not None and not any(each.any() for each in (ground.w, ground.a, ground.alpha))
+        rests = rests and all(force.follower for force in self.forces)
+        acted = {link.parent for link in self.links} | {force.body for force in self.forces}
+        links = list[Link]()
+        for k, link in enumerate(self.links):
+            carrier = k
+            if k not in acted and link.idle == len(link.steps) and link.parent >= 0:
+                carrier = link.parent if isinstance(self.links[link.parent].body, Rigid) else k
+            body = link.body
+            if isinstance(body, LinearBody | Rigid):
+                moved = [tuple(state.moved(of)[1] for state in states) for of in (carrier, k)]
+                body = body.contracted(*(Roots.of(*pair) for pair in moved))
+            loose = link.loose or not (link.holder.holds or link.holder.coupling is not None)
+            if rests and link.parent < 0:
+                link = replace(link, steps=_unturned(link.steps, link.idle))
+            if body is not link.body and carrier != k:
+                links.append(replace(link, steps=(), body=body, parent=carrier, on=-1, loose=True))
+            else:
+                links.append(replace(link, body=body, loose=loose))
+        return replace(self, links=tuple(links), rests=rests)
 
     def rows(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> tuple[Array, Wrench]:
         """Forces (..., n) that all coordinates demand of their drives, and the wrench on the ground."""
@@ -285,12 +351,16 @@ class Tree:
 
     def demanded(self, state: State, inputs: Inputs) -> tuple[Array, Wrench, list[list[Acting]]]:
         """Forces (..., n) and the wrench on the ground that a motion demands, and those on the points of each body."""
+        return self._demanded(state, inputs, ground=True)
+
+    def _demanded(self, state: State, inputs: Inputs, *, ground: bool) -> tuple[Array, Wrench, list[list[Acting]]]:
+        """Forces and wrenches as :meth:`demanded`; without `ground` that on it is left out, which saves time."""
         xp = namespace(*state.q[0], *state.qd[0], *state.qdd[0], inputs.ground.a)
         on_points: list[list[Acting]] = [[] for _ in self.links]
         on_roots: list[list[Wrench]] = [[] for _ in self.links]
 
         def act(body: int, on: int, wrench: Wrench) -> None:
-            if on == len(state.relative(body)):
+            if on < 0 or on == len(state.relative(body)):
                 on_roots[body].append(wrench)
             else:
                 on_points[body].append(Acting(on, state.relative(body)[on], wrench))
@@ -303,7 +373,7 @@ class Tree:
                 f, m = turned_back(frame.R, f), turned_back(frame.R, m)
             act(force.body, force.on, Wrench(f, m))
         rows: list[Array] = []
-        ground = Wrench(xp.zeros(3), xp.zeros(3))
+        on_ground = Wrench(xp.zeros(3), xp.zeros(3))
         for k in reversed(range(len(self.links))):
             link, (steps, root) = self.links[k], state.moved(k)
             *joint, body = zip(state.q[k], state.qd[k], state.qdd[k], strict=True)
@@ -313,9 +383,11 @@ class Tree:
             wrench = sum((each.wrench.brought(each.by) for each in on_points[k]), start=wrench)
             wrench = sum(on_roots[k], start=wrench)
             on_steps: list[Array] = []
-            for step, by, coordinates in reversed(list(zip(link.steps, steps, joint, strict=True))):
+            # No row is asked of what lies between the ground and the first step with coordinates.
+            idle = 0 if ground or link.parent >= 0 else link.idle + 1
+            for i, (step, by, coordinates) in reversed(list(enumerate(zip(link.steps, steps, joint, strict=True)))):
                 on_steps.insert(0, step.rows(*coordinates, wrench))
-                wrench = wrench.brought(by)
+                wrench = wrench if i < idle else wrench.brought(by)
             if on_steps:
                 if not link.loose:
                     held = link.holding([each[0] for each in joint], [each[1] for each in joint])
@@ -323,26 +395,28 @@ class Tree:
                 along = concatenated([*on_steps, along])
             rows.insert(0, along)
             if link.parent < 0:
-                ground = ground + wrench
+                on_ground = on_ground + wrench if ground else on_ground
             else:
                 act(link.parent, link.on, wrench)
         demanded = concatenated(rows)
-        return demanded if inputs.efforts is None else demanded - inputs.efforts, ground, on_points
+        return demanded if inputs.efforts is None else demanded - inputs.efforts, on_ground, on_points
 
     def invariants(self, state: State, gravity: Array) -> tuple[Array, Array, Array]:
         """Momentum N s, angular momentum N m s and energy (kinetic, elastic, gravity) J, (..., 3), ground's axes."""
         force = moment = kinetic = elastic = weight = 0.0
         for k, link in enumerate(self.links):
             q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)
-            energy, momentum = link.body.moving(q[-1], qd[-1], root)
-            push, spin = turned(root.R, momentum.force), turned(root.R, momentum.moment)
+            energy, impulse = momentum(link.body, q[-1], qd[-1], root)
+            push, spin = turned(root.R, impulse.force), turned(root.R, impulse.moment)
             force, moment = force + push, moment + spin + cross(root.p, push)
             kinetic = kinetic + energy
             elastic = elastic + link.body.stored(q[-1])
             if not link.loose:
                 elastic = elastic + link.stored(q[:-1], qd[:-1])
-            mass, first_moment = link.body.mass_moment(q[-1])
-            weight = weight - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
+            weight = weight + 0.0 * kinetic
+            if is_jax(gravity) or gravity.any():
+                mass, first_moment = link.body.mass_moment(q[-1])
+                weight = weight - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
         return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
 
     def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:
@@ -351,7 +425,7 @@ class Tree:
         """
         numbers: dict[int, int] = {}  # among the fewer coordinates, by those among all
         links, states, first = [], [], 0
-        for link, *parts in zip(self.links, *(self.parted(each) for each in (y, yd, ydd)), strict=True):
+        for link, *parts in zip(self.links, *self.parted(y, yd, ydd), strict=True):
             steps, kept = [], []
             for step, *rates in zip(link.steps, *parts, strict=False):
                 reduced, *state = step.local(*rates)

@@ -41,11 +41,11 @@ def product(left: Array, right: Array) -> Array:
 
 @record
 class Relative:
-    """Motion of a frame Q in a frame P: place, velocity and acceleration (..., 3) in axes P, R_PQ (..., 3, 3) or None
-    where it is not turned, and angular velocity and acceleration (..., 3) in axes Q, or None.
+    """Motion of a frame Q in a frame P: place, velocity and acceleration (..., 3) in axes P, R_PQ (..., 3, 3), and
+    angular velocity and acceleration (..., 3) in axes Q. None is no place beside the origin, no motion or no turn.
     """
 
-    r: Array
+    r: Array | None = None
     rd: Array | None = None
     rdd: Array | None = None
     R: Array | None = None
@@ -57,7 +57,7 @@ class Relative:
 class Frame:
     """Motion of a frame: R_WF (..., 3, 3), its origin in the world (..., 3) m, world axes; velocity, angular velocity,
     acceleration (specific force where gravity acts) and angular acceleration (..., 3), its own axes. R, p and v are
-    None where only forces are computed.
+    None where only forces are computed, and `a`, or `w` and `alpha` together, where they are zero for all states.
     """
 
     R: Array
@@ -68,22 +68,37 @@ class Frame:
     alpha: Array
 
     def carried(self, by: Relative) -> Frame:
-        """Motion, in its own axes, of the frame that moves `by` in this one; None in `by` is zero, or no turn."""
-        swept = cross(self.w, by.r)
-        a = self.a + cross(self.alpha, by.r) + cross(self.w, swept if by.rd is None else swept + 2 * by.rd)
-        if by.rd is not None:
-            a = a + by.rdd
-        R, p, v, w, alpha = self.R, self.p, self.v, self.w, self.alpha
-        if R is not None:
+        """Motion, in its own axes, of the frame that moves `by` in this one."""
+        R, p, v, w, a, alpha = self.R, self.p, self.v, self.w, self.a, self.alpha
+        if w is not None and by.r is not None:
+            swept = cross(w, by.r)
+            a = _sum(a, cross(alpha, by.r) + cross(w, swept if by.rd is None else swept + 2 * by.rd))
+        if R is not None and by.r is not None:
             p = p + turned(R, by.r)
             v = v + (swept if by.rd is None else swept + by.rd)
+        if by.rdd is not None:
+            a = _sum(a, by.rdd)
         if by.R is not None:
-            w, alpha, a = (turned_back(by.R, each) for each in (w, alpha, a))
+            w, alpha, a = (None if each is None else turned_back(by.R, each) for each in (w, alpha, a))
             if R is not None:
                 R, v = product(R, by.R), turned_back(by.R, v)
         if by.w is not None:
-            w, alpha = w + by.w, alpha + by.alpha + cross(w, by.w)
+            alpha = by.alpha if w is None else alpha + by.alpha + cross(w, by.w)
+            w = _sum(w, by.w)
         return Frame(R, p, v, w, a, alpha)
+
+    def filled(self, shape: tuple[int, ...]) -> Frame:
+        """The same motion of a shape of states, with zeros in place of what is None because it is zero."""
+        if self.w is not None and self.a is not None:
+            return self
+        zero = np.zeros((*shape, 3))
+        w, a, alpha = (zero if each is None else each for each in (self.w, self.a, self.alpha))
+        return Frame(self.R, self.p, self.v, w, a, alpha)
+
+
+def _sum(first: Array | None, second: Array) -> Array:
+    """Sum of two vectors, of which the first may be None: zero."""
+    return second if first is None else first + second
 
 
 @record
@@ -101,4 +116,4 @@ class Wrench:
         force, moment = self.force, self.moment
         if by.R is not None:
             force, moment = turned(by.R, force), turned(by.R, moment)
-        return Wrench(force, moment + cross(by.r, force))
+        return Wrench(force, moment if by.r is None else moment + cross(by.r, force))

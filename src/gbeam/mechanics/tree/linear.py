@@ -8,12 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, concatenated, is_jax, namespace
-from gbeam.integrate.equations import Drive, LinearEquations, LinearTerms
+from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, namespace
+from gbeam.arrays.tree import each_leaf
+from gbeam.integrate.equations import Drive, LinearEquations, LinearTerms, masses
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.tree.bodies import Body, LinearBody
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame
+from gbeam.numerics.eigen import positive_definite
+
+SAME = 1e-10  # of the largest mass: two matrices that differ by less are one
 
 # Of each body that deforms: motion of its root, without place, rotation and velocity, and its load components.
 Roots = tuple[tuple[Frame, Array | None], ...]
@@ -29,6 +33,32 @@ def is_linear(tree: Tree) -> bool:
     acting += [(force.body, force.on) for force in tree.forces]
     still = all(_rests(tree.links[body].body, on) for body, on in acting)
     return held and still and all(_constant(body) for body in deforming)
+
+
+def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
+    """Inputs (1, ...) in which nothing is driven, of a tree whose bodies vibrate in the same modes wherever its joints
+    are, which move; None of any other. `inputs` (1, ...) are those of a ground that rests.
+    """
+    moved = np.concatenate(
+        [np.full(size, k < len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
+    )
+    moved = moved[tree.free]
+    bends = any(link.holder.bends for link in tree.links)
+    if holds_jax(tree, inputs) or bends or moved.all() or not moved.any():
+        return None
+    forces = inputs.efforts, inputs.wrenches, inputs.prescribed
+    efforts, wrenches, prescribed = (None if each is None else 0 * each for each in forces)
+    loads = tuple(None if each is None else 0 * each for each in inputs.loads)
+    idle = Inputs(inputs.ground, prescribed, efforts, loads, wrenches)
+    # Any three positions of the joints.
+    y, still = np.outer([0.2, 0.9, -1.7], moved), np.zeros((3, len(moved)))
+    three = each_leaf(lambda leaf: np.repeat(leaf, 3, axis=0), idle)
+    if prescribed is not None:
+        three.prescribed[:, 0] += np.array([0.0, -0.7, 1.3])[:, None]
+    mass = masses(tree, y, still, three)
+    size = np.abs(mass).max()
+    same = np.isfinite(mass).all() and (np.abs(mass - mass[0].T) <= SAME * size).all() and positive_definite(mass[0])
+    return idle if same else None
 
 
 def _constant(body: Body) -> bool:

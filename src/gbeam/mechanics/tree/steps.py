@@ -12,6 +12,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, concatenated, namespace
 from gbeam.arrays.tree import record
+from gbeam.mechanics.fields.taylor import EPSILON
 from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product, turned_back
 
 SMALL = 0.05  # rad²: below it functions of an angle's square are their Taylor series, to rounding
@@ -78,19 +79,34 @@ class Slide(Minimal):
 
 @record
 class Rotation(Minimal):
-    """Rotation by the vector Σ q_i u_i, the columns of `axes` (3, k), after a constant one, R0 (3, 3)."""
+    """Rotation by the vector Σ q_i u_i, the columns of `axes` (3, k), after a constant one, R0 (3, 3); None about one
+    axis where nothing depends on how far it has turned.
+    """
 
     axes: Array
-    R0: Array
+    R0: Array | None
 
     @property
     def size(self) -> int:
         return int(self.axes.shape[1])
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        phi, rate, change = (each @ self.axes.T for each in (q, qd, qdd))
-        R, w, alpha = rotation_by_vector(phi, rate, change, plane=self.size == 1)
-        return Relative(0 * phi, None, None, product(self.R0, R), w, alpha)
+        if self.size == 1:
+            R = None if self.R0 is None else self._about_axis(q)
+            return Relative(None, None, None, R, qd @ self.axes.T, qdd @ self.axes.T)
+        R, w, alpha = rotation_by_vector(*(each @ self.axes.T for each in (q, qd, qdd)), plane=False)
+        return Relative(None, None, None, product(self.R0, R), w, alpha)
+
+    def _about_axis(self, q: Array) -> Array:
+        """R0 (1 + sin θ [u]× + (1 − cos θ) [u]×²) (..., 3, 3) of angles q (..., 1) about one axis."""
+        xp, axis = namespace(q, self.axes, self.R0), self.axes[:, 0]
+        size = xp.sqrt(axis @ axis)
+        once = self.R0 @ (EPSILON.reshape(9, 3) @ (-axis / size)).reshape(3, 3)
+        twice = once @ (EPSILON.reshape(9, 3) @ (-axis / size)).reshape(3, 3)
+        angle = size * q
+        functions = concatenated([xp.sin(angle), 2 * xp.sin(angle / 2) ** 2])
+        turns = functions @ xp.stack([once.reshape(9), twice.reshape(9)])
+        return self.R0 + turns.reshape(*q.shape[:-1], 3, 3)
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         if self.size == 1:
@@ -119,7 +135,7 @@ class Ball:
         growth = (n * qd).sum(axis=-1, keepdims=True) / size
         rate = 2 / size * _outward(n, qd)
         change = 2 / size * _outward(n, qdd) - 2 * growth * rate
-        return Relative(0 * n[..., 1:], None, None, rotation_by_parameters(n), rate, change)
+        return Relative(None, None, None, rotation_by_parameters(n), rate, change)
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         unit_size = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
@@ -158,7 +174,7 @@ class Turning:
         R, w, alpha = rotation_by_vector(q, qd - self.spin, qdd - self.faster, plane=False)
         spin, faster = (turned_back(R, each + 0 * q) for each in (self.spin, self.faster))
         R = product(rotation_by_parameters(self.before), R)
-        return Relative(0 * q, None, None, R, w + spin, alpha + faster + cross(spin, w))
+        return Relative(None, None, None, R, w + spin, alpha + faster + cross(spin, w))
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         return wrench.moment
