@@ -22,7 +22,7 @@ from .scenarios import FAST, FREE_HUB
 
 RESULTS = {
     "Comparison", "Fit", "Optimum", "Response", "Sensitivity", "ShapedCommand", "StateSpace", "Study", "Sweep",
-    "SystemModes", "SystemResponse", "SystemRest", "SystemStudy",
+    "SystemModes", "SystemResponse", "SystemRest",
 }  # fmt: skip
 NO_FUNCTIONS = {
     "GbeamError",

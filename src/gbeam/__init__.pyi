@@ -69,7 +69,6 @@ from gbeam.results.searches import ShapedCommand as ShapedCommand
 from gbeam.results.state_space import Gauge as Gauge
 from gbeam.results.state_space import StateSpace as StateSpace
 from gbeam.results.study import Study as Study
-from gbeam.results.study import SystemStudy as SystemStudy
 from gbeam.results.system import SystemModes as SystemModes
 from gbeam.results.system import SystemResponse as SystemResponse
 from gbeam.results.system import SystemRest as SystemRest

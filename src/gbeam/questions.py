@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from gbeam.results.equilibrium import Critical, Deflection
     from gbeam.results.modal import Campbell, Modes
     from gbeam.results.placement import Placement
-    from gbeam.results.study import Study, SystemStudy
+    from gbeam.results.study import Study
     from gbeam.results.system import SystemModes, SystemRest
 
 Varied = Literal["rate", "loads", "acceleration"]
@@ -94,10 +94,10 @@ class Question:
     motion: str | None = ""  # kind of motion that it asks about, "" for any; None for all that can answer
     differentiable: bool = True  # true if its figures are smooth in the scenario's values
     deforms: bool = True  # true if it needs a specimen that deforms
-    # Figures that studies take where none is named, for every {motion}, {beam}, centrifuge ({machine}), centrifuge with
-    # limits of acceptance ({limited}), and figure that its verdict is on ({judged}).
+    # Figures that studies take where none is named, for every {motion}, every motion of a body {alone} on its base,
+    # every {beam} of several bodies, centrifuge ({machine}), centrifuge with limits of acceptance ({limited}), and
+    # figure that its verdict is on ({judged}).
     usual: tuple[str, ...] = ()
-    usual_of_systems: tuple[str, ...] = ()
 
     @property
     def options(self) -> dict[str, Option]:
@@ -134,10 +134,6 @@ class Question:
         """Raise InputError if nothing of the case deforms, and the question is of what does."""
         if self.deforms:
             refuse_rigid(case, self.name)
-
-    def usual_of(self, case: Case) -> tuple[str, ...]:
-        """Patterns of the figures that studies take where none is named."""
-        return self.usual_of_systems if case.subject is case.system else self.usual
 
 
 def refuse_rigid(case: Case, verb: str) -> None:
@@ -231,20 +227,15 @@ def _time(case: Case, at: float | None) -> float:
     deforms=False,
     usual=(
         "comparisons.{judged}",
-        "motions.{motion}.tip.size.max_abs",
-        "motions.{motion}.loads.root_moment.size.max_abs",
-        "comparisons.{machine}.verdict.followed",
-        "comparisons.{limited}.verdict.accepted",
-    ),
-    usual_of_systems=(
-        "comparisons.{judged}",
+        "motions.{alone}.tip.size.max_abs",
+        "motions.{alone}.loads.root_moment.size.max_abs",
         "motions.{motion}.points.{beam}.tip.displacement_max",
         "motions.{motion}.beams.{beam}.root_moment.size.max_abs",
         "comparisons.{machine}.verdict.followed",
         "comparisons.{limited}.verdict.accepted",
     ),
 )
-def run(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Study | SystemStudy:
+def run(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Study:
     """Responses in all motions."""
     from gbeam.analysis.environments import study
 
@@ -281,7 +272,6 @@ def static(
     "modes",
     "Frequencies, damping and shapes about the equilibrium at one time of a motion.",
     usual=("modes[0].frequency",),
-    usual_of_systems=("modes[0].frequency",),
 )
 def modes(
     case: Case,

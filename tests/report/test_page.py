@@ -347,7 +347,7 @@ def test_numbers_of_a_system_have_units_and_rounding_is_zero() -> None:
     hinge = gb.Joint("revolute", "arm", axes=[(0, 0, 1)], effort=1.0, stiffness=5.0)
     system = gb.System({"arm": arm}, {"hinge": hinge})
     run = gb.simulate(system, duration=0.1, step=0.05)
-    for result in (run, gb.SystemStudy("", {"ground": run})):
+    for result in (run, gb.Study("", {"ground": run})):
         page = report_of(result)
         assert "<td>step</td><td>0.05000</td><td>s</td>" in page and ">at the end, m or rad<" in page
     assert ">at rest, m or rad<" in report_of(gb.static(system))

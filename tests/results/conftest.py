@@ -15,7 +15,7 @@ from gbeam.results.comparison import MachinePlan
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.placement import Candidate, Placement
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, Requirement, ShapedCommand
-from gbeam.results.study import ModelRow, ModelStudy, SystemStudy
+from gbeam.results.study import ModelRow, ModelStudy
 
 from ..solids.bodies import STEEL, block, solid
 
@@ -81,10 +81,10 @@ def matrix(every: dict[str, Any]) -> dict[str, Any]:
     """One result of each kind, by the kind's name."""
     response = every["response"]
     named = {type(each).__name__: each for each in every.values()}
-    of_system = named["SystemResponse"]
     return named | {
-        "SystemStudy": SystemStudy("title", {"ground": of_system}),
-        "Study": gb.Study("title", {"flight": response}, (gb.compare(response, response),)),
+        "Study": gb.Study(
+            "title", {"flight": response, "ground": named["SystemResponse"]}, (gb.compare(response, response),)
+        ),
         "Comparison": gb.compare(response, response),
         **_searched(),
     }

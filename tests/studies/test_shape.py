@@ -122,7 +122,7 @@ def test_a_modal_test_on_a_hub_is_shaped_and_swept_together_as_oscillators_move(
         assert swept.measures["tip.y.max_abs"][k] == pytest.approx(np.abs(moved[:, 1]).max(), rel=2e-3)
         assert swept.histories["middle.y"][k][1] == pytest.approx(moved[1000, 0], rel=5e-3)
     refused = gbeam("sweep", slewing, "--over", "motion.hub.radius=0.1 m, 0.2 m", "--history", "root_moment.y")
-    assert refused.status == 2 and "is no history; write MOTION.QUANTITY.AXIS of middle, tip" in refused.err
+    assert refused.status == 2 and "is no history; choose one of middle.x, middle.y" in refused.err
     refused = gbeam("shape", slewing, "--check", "exact")
     assert refused.status == 2 and "no body is a beam, whose model could be another" in refused.err
 

@@ -200,7 +200,7 @@ def test_a_wrong_distribution_is_placed(fast: Path, gbeam: Call, value: str, pro
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
-        (("--history", "flight.tip.q"), "'flight.tip.q' is no history; write MOTION.QUANTITY.AXIS"),
+        (("--history", "flight.tip.q"), "'flight.tip.q' is no history; did you mean 'tip.z'?"),
         (("--history", "tip.z"), "leaves the motion out; write flight.tip.z"),
         (("--history", "fligth.tip.z"), "names no motion; did you mean 'flight'?"),
         (("--history", "flight.tip.z", "--times", "1"), "--times is 1"),

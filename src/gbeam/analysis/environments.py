@@ -24,7 +24,7 @@ from gbeam.results.errors import Errors
 from gbeam.results.parts import Extremes, VectorPeaks
 from gbeam.results.response import Readings, Response, Sensor
 from gbeam.results.result import each_once
-from gbeam.results.study import Failure, Study, SystemStudy
+from gbeam.results.study import Failure, Study
 from gbeam.results.system import SystemResponse
 
 ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are automatic
@@ -43,8 +43,7 @@ def study(case: Case, progress: Progress = None) -> Any:
 
     Returns
     -------
-    Study or SystemStudy
-        Of one body that its base alone moves, or of a system.
+    Study
 
     Raises
     ------
@@ -70,7 +69,7 @@ def study(case: Case, progress: Progress = None) -> Any:
     return study_of(case, responses, failures)
 
 
-def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})) -> Any:
+def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})) -> Study:
     """Study made of responses by name, with a comparison for each centrifuge and its flight that are both done."""
     if not responses:
         first = next(iter(failures.values()))
@@ -90,9 +89,8 @@ def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Fa
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    kind = SystemStudy if case.subject is case.system else Study
     said = {key: each_once({n: getattr(run, key) for n, run in responses.items()}) for key in ("warnings", "notes")}
-    return kind(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance, **said)
+    return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance, **said)
 
 
 def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]) -> Readings | None:

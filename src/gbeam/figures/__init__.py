@@ -24,7 +24,7 @@ from gbeam.results.result import Figured
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
-from gbeam.results.study import ModelStudy, Study, SystemStudy
+from gbeam.results.study import ModelStudy, Study
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
 
 Describe = Callable[[], Figure]
@@ -66,8 +66,7 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
         case Study():
             return _of_study(result, title or result.title)
         case Response():
-            tip = partial(response.tip, Study(title, {result.name or result.environment: result}, ()))
-            return ({} if result.specimen is not None else {"tip": tip}) | _of_response(result, title)
+            return _of_tips(Study(title, {result.name or result.environment: result})) | _of_response(result, title)
         case ModelStudy():
             return {"models": partial(response.models, result, title)} if any(len(r.time) for r in result.rows) else {}
         case Comparison():
@@ -81,10 +80,6 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"critical": partial(steady.critical, result, title)} if len(result.followed) else {}
         case Sweep():
             return _of_sweep(result, title)
-        case SystemStudy():
-            by_name = {name: _of_system(each, title or result.title) for name, each in result.responses.items()}
-            every = next(iter(by_name.values())) if len(by_name) == 1 else _by_motion(by_name)
-            return every | _compared(result.comparisons, title or result.title)
         case SystemResponse():
             return _of_system(result, title)
         case SystemRest():
@@ -196,14 +191,19 @@ def _of_comparison(result: Comparison, title: str, main: str, other: str, end: s
 
 def _of_study(study: Study, title: str) -> dict[str, Describe]:
     """Figures of a study: the tips, the sizes of the loads, every response, and comparisons."""
-    moving = any(each.specimen is None for each in study.responses.values())
-    described: dict[str, Describe] = {"tip": partial(response.tip, study)} if moving else {}
-    if sum(each.loads is not None for each in study.responses.values()) > 1:
-        described["sizes"] = partial(response.sizes, study)
+    of_each = {}
     for name, each in study.responses.items():
-        of_each = _of_response(each, title)
-        described |= {f"{kind} {name}": describe for kind, describe in of_each.items()}
-    return described | _compared(study.comparisons, title)
+        of_each[name] = _of_response(each, title) if isinstance(each, Response) else _of_system(each, title)
+    described = _of_tips(study)
+    if sum(each.loads is not None for each in response.alone(study).values()) > 1:
+        described["sizes"] = partial(response.sizes, study)
+    return described | _by_motion(of_each) | _compared(study.comparisons, title)
+
+
+def _of_tips(study: Study) -> dict[str, Describe]:
+    """The figure of the tips of a study's motions together; none of rigid specimens and of several bodies."""
+    tips = [each for each in response.alone(study).values() if each.specimen is None]
+    return {"tip": partial(response.tip, study)} if tips else {}
 
 
 def _compared(comparisons: Sequence[Comparison], title: str) -> dict[str, Describe]:

@@ -57,9 +57,14 @@ def looks(study: Study) -> dict[str, dict[str, Any]]:
     return {name: compared.get(name, FLIGHT) for name in study.responses}
 
 
+def alone(study: Study) -> dict[str, Response]:
+    """Responses of a study that are of one body, by the motion's name."""
+    return {name: each for name, each in study.responses.items() if isinstance(each, Response)}
+
+
 def tip(study: Study) -> Figure:
     """Describe the tip's displacement along every axis in which it moves."""
-    responses, compared = study.responses, study.comparisons
+    responses, compared = alone(study), study.comparisons
     sizes = [each.peaks.max_abs for each in responses.values()]
     axes = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
     spans = [_spans(responses, each) for each in compared]
@@ -95,11 +100,17 @@ def models(study: ModelStudy, title: str = "") -> Figure:
 
 def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
     """Panel of the tip's displacement along an axis, a line for every environment."""
-    scale, unit = scale_of("m", *(each.tip[:, axis] for each in study.responses.values()))
+    scale, unit = scale_of("m", *(each.tip[:, axis] for each in alone(study).values()))
     lines = [
         # A run that diverged at once is no line.
-        Line(each.time, scale * each.tip[:, axis], name, marks="joined" if len(each.time) == 1 else "", **look)
-        for (name, each), look in zip(study.responses.items(), looks(study).values(), strict=True)
+        Line(
+            each.time,
+            scale * each.tip[:, axis],
+            name,
+            marks="joined" if len(each.time) == 1 else "",
+            **looks(study)[name],
+        )
+        for name, each in alone(study).items()
     ]
     return Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=named)
 
@@ -127,7 +138,7 @@ def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Spa
 
 def sizes(study: Study) -> Figure:
     """Describe the sizes of stress, root force and root moment of all environments together."""
-    loaded = {name: each for name, each in study.responses.items() if each.loads is not None}
+    loaded = {name: each for name, each in alone(study).items() if each.loads is not None}
     kinds: tuple[tuple[str, str, Callable[[Response, Any], Floats]], ...] = (
         ("largest stress", "Pa", lambda of, its: its.stress.max(axis=1) if of.solid is None else of.solid.von_mises),
         ("root force", "N", lambda _, loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),

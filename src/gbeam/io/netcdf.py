@@ -54,7 +54,7 @@ from gbeam.results.machine import LimitUse
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Answers
+from gbeam.results.study import Study
 from gbeam.results.system import SystemResponse
 
 
@@ -189,7 +189,7 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
 
 def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
     """Groups of a file by path: the root says what it is and where it comes from."""
-    groups = _study(result, every=every) if isinstance(result, Answers) else {"": _group(result, every=every)}
+    groups = _study(result, every=every) if isinstance(result, Study) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]
     attrs = provenance_attrs(origin) | {"warnings": "\n".join(result.warnings), "notes": "\n".join(result.notes)}
@@ -219,7 +219,7 @@ def _group(result: Result, *, every: bool) -> Group:
     )
 
 
-def _study(study: Answers, *, every: bool) -> dict[str, Group]:
+def _study(study: Study, *, every: bool) -> dict[str, Group]:
     """Groups of a study: the root with its attributes, every motion, and every comparison."""
     attrs = {
         "title": study.title,

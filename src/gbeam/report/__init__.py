@@ -22,9 +22,9 @@ _MODULES = {
     "searches": ("Sensitivity", "Fit", "Optimum", "ShapedCommand", "Placement"),
     "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
     "study": ("Study", "ModelStudy"),
-    "systems": ("SystemRest", "SystemModes", "SystemStudy", "SystemResponse"),
+    "systems": ("SystemRest", "SystemModes", "SystemResponse"),
 }
-_TITLED = ("Study", "SystemStudy", "MachinePlan", "ModelStudy")  # in a terminal
+_TITLED = ("Study", "MachinePlan", "ModelStudy")  # in a terminal
 
 
 def blocks_of(

@@ -11,12 +11,12 @@ from typing import Any
 from gbeam.report.words import as_json
 from gbeam.results.cases import Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.declared import declarations
+from gbeam.results.declared import declarations, records_in
 from gbeam.results.facts import facts_of, json_of, paths_of, schema_of
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import KINDS, Reproduction, Study, SystemStudy, by_motion, tree_of_answers
+from gbeam.results.study import KINDS, Reproduction, Study, by_motion, tree_of_answers
 from gbeam.results.system import SystemResponse
 
 VERSION = 1  # of the keys: raised where one changes or goes
@@ -59,7 +59,7 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
                 from gbeam.report.study import comparison_lines
 
                 figures["lines"] = list(comparison_lines(answer))
-            case Study() | SystemStudy():
+            case Study():
                 from gbeam.report.study import comparison_lines, of_beam, of_machine, of_system
 
                 for name, response in answer.responses.items():
@@ -167,11 +167,15 @@ def reference_of_results() -> str:
 
 def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
     """Yield path, unit and words of the quantities of a kind; of what is another kind of result only a link to it."""
-    others = {entry.key or name for name, entry in declarations(kind) if entry.role == "rows"}
-    responses = {"Study": "Response", "SystemStudy": "SystemResponse"}.get(kind.__name__, "")
-    links = {"motions": responses, "comparisons": "Comparison"} if responses else {}
-    for key in sorted(links.keys() & others):
-        yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a [{links[key]}](#{links[key].lower()})"
+    others = [
+        (entry.key or name, [each.__name__ for each in records_in(kind, name) if each.__name__ in KINDS])
+        for name, entry in declarations(kind)
+        if entry.role == "rows"
+    ]
+    links = {key: names for key, names in others if names} if kind is Study else {}
+    for key, names in sorted(links.items()):
+        listed = " or ".join(f"[{name}](#{name.lower()})" for name in names)
+        yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a {listed}"
     for path, entry in paths_of(tree_of_answers(kind)):
         if path.partition(".")[0].partition("[")[0] not in links:
             yield path, entry.unit, entry.words.replace("|", "\\|")

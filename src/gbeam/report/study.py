@@ -34,6 +34,7 @@ from gbeam.report.machine import (
     tracked,
     verdict,
 )
+from gbeam.report.systems import of_points, units_in
 from gbeam.report.words import errors_in_words, known, largest_loads, number, percent, sentence, tidy
 from gbeam.results.accounting import in_g, metres, seconds
 from gbeam.results.accounting import percent as share_of
@@ -216,15 +217,20 @@ HINT = "Drag across a plot to zoom all of them, double-click to see all again, c
 def study(facts: Facts) -> Blocks:
     """The verdicts on centrifuges, the largest displacements and loads, the machines, the errors, and all in words."""
     motions = {name: motion for name, motion in facts["motions"].items() if "environment" in motion}
+    systems = {name: motion for name, motion in motions.items() if "coordinates" in motion}
+    alone = {name: motion for name, motion in motions.items() if name not in systems}
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
-    response = _tips(motions), points_table(motions), loads_table(motions), *parts_tables(motions)
+    response = _tips(alone), points_table(alone), loads_table(alone), *parts_tables(alone)
     yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))
+    for name, motion in systems.items():
+        points = tuple(of_points({**motion, "units": units_in(facts)}))
+        yield Section(f"motion {name}", points, titled=True, verbose=name in compared_in(facts))
     for name, motion in motions.items():
         if "limits" in motion:
             yield Section(f"Machine: {name}", (limits(motion), Sentence(followed(motion))), titled=True, detail=True)
-    yield Section("Accuracy", tuple(errors(motions)), detail=True)
+    yield Section("Accuracy", tuple(errors(alone)), detail=True)
     yield from in_words_of(facts)
 
 

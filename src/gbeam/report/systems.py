@@ -19,7 +19,6 @@ from gbeam.report.blocks import (
 )
 from gbeam.report.loads import READ, at_points, loads_table, resting_loads, stress_table
 from gbeam.report.steady import ERROR, evenly, growing, modes_table
-from gbeam.report.study import HINT, compared_in, in_words_of, verdicts
 from gbeam.report.words import errors_in_words, known, tidy
 
 
@@ -49,7 +48,7 @@ def system_rest(facts: Facts) -> Blocks:
     """Displacements of the points at rest, and the loads of the ground and of every beam."""
     yield Section("View", (Place("viewer"),))
     for name, rest in facts["motions"].items():
-        of_motion = _rest({**rest, "units": _units(facts)})
+        of_motion = _rest({**rest, "units": units_in(facts)})
         yield Section(f"motion {name} at {rest['time']:.4g} s", tuple(of_motion), titled=True)
     yield Section("Figures", (FIGURES,))
 
@@ -84,7 +83,7 @@ def _rest(rest: Facts) -> Blocks:
     )
 
 
-def _units(facts: Facts) -> dict[str, str]:
+def units_in(facts: Facts) -> dict[str, str]:
     """Units of the quantities of one motion, by their paths in it."""
     return {path.removeprefix("motions.*."): unit for path, unit in facts.get("units", {}).items()}
 
@@ -113,30 +112,18 @@ def errors_of_system(errors: Facts) -> Blocks:
     yield table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])
 
 
-def system_study(facts: Facts) -> Blocks:
-    """The verdicts on centrifuges, and for every motion points, loads, machine and errors, and all in words."""
-    yield from verdicts(facts)
-    yield Section("Motion", (Place("viewer"),))
-    yield Section("Histories", (Place("figures", HINT),))
-    for name, motion in facts["motions"].items():
-        if "points" in motion:
-            points = tuple(_of_points({**motion, "units": _units(facts)}))
-            yield Section(f"motion {name}", points, titled=True, verbose=name in compared_in(facts))
-    yield from in_words_of(facts)
-
-
 def system_response(facts: Facts) -> Blocks:
     """The largest motions of the points, loads, and the error."""
     yield Sentence(f"{facts['name'] or facts['environment']}: {facts['outcome']}")
     if facts["message"]:
         yield Sentence(facts["message"], "bad")
     yield Section("Motion", (Place("viewer"),))
-    yield from _of_points(facts)
+    yield from of_points(facts)
     yield Items(tuple(facts.get("lines", ())))
     yield Section("Histories", (FIGURES,))
 
 
-def _of_points(facts: Facts) -> Blocks:
+def of_points(facts: Facts) -> Blocks:
     """Motions of points and coordinates, loads, stress and errors of a response, and on a page all else."""
     residual = f"residual from {known(facts.get('residual_from')):g} s, m"
     cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}

@@ -219,9 +219,14 @@ def annotation(kind: type, name: str) -> str:
 
 def record_in(kind: type, name: str) -> Any:
     """Return the record that a field's annotation names, such as Crossing of ``tuple[Crossing, ...]``; None if none."""
+    return next(iter(records_in(kind, name)), None)
+
+
+def records_in(kind: type, name: str) -> tuple[Any, ...]:
+    """Return the records that a field's annotation names, of which a value is any."""
     text, module = _annotated(kind, name)
     named = (vars(sys.modules[module]).get(word) for word in re.findall(r"\w+", text))
-    return next((each for each in named if isinstance(each, type) and dataclasses.is_dataclass(each)), None)
+    return tuple(each for each in named if isinstance(each, type) and dataclasses.is_dataclass(each))
 
 
 def _annotated(kind: type, name: str) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
+from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, records_in
 
 ANY = "*"  # in units: any key that has no entry of its own
 Units = dict[str, Any]
@@ -79,8 +79,9 @@ def tree_of(kind: type) -> dict[str, Any]:
         if declaration.key is None:
             continue
         key, hint = declaration.key or name, annotation(kind, name)
-        inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
-        leaf: Any = tree_of(inner) if inner else _leaf(declaration, row_keys, hint)
+        records = records_in(kind, name) if declaration.role in ("part", "rows") else ()
+        inner = next(iter(records), None)
+        leaf: Any = _joined(*map(tree_of, records)) if records else _leaf(declaration, row_keys, hint)
         row_dim = _along(declaration, row_keys)
         if declaration.role == "part" and "None" in hint and row_dim is None and not declaration.optional:
             leaf = Nullable(leaf)
@@ -126,6 +127,15 @@ def _leaf(declaration: Declaration, row_keys: Mapping[str, str], hint: str) -> E
     kind = "number" if number else "boolean" if re.search("bool|Flags", hint) else "string"
     unit = declaration.unit if isinstance(declaration.unit, str) else "unit"
     return Entry(unit, declaration.words, ends, (kind, "array") if scalar_too else (kind,))
+
+
+def _joined(tree: dict[str, Any], *others: dict[str, Any]) -> dict[str, Any]:
+    """Return a tree with the entries of any of several; where more have one, that of the first."""
+    for other in others:
+        for key, branch in other.items():
+            both = isinstance(branch, dict) and isinstance(tree.get(key), dict)
+            tree[key] = type(tree[key])(_joined(tree[key], branch)) if both else tree.get(key, branch)
+    return tree
 
 
 def _changed(tree: Any, change: Callable[[Entry], Entry]) -> Any:

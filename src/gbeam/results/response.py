@@ -353,6 +353,29 @@ class Response(Driven, Figured[ResponseFigure]):
         felt = accelerations[:, station]
         return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
 
+    @typed
+    def signal(self, name: str) -> Floats:
+        """Return a component over time by its name, (t,) SI.
+
+        Parameters
+        ----------
+        name : str
+            ``tip.x`` or that of another named point, of its displacement relative to the base axes;
+            ``root_force.x``, ``root_moment.x``, NaN where the run has no loads; ``hub.angle``, ``hub.rate``.
+
+        Raises
+        ------
+        InputError
+            If there is no such signal.
+        """
+        owner, _, component = name.rpartition(".")
+        if self.hub is not None and name in ("hub.angle", "hub.rate"):
+            return np.asarray(getattr(self.hub, component))
+        axis = index_of("name", component, ("x", "y", "z"))
+        if owner not in ("root_force", "root_moment"):
+            return self.at(owner)[:, axis]
+        return np.full(len(self.time), np.nan) if self.loads is None else getattr(self.loads, owner)[:, axis]
+
     def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
         """Return what a strain gauge at a named point of a solid reads, (t,).
 

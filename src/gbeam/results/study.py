@@ -33,11 +33,20 @@ class Failure:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Answers(Figured[str]):
-    """Base of the responses in all environments of a scenario."""
+class Study(Figured[str]):
+    """The responses in all environments of a scenario, and their comparisons.
+
+    Examples
+    --------
+    >>> study = gb.study(gb.read_scenario("examples/zhang2020_example1.toml"))
+    >>> study.outcome, list(study.responses)
+    ('done', ['flight', 'centrifuge'])
+    """
 
     title: str = fact("title of the scenario")
-    responses: Mapping[str, Any] = rows("responses by the motion's name", "motion", key="motions")
+    responses: Mapping[str, Response | SystemResponse] = rows(
+        "responses by the name of the base's motion", "motion", key="motions", note="ground where it rests"
+    )
     comparisons: tuple[Comparison, ...] = rows("comparisons of centrifuges with flight", "comparison", default=())
     failures: Mapping[str, Failure] = rows(
         "where a response has no state to start from", "motion", key="motions", default_factory=dict
@@ -98,37 +107,6 @@ class Answers(Figured[str]):
     def outcome(self) -> str:
         """``done`` where every response is, else the first other outcome."""
         return next((failure.outcome for failure in self.unfinished.values()), "done")
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class Study(Answers):
-    """The responses of one beam in all environments of a scenario, and their comparisons.
-
-    Examples
-    --------
-    >>> study = gb.study(gb.read_scenario("examples/zhang2020_example1.toml"))
-    >>> study.outcome, list(study.responses)
-    ('done', ['flight', 'centrifuge'])
-    """
-
-    responses: Mapping[str, Response] = rows("responses by the motion's name", "motion", key="motions")
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class SystemStudy(Answers):
-    """The responses of one system of bodies in all environments of a scenario, or on the ground at rest.
-
-    Examples
-    --------
-    >>> shorter = ["response.duration=1 s"]
-    >>> study = gb.study(gb.read_scenario("examples/satellite_two_panels.toml", shorter))
-    >>> study.outcome, list(study.responses)
-    ('done', ['ground'])
-    """
-
-    responses: Mapping[str, SystemResponse] = rows(
-        "responses by the name of the ground's motion", "motion", key="motions", note="ground where it rests"
-    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -309,7 +287,6 @@ KINDS: dict[str, type[Result]] = {
         Fit,
         Optimum,
         ShapedCommand,
-        SystemStudy,
         SystemResponse,
         SystemRest,
         SystemModes,

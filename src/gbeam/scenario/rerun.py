@@ -109,7 +109,7 @@ def is_run(stored: Stored) -> bool:
     """True if a file holds responses."""
     form = facts_of(stored).get("form")
     if isinstance(form, dict):  # version 0.2 did not say
-        return form.get("kind") in ("Study", "SystemStudy")
+        return form.get("kind") == "Study"
     return any(name.startswith("motions/") or name == "coordinate_rates" for name in stored.variables)
 
 

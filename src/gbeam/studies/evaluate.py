@@ -26,7 +26,7 @@ from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.studies.figures import Facts, History, Keys, SystemHistory, answer_facts, own_keys, value_at
+from gbeam.studies.figures import Facts, History, Keys, answer_facts, own_keys, value_at
 from gbeam.studies.template import Template
 
 Function = Callable[[Any], float]
@@ -62,7 +62,7 @@ class Inquiry:
     options: Mapping[str, Any] = field(default_factory=dict)  # of the verb, as its function takes them
     keys: tuple[Keys, ...] = ()  # of the figures in the answer's facts
     functions: tuple[Function, ...] = ()  # figures by functions of the case
-    histories: tuple[History | SystemHistory, ...] = ()
+    histories: tuple[History, ...] = ()
     times: Floats = field(default_factory=lambda: np.empty(0))  # of the histories, (t,) s
     together: bool = False  # integrate cases together
 

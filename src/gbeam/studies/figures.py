@@ -23,8 +23,7 @@ from gbeam.studies.template import Template
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
     from gbeam.results.facts import Entry
-    from gbeam.results.response import Response
-    from gbeam.results.study import Study, SystemStudy
+    from gbeam.results.study import Study
 
 Facts = Mapping[str, Any]
 KIND = ""  # key in facts of the class of the answer; no figure's path begins so
@@ -154,15 +153,15 @@ def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, 
     These begin with what the verdict is on: limits of acceptance, or the largest load where there is none.
     """
     case = template.built()
-    patterns = question_of(verb).usual_of(case)
+    patterns = question_of(verb).usual
     limited = [name for name in case.tracks if case.accept.get(name)]
     figures = [each for each in patterns if "{judged}" in each]  # the flight alone is in all cases of a machine
-    names = tuple(case.environments)
-    figures += [each.replace("{motion}", name) for name in names for each in patterns if "{motion}" in each]
-    figures += [each for each in patterns if "{motion}" not in each]
+    moved, beams = ("{motion}", tuple(beams_of(case.system))) if case.system.alone is None else ("{alone}", ())
+    figures += [each.replace(moved, name) for name in case.environments for each in patterns if moved in each]
+    figures += [each for each in patterns if not any(key in each for key in ("{motion}", "{alone}"))]
     limits = ((name, limit) for name in case.tracks for limit in case.accept.get(name) or ("largest_load",))
     names_by_key: dict[str, Sequence[str]] = {
-        "{beam}": tuple(beams_of(case.system)),
+        "{beam}": beams,
         "{machine}": tuple(case.tracks),
         "{limited}": limited,
         "{judged}": [f"{name}.verdict.{limit}" for name, limit in limits],
@@ -223,96 +222,56 @@ def _is_figure(value: Any) -> bool:
 
 HISTORY = "--history"
 TIMES = 501  # by default
-_LOADS = {"root_force": "N", "root_moment": "N m"}  # of the root
+_LOADS = {"root_force": "N", "root_moment": "N m"}
 
 
 @dataclass(frozen=True)
 class History:
-    """One component over time in the motion of that name."""
+    """One signal over time in the motion of that name, such as a point's or a beam's root load along an axis."""
 
     name: str
     motion: str
-    quantity: str  # root_force or root_moment, or a point's name, such as tip, for its displacement
-    axis: int  # 0, 1, 2, of base axes
-
-    @property
-    def unit(self) -> str:
-        """SI unit."""
-        return _LOADS.get(self.quantity, "m")
+    quantity: str  # as the response's `signal` names it
+    unit: str  # SI
 
     def at(self, study: Study, times: Floats) -> Floats:
         """Values at times (t,); NaN where the response has none."""
         response = study.responses.get(self.motion)
-        if response is None or (self.quantity in _LOADS and response.loads is None):
-            return _at(None, times)
-        return _at((response.time, component(response, self.quantity, self.axis)), times)
+        if response is None:
+            return np.full(len(times), math.nan)
+        from scipy.interpolate import CubicSpline
+
+        # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
+        time, values = response.time, response.signal(self.quantity)
+        slack = 1e-9 * float(time[-1] - time[0])
+        inside = (times >= time[0] - slack) & (times <= time[-1] + slack)
+        return np.where(inside, CubicSpline(time, values)(times), math.nan)
 
 
-@dataclass(frozen=True)
-class SystemHistory:
-    """One signal of a system over time in the motion of that name, such as a sensor's or a beam's root load."""
-
-    name: str
-    motion: str
-    quantity: str
-    unit: str
-
-    def at(self, study: SystemStudy, times: Floats) -> Floats:
-        """Values at times (t,); NaN where the response has none."""
-        response = study.responses.get(self.motion)
-        return _at(None if response is None else (response.time, response.signal(self.quantity)), times)
-
-
-def _at(history: tuple[Floats, Floats] | None, times: Floats) -> Floats:
-    """Values at `times` (t,) of a history, times (k,) and values (k,); NaN beyond it, or where it is None."""
-    if history is None:
-        return np.full(len(times), math.nan)
-    from scipy.interpolate import CubicSpline
-
-    # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
-    time, values = history
-    slack = 1e-9 * float(time[-1] - time[0])
-    inside = (times >= time[0] - slack) & (times <= time[-1] + slack)
-    return np.where(inside, CubicSpline(time, values)(times), math.nan)
-
-
-def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History | SystemHistory:
+def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History:
     """Read a history of a case: ``flight.tip.z`` of a body alone on its base, of others a signal such as
     ``strip.tip.place_z``; the motion's name and a dot may be left out where there is only one, or it is `chosen`.
     """
-    if case.subject is case.system:
-        return _read_signal(text, case, where, chosen)
-    *before, quantity, axis = ["", "", *text.split(".")]
-    motion = ".".join(part for part in before if part)
-    quantities = (*case.points, *(_LOADS if beams_of(case.system) else ()))
-    if axis not in ("x", "y", "z") or quantity not in quantities:
-        fix = f"write MOTION.QUANTITY.AXIS of {', '.join(quantities)}"
-        raise InputError(where, f"{text!r} is no history", fix)
-    if not motion:
-        if len(case.motions) > 1:
-            raise InputError(where, f"{text!r} leaves the motion out", f"write {next(iter(case.motions))}.{text}")
-        motion = next(iter(case.motions))
-    if motion not in case.motions:
-        raise InputError(where, f"{text!r} names no motion", advise(motion, case.motions))
-    return History(text, motion, quantity, "xyz".index(axis))
+    units, names = signals_of_case(case), list(case.environments)
+    motion = next((name for name in names if text.startswith(f"{name}.") and text not in units), "")
+    signal = text.removeprefix(f"{motion}.") if motion else text
+    first, _, rest = text.partition(".")
+    if signal not in units and rest in units:
+        raise InputError(where, f"{text!r} names no motion", advise(first, names))
+    if signal not in units:
+        raise InputError(where, f"{text!r} is no history", advise(signal, units))
+    if not (motion or chosen) and len(names) > 1:
+        raise InputError(where, f"{text!r} leaves the motion out", f"write {names[0]}.{text}")
+    return History(text, motion or chosen or names[0], signal, units[signal])
 
 
-def _read_signal(text: str, case: Case, where: str, chosen: str | None) -> SystemHistory:
+def signals_of_case(case: Case) -> dict[str, str]:
+    """SI units of the signals that responses to a case have, by name."""
     from gbeam.mechanics.tree.signals import signals_of
 
-    units, names = signals_of(case.system), list(case.environments)
-    for load, unit in _LOADS.items():
-        units |= {f"{body}.{load}.{axis}": unit for body in beams_of(case.system) for axis in "xyz"}
-    first, _, rest = text.partition(".")
-    motion, signal = (first, rest) if rest in units and first in names else (chosen or "", text)
-    if signal not in units:
-        raise InputError(where, f"{text!r} is no history", advise(text, units))
-    if not motion and len(names) > 1:
-        raise InputError(where, f"{text!r} leaves the motion out", f"write {names[0]}.{text}")
-    return SystemHistory(text, motion or names[0], signal, units[signal])
-
-
-def component(response: Response, quantity: str, axis: int) -> Floats:
-    """Component over time (t,) of the displacement of a named point, or of the root's force or moment."""
-    values = getattr(response.loads, quantity) if quantity in _LOADS else response.at(quantity)
-    return np.asarray(values[:, axis])
+    beams, alone = beams_of(case.system), case.system.alone is not None
+    units = {f"{point}.{axis}": "m" for point in case.points for axis in "xyz"} if alone else signals_of(case.system)
+    for body in beams:
+        loads = _LOADS if alone else {f"{body}.{load}": unit for load, unit in _LOADS.items()}
+        units |= {f"{load}.{axis}": unit for load, unit in loads.items() for axis in "xyz"}
+    return units

@@ -20,11 +20,10 @@ from gbeam.io.table import Table
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.records.text import read_text
 from gbeam.printable import advise
-from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.structure.beam import fibre_strain
-from gbeam.studies.figures import SystemHistory, component, read_history
+from gbeam.studies.figures import History, read_history
 
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")
@@ -112,17 +111,16 @@ class Measurement:
         """Values (m,) of the measured quantities in an answer to a case, in the order of `values`."""
         if self.modal:
             return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
-        if case.subject is case.system:
-            histories = [SystemHistory(each.name, each.motion, each.quantity, each.unit) for each in self.columns]
-            return np.concatenate([history.at(answer["study"], self.at) for history in histories])
         study = answer if isinstance(answer, Study) else answer["study"]
         return np.concatenate([self._history(case, study, each) for each in self.columns])
 
     def _history(self, case: Case, answer: Study, column: Measured) -> Floats:
+        if not column.face:
+            return History(column.name, column.motion, column.quantity, column.unit).at(answer, self.at)
         from scipy.interpolate import CubicSpline
 
         response = answer.responses[column.motion]
-        values = _values(case, response, column)
+        values = _strain(case, response, column)
         return np.asarray(CubicSpline(response.time, values)(self.at))
 
 
@@ -259,14 +257,8 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
     return float(modes[mode - 1][quantity])
 
 
-def _values(case: Case, response: Response, column: Measured) -> Floats:
-    """History, at the response's own times, of the quantity that a column measures."""
-    kind, _, axis = column.quantity.partition(".")
-    if kind == "hub":
-        assert response.hub is not None
-        return np.asarray(getattr(response.hub, axis))
-    if not column.face:
-        return component(response, kind, "xyz".index(axis))
+def _strain(case: Case, response: Any, column: Measured) -> Floats:
+    """History, at the response's own times, of the strain of a gauge."""
     if isinstance(column.at, str):
         return response.strain_at(column.at, _way(column.face).tolist())
     assert response.loads is not None

@@ -45,7 +45,6 @@ PAGES = {
     "Critical": Page("critical-speed", ("quantity", "searched_to", "reason")),
     "CriticalMap": Page("critical-speed --masses", ("mass", "position", "critical_speed")),
     "Placement": Page("place", ("fraction_of_length", "options")),
-    "SystemStudy": Page("run", ("motions",), ("points", "coordinates", "steps")),
     "SystemResponse": Page("run", ("points", "coordinates", "steps")),
     "SolidStress": Page("run", ("worst", "singular_depth")),
     "SpecimenLoads": Page("run", ("corners", "bolts", "largest_load")),
@@ -108,7 +107,7 @@ def viewer(
         return {"modes": shapes(read(Modes, facts), variables, numbers)}
     if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:
         return {"modes": shapes_of_system(facts, variables, numbers)}
-    motions = facts["motions"] if kind in ("Study", "SystemStudy") else {}
+    motions = facts["motions"] if kind == "Study" else {}
     if kind in ("Deflection", "SystemRest"):
         motions = {name: {"environment": "rest"} for name in facts["motions"]}
     if kind == "SystemResponse":  # of one motion, alone

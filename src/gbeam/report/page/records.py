@@ -13,7 +13,7 @@ from gbeam.io.layout import name_of, pattern_of
 from gbeam.report.page.parts import under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
+from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, records_in
 from gbeam.results.equilibrium import Critical, Deflection
 from gbeam.results.machine import AxesResult
 from gbeam.results.measures import Mismatch, Shock
@@ -21,7 +21,7 @@ from gbeam.results.modal import Campbell, Modes
 from gbeam.results.parts import Loads
 from gbeam.results.result import Figured, Floats, Result
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, ShapedCommand
-from gbeam.results.study import KINDS, Answers
+from gbeam.results.study import KINDS, Study
 from gbeam.results.system import SystemModes, SystemRest
 
 Facts = Mapping[str, Any]
@@ -45,8 +45,8 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
     record, needed = KINDS.get(kind, Result), _NEEDED.get(kind)
     if not issubclass(record, Figured):
         return {}
-    if issubclass(record, Answers):
-        study = _study(record, facts, variables)
+    if record is Study:
+        study = _study(facts, variables)
         return figures_of(study) if study.responses else {}
     if record.listed_by:
         answers = [(name, answer, under(f"motions/{name}/", variables)) for name, answer in facts["motions"].items()]
@@ -189,21 +189,26 @@ def _vectors(values: Facts) -> Floats:
     return np.stack([_array(each) for each in values.values()], axis=-1)
 
 
-def _study(kind: type[_R], facts: Facts, variables: Facts) -> Any:
+def _study(facts: Facts, variables: Facts) -> Study:
     """The responses in all environments that have one, and their comparisons."""
-    response_kind: Any = record_in(kind, "responses")
     responses: dict[str, Any] = {}
     comparisons = []
     for name, entry in facts["motions"].items():
         v = under(f"motions/{name}/", variables)
         if "time" in v:
+            response_kind, *_ = [kind for kind in records_in(Study, "responses") if _states(entry, kind)]
             responses[name] = read(response_kind, entry, v, name=name)
     for entry in facts["comparisons"]:
         v = under(f"comparisons/{entry['centrifuge']}/", variables)
         if "time" in v and entry["flight"] in responses:
             stations = getattr(responses[entry["flight"]], "stations", None)
             comparisons.append(read(Comparison, entry, v if stations is None else {"station": stations, **v}))
-    return kind("", responses, tuple(comparisons))  # type: ignore[call-arg]
+    return Study("", responses, tuple(comparisons))
+
+
+def _states(facts: Facts, kind: Any) -> bool:
+    """True if JSON has all rows that every record of a kind has."""
+    return facts.keys() >= set(kind.json_rows.values())
 
 
 def _at_rest(loads: Facts) -> Loads:

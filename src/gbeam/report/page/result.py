@@ -23,11 +23,11 @@ from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
-from gbeam.results.study import Study, SystemStudy
+from gbeam.results.study import Study
 from gbeam.results.system import SystemModes, SystemResponse, SystemRest
 
 # In motion, or in three dimensions.
-SHOWN = Study, Response, SystemStudy, SystemResponse, Deflection, Modes, SystemModes, SystemRest
+SHOWN = Study, Response, SystemResponse, Deflection, Modes, SystemModes, SystemRest
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 
