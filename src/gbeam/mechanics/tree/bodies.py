@@ -294,7 +294,7 @@ class LinearBody:
         would not be faster.
         """
         reach = None if self.carried is not None else carrier.reach(root)
-        constants = None if reach is None else contraction(self.coefficients, reach, felt=self.hub_force)
+        constants = None if reach is None or not self.size else contraction(self.coefficients, reach, felt=self.hub_force)
         return self if constants is None else replace(self, contraction=constants)
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
