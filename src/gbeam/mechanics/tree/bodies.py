@@ -293,8 +293,8 @@ class LinearBody:
         """The same body by the motion of its `carrier`, which tells that of its root; itself where that is in doubt, or
         would not be faster.
         """
-        reach = None if self.carried is not None else carrier.reach(root)
-        constants = None if reach is None or not self.size else contraction(self.coefficients, reach, felt=self.hub_force)
+        reach = None if self.carried is not None or not self.size else carrier.reach(root)
+        constants = None if reach is None else contraction(self.coefficients, reach, felt=self.hub_force)
         return self if constants is None else replace(self, contraction=constants)
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
