@@ -169,3 +169,28 @@ def test_what_a_batch_refuses() -> None:
     cases.append((gb.assemble(appendage(), "FOAM", axial=1, y=2), slew(1.0, 2.0)))
     with pytest.raises(gb.InputError, match="one_structure is true, and case 1 has another structure than the first"):
         list(gb.simulate_batch(cases, duration=3.0, step=0.1, one_structure=True))
+
+
+def craft(width: float, amplitude: float) -> gb.System:
+    """A bus that a wheel turns, with a panel on a sprung hinge."""
+    section = gb.Section.rectangle(width=width, thickness=0.01)
+    panel = gb.assemble(gb.Beam(1.0, section, gb.Material(300, 1e9), damping_ratio=0.01), "FOAM", axial=0, y=1, z=2)
+    bus = gb.RigidBody(5.0, (0.4, 0.5, 0.6), points={"side": (0.3, 0, 0)})
+    hinge = gb.Joint("revolute", "panel", on="bus.side", axes=[(0, 1, 0)], stiffness=20.0, damping=0.1)
+    wheel = gb.PointForce("bus.root", moment=gb.vector(y=gb.Sine(amplitude, 1.0)), follower=True)
+    return gb.System({"bus": bus, "panel": panel}, {"orbit": gb.Joint("free", "bus"), "hinge": hinge}, {"wheel": wheel})
+
+
+def test_systems_of_bodies() -> None:
+    cases = [(craft(width, amplitude), None) for width, amplitude in ((0.2, 0.3), (0.25, 0.5), (0.2, 0.4))]
+    how: dict[str, Any] = {"duration": 1.0, "step": 0.01, "estimate": False}
+    together = dict(gb.simulate_batch(cases, together=2, **how))
+    assert sorted(together) == [0, 1, 2]
+    for k, (system, _) in enumerate(cases):
+        alone, one = gb.simulate(system, **how), together[k]
+        assert (one.outcome, one.steps, one.warnings) == (alone.outcome, alone.steps, alone.warnings)
+        for key in ("place", "velocity", "q"):
+            ours, theirs = getattr(one, key), getattr(alone, key)
+            np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9 * np.abs(theirs).max())
+        ours, theirs = (each.beams["panel"].loads.root_moment for each in (one, alone))
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-7 * np.abs(theirs).max())

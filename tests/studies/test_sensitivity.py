@@ -107,6 +107,60 @@ def test_a_free_hub_is_differentiated_through_its_nonlinear_equations(tmp_path: 
         assert slopes.derivatives[0, j] == pytest.approx((angles[0] - angles[1]) / (2 * h), rel=AGREES)
 
 
+SWINGING = """
+title = "A rod on a bus"
+[bodies.bus]
+kind = "rigid"
+mass = "5 kg"
+inertia = [0.4, 0.5, 0.6]
+points.side = { at = [0.3, 0, 0] }
+[bodies.panel]
+kind = "beam"
+length = "1 m"
+section = { shape = "rectangle", width = "0.2 m", thickness = "10 mm" }
+material = { density = "300 kg/m^3", youngs_modulus = "1 GPa" }
+damping_ratio = 0.01
+model = { kind = "FOAM", modes = { axial = 0, y = 1, z = 2 } }
+[joints.orbit]
+kind = "free"
+body = "bus"
+[joints.hinge]
+kind = "revolute"
+body = "panel"
+on = "bus.side"
+axes = [[0, 1, 0]]
+stiffness = 20.0
+damping = 0.1
+[forces.wheel]
+on = "bus.root"
+moment = { y = { profile = "sine", amplitude = "0.3 N m", duration = "1 s" } }
+follower = true
+[response]
+duration = "1 s"
+step = "10 ms"
+estimate = false
+"""
+
+
+def test_a_run_of_several_bodies_is_differentiated_exactly(tmp_path: Path) -> None:
+    """By a value of a beam, of a joint, of a rigid body's points and of a force."""
+    file = tmp_path / "swinging.toml"
+    file.write_text(SWINGING, encoding="utf-8")
+    paths = ["bodies.panel.section.thickness", "joints.hinge.stiffness", "bodies.bus.points.side.at[0]",
+             "forces.wheel.moment.y.amplitude"]  # fmt: skip
+    slopes = gb.sensitivity(file, ["coordinates.hinge.angle.max", "coordinates.hinge.angle.rate_max"], paths)
+    assert set(slopes.methods) == {"exact"} and np.isnan(slopes.errors).all()
+    for j, path in enumerate(slopes.parameters):
+        h, ends = 1e-5 * slopes.values[j], []
+        for sign in (1, -1):
+            case = gb.read_scenario(file, [f"{path}={float(slopes.values[j] + sign * h)!r}"])
+            run = gb.simulate(case.system, None, case.response)
+            k = run.coordinates.index("hinge.angle")
+            ends.append(np.array([run.peaks.highest[k], run.peaks.rate[k]]))
+        difference = (ends[0] - ends[1]) / (2 * h)
+        assert slopes.derivatives[:, j] == pytest.approx(difference, rel=1e-5), path
+
+
 def test_where_a_jump_moves_the_derivative_is_a_difference(tmp_path: Path) -> None:
     file = tmp_path / "slewing.toml"
     trapezoid = '"trapezoid", level = "1 rad/s", jerk = "0.5 rad/s^2", start = "2.03 s", hold = "1 s"'

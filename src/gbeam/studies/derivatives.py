@@ -1,6 +1,6 @@
 """Derivatives of whatever is read from an answer, with respect to physical values of the scenario.
 
-Those of a beam's responses over time come from the derivative of the run (`gbeam.analysis.response.differentiated`).
+Those of responses over time come from the derivative of the run (`gbeam.analysis.response.differentiated`).
 Where a jump moves with the value, which the run's fixed steps would miss, and for all other answers, they are central
 differences of fourth order; their error is the difference from those of second order.
 """
@@ -21,7 +21,7 @@ from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.io.kept import unkept
-from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
@@ -72,18 +72,16 @@ class Neighbourhood:
         self.progress, self.adapt = progress, adapt or (lambda case: case)
         self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
         self.case: Case = self._built(None, 0.0)
-        # Runs of a beam alone are differentiated themselves, all other answers by differences: shapes of a reduced mesh
-        # follow its values, and joints move the frames of what hangs on them.
-        self.runs = inquiry.verb == "run" and self.case.only_beam is not None
+        # Runs are differentiated themselves, all other answers by differences.
+        self.runs = inquiry.verb == "run" and _differentiable(self.case.system)
         self.answer: Any
         if self.runs:
             if grids is None:
                 self.answer = study(self.case, self.progress)
                 self._enrich()
             else:
-                structure = self.case.require_beam()
-                runs = {name: self._differentiated(structure, name, grid).unvaried() for name, grid in grids.items()}
-                self.answer = study_of(self.case, {name: _possible(structure, each) for name, each in runs.items()})
+                runs = {name: self._differentiated(name, grid).unvaried() for name, grid in grids.items()}
+                self.answer = study_of(self.case, runs)
         else:
             self.answer = inquiry.facts(self.case)
 
@@ -92,7 +90,7 @@ class Neighbourhood:
         one side of an edge of the scenario; those of other verbs then have no errors and bends.
         """
         if self.runs:
-            return self._of_runs(read, motions or list(self.case.motions), rough)
+            return self._of_runs(read, motions or list(self.case.environments), rough)
         values = read(self.case, self.answer)
         rows = []
         for k, parameter in enumerate(self.parameters):
@@ -121,19 +119,20 @@ class Neighbourhood:
 
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
-        return Grid.of(self.case.require_beam(), self.case.motions[name], self.case.over_time, self.done(name))
+        case = self.case
+        return Grid.of(case.subject, case.environments[name], case.over_time, self.done(name))
 
-    def _differentiated(self, structure: Structure, name: str, grid: Grid) -> Differentiated:
-        motion, settings = self.case.motions[name], self.case.over_time
-        self._by_motion[name] = Differentiated(structure, motion, settings, grid, name, **self.parts)
+    def _differentiated(self, name: str, grid: Grid) -> Differentiated:
+        motion, settings = self.case.environments[name], self.case.over_time
+        self._by_motion[name] = Differentiated(self.case.subject, motion, settings, grid, name, **self.parts)
         return self._by_motion[name]
 
     def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
         """Slopes of runs: all parameters along which the jumps stay are right-hand sides of one solution."""
-        done, structure = {name: self.done(name) for name in motions}, self.case.require_beam()
+        done = {name: self.done(name) for name in motions}
         for name in motions:
             if name not in self._by_motion:
-                self._differentiated(structure, name, self.grid(name))
+                self._differentiated(name, self.grid(name))
         runs = {name: self._by_motion[name] for name in motions}
         values = read(self.case, self.answer)
         steps = np.array([self._step(k, _NEAR) for k in range(len(self.parameters))])
@@ -224,13 +223,14 @@ class Neighbourhood:
 
     def _variant(self, case: Case, k: int, name: str) -> Variant:
         of_motions = [place.startswith("motion.") for place in self.parameters[k].places]
-        return None if all(of_motions) else case.require_beam(), case.motions[name] if any(of_motions) else None
+        motion = case.environments[name] if any(of_motions) else None
+        return None if all(of_motions) else case.subject, motion
 
     def _enrich(self) -> None:
         """Give the case's model as many shapes as the runs of the study took."""
-        counts = [response.shapes for response in self.answer.responses.values() if response.shapes is not None]
-        if self.case.automatic and counts:
-            self.case = self.case.remade(model=replace(self.case.model, **counts[0]))
+        if self.case.automatic and self.answer.responses:
+            counts = next(iter(self.answer.responses.values())).shapes
+            self.case = self.case.remade(model=replace(self.case.model, **counts))
 
 
 class Quantities:
@@ -306,20 +306,22 @@ def in_model_of(like: Case, case: Case) -> Case:
     return case.remade(model=like.model) if like.automatic and case.model != like.model else case
 
 
-def _possible(structure: Structure, response: Response) -> Response:
-    """The response; marked diverged if a displacement is not finite or, unless exact, above the beam's length."""
-    moved = np.abs(response.displacement).max()
-    if np.isfinite(moved) and (structure.kind == "exact" or moved <= structure.length):
-        return response
-    return replace(response, outcome="diverged", message="the displacement exceeded the beam's length")
+def _differentiable(system: System) -> bool:
+    """True if the derivative of its run is known: shapes of a reduced mesh follow its values, laws of controllers have
+    no derivative here, and joints with stops or friction change their slope within steps.
+    """
+    meshes = any(body.source is None for body in system.flexible.values())
+    bending = any(joint.holder.bends for joint in system.joints.values())
+    return bool(len(system.tree.free)) and not (meshes or bending or system.controllers)
 
 
 def _runs(case: Case, steps: Mapping[str, float]) -> Study:
     """Study of the motions in `steps`, run by these time steps, s, without estimates of errors."""
-    structure, responses = case.require_beam(), {}
+    subject: Any = case.subject
+    responses = dict[str, Any]()
     for name, step in steps.items():
         settings = replace(case.over_time, step=step, estimate=False)
-        responses[name] = simulate(structure, case.motions[name], settings, name=name)
+        responses[name] = simulate(subject, case.environments[name], settings, name=name)
     return study_of(case, responses)
 
 

@@ -76,12 +76,13 @@ def simulate_batch(
     Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes: of one
     model with equal numbers of shapes, in environments of one kind, and about as many steps. Where steps are
     automatic, or errors are estimated, the runs that this takes are: a case goes on to its next one beside those that
-    need about as many steps. A machine that spins up, runs with error control, very long ones, and those whose
-    corrections fail are integrated alone. No more cases are taken from `cases` than wait for others of their shape.
+    need about as many steps. A machine that spins up, a system with controllers, runs with error control, very
+    long ones, and those whose corrections fail are integrated alone. No more cases are taken from `cases` than wait for others of their shape.
 
     Parameters
     ----------
-    cases : iterable of (Structure, motion)
+    cases : iterable of (Structure or System, motion)
+        The motion of a system is its ground's, None where it rests.
     settings : ResponseSettings, optional
         Or what it is made of, by keyword: ``simulate_batch(cases, duration=10.0, step=0.01)``; ``estimate`` is false
         then unless it is given.
@@ -95,7 +96,7 @@ def simulate_batch(
 
     Yields
     ------
-    int, Response
+    int, Response or SystemResponse
         Place among the cases, and response, in the order in which they are computed.
 
     Raises

@@ -159,8 +159,11 @@ class Differentiated:
         return False
 
     def unvaried(self) -> Any:
-        """Response of the run itself."""
-        return self._response(self.nominal, None)
+        """Response of the run itself; diverged where a displacement is not finite, or the model ceases to hold."""
+        response = self._response(self.nominal, None)
+        if np.isfinite(self.run.q).all() and self.nominal.too_far(self.run.q) is None:
+            return response
+        return replace(response, outcome="diverged", message="a displacement exceeded the length of its body")
 
     def responses(self, pairs: Sequence[Pair], width: Floats) -> Iterator[tuple[Any, Any]]:
         """Responses with less and with more of each parameter, which differ by its `width` (p,)."""

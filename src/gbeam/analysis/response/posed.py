@@ -118,10 +118,19 @@ class Posed:
         return NonlinearEquations(contracted, self.drive, self.controllers, idle)
 
     def driven_as(self, other: Posed) -> bool:
-        """True if the motion of the ground and all loads are the same objects as those of another problem."""
-        bodies, others = self.system.flexible, other.system.flexible
-        same = all(body.history is others[name].history for name, body in bodies.items())
-        return same and self.subject.motion is other.subject.motion
+        """True if all that drives it is the same objects as in another problem."""
+        mine, others = self._drives, other._drives
+        return len(mine) == len(others) and all(one is another for one, another in zip(mine, others, strict=True))
+
+    @property
+    def _drives(self) -> list[Any]:
+        """Motion, gravity, joints that are moved, histories of efforts, forces and loads."""
+        system, drives = self.system, list[Any]()
+        for joint in system.joints.values():
+            drives += [joint] if joint.rates else joint.efforts.values()
+        histories = [profile for force in system.forces.values() for profile in force.history]
+        loads = [body.history for body in system.flexible.values()]
+        return [self.subject.motion, system.gravity, *drives, *histories, *loads]
 
     @cached_property
     def felt(self) -> Corners:

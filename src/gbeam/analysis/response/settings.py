@@ -64,7 +64,7 @@ class ResponseSettings(Value):
         result says so.
     loads : bool
         Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too, and
-        an automatic step follows the root's in any case; of a system it follows deflections and places.
+        an automatic step follows the root's in any case.
     histories : float or None
         Time between the samples of histories in a file, s, as near as its steps allow; None keeps those of the
         results' steps, up to 50,000, else every second, third and so on. Peaks are of all steps, and of a system so is
