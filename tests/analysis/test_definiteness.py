@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam import (
     Beam,
     Flight,
@@ -24,7 +25,7 @@ from gbeam import (
     simulate,
     vector,
 )
-from gbeam.analysis.response.outcome import Drive, lowest_over_time, worst_loss
+from gbeam.analysis.response.loss import Drive, lowest_over_time, worst_loss
 from gbeam.analysis.steady.stability import critical_load
 from gbeam.motion import constant
 from gbeam.results.parts import Base
@@ -177,3 +178,17 @@ def test_a_shaft_above_its_critical_speed_is_held_by_its_spin() -> None:
     )
     assert (lowest_over_time(structure.coefficients, Drive(*base_of(base))) < 0).all()
     assert worst_loss(structure, time, base, at_rest(structure, time)) is None
+
+
+def test_a_beam_among_other_bodies_loses_its_stability_alike() -> None:
+    """In a system the same words tell of it, behind the name of the beam where several bodies deform."""
+    section = gb.Section.rectangle(width=0.02, thickness=0.004)
+    beam = gb.assemble(gb.Beam(0.3, section, gb.Material(2700, 70e9), damping_ratio=0.01), "FOAM", axial=1, y=1, z=2)
+    pushed = gb.Flight(x=gb.trapezoid(12000.0, jerk=120000.0, start=0.05, hold=0.2), z=1.0)
+    how: dict[str, Any] = {"duration": 0.4, "step": 1e-3, "estimate": False}
+    alone, among = gb.simulate(beam, pushed, **how), gb.simulate(gb.System.of(beam, "strip"), pushed, **how)
+    assert alone.outcome == among.outcome == "diverged"
+    assert among.message == alone.message
+    short = gb.assemble(gb.Beam(0.1, section, gb.Material(2700, 70e9), damping_ratio=0.01), "FOAM", axial=1, y=1, z=2)
+    two = gb.System({"strip": beam, "stub": short}, {"a": gb.Joint("fixed", "strip"), "b": gb.Joint("fixed", "stub")})
+    assert gb.simulate(two, pushed, **how).message == f"strip: {alone.message}"

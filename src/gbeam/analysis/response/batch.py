@@ -76,8 +76,9 @@ def simulate_batch(
     Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes: of one
     model with equal numbers of shapes, in environments of one kind, and about as many steps. Where steps are
     automatic, or errors are estimated, the runs that this takes are: a case goes on to its next one beside those that
-    need about as many steps. A machine that spins up, a system with controllers, runs with error control, very
-    long ones, and those whose corrections fail are integrated alone. No more cases are taken from `cases` than wait for others of their shape.
+    need about as many steps. A machine that spins up, a system with controllers, runs with error control, very long
+    ones, and those whose corrections fail are integrated alone. No more cases are taken from `cases` than wait for
+    others of their shape.
 
     Parameters
     ----------

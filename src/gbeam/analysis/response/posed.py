@@ -31,7 +31,7 @@ from gbeam.analysis.system.feedback import SystemControllers
 from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import State
 from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
@@ -194,11 +194,16 @@ class Posed:
         """
         far = np.zeros(len(y), dtype=bool)
         for name, body in self.system.flexible.items():
-            if body.size and body.kind != "exact":
-                limit = BOUNDLESS if body.field is None else body.length
+            if body.size:
                 displaced = moved[name] if name in moved else body.displacement(y[:, self.columns(name)])
-                far |= np.abs(displaced).max(axis=(1, 2)) > limit
+                far |= self.far(body, displaced)
         return int(np.argmax(far)) + 1 if far.any() else None
+
+    @staticmethod
+    def far(body: Structure, displaced: Floats) -> Flags:
+        """Flags (t,) of displacements (t, s, 3) m beyond which the model of a body does not hold; exact ones do."""
+        limit = math.inf if body.kind == "exact" else BOUNDLESS if body.field is None else body.length
+        return np.abs(displaced).max(axis=(1, 2), initial=0.0) > limit
 
     def of(self, system: System) -> Posed:
         """Return the problem of another system, which begins at its own initial state."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.outline import outline_of
-from gbeam.analysis.response.outcome import describe, effort, inaccuracies
+from gbeam.analysis.response.outcome import effort, ending_of, far_bent, inaccuracies, yielding
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.stepping import (
@@ -128,8 +128,10 @@ def response_of(
     errors = Errors()
     warnings: tuple[str, ...] = ()
     if not traced:
-        outcome, message, from_run = describe(structure, posed.start.stable, entire, over_time, peaks, time, q[:, beam])
-        if outcome == "done":
+        ending = ending_of(run, {subject.body: (over_time, q[:, beam])}, time)
+        outcome, message, from_run = ending.outcome, ending.message, ending.warnings
+        if ending.done:
+            from_run += (*yielding(peaks.loads), *far_bent(structure, peaks.max_size))
             errors, doubts = run.errors(step_errors, progress)
             doubts += inaccuracies(structure, errors, settings)
             from_run += doubts + effort(settings, len(trajectory.time) - 1, stride)

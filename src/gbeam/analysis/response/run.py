@@ -28,13 +28,14 @@ from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import positive_definite
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import Errors, StepErrors
-from gbeam.results.parts import Loads
+from gbeam.results.parts import Base, Loads
 from gbeam.results.system import Loop
 
 LONG = 3_000  # steps: more of them follow deflections of several bodies within the tolerance only
@@ -307,6 +308,24 @@ class Run:
         """Solution at every `stride`-th step of the flight."""
         steps = np.arange(len(self.trajectory.time))[self.in_flight][::stride]
         return Solution(self.posed.system, self.trajectory.at(steps), lambda of, times: self.inputs(of, steps[times]))
+
+    def alone(self) -> dict[str, tuple[Base, Floats]]:
+        """Motion of the root (t, 3) and coordinates (t, n), at all steps, of each flexible body, by its name, on which
+        nothing hangs and no force acts.
+        """
+        tree, names = self.posed.system.tree, self.posed.system.order
+        laden = {names[link.parent] for link in tree.links if link.parent >= 0} | {names[f.body] for f in tree.forces}
+        chosen, run = [name for name in self.deforming if name not in laden], self.trajectory
+        roots = {name: list[Frame]() for name in chosen}
+        for part in pieces(len(run.time), tree.size) if chosen else ():
+            state = tree.motion(run.q[part], run.qd[part], run.qdd[part], self.inputs(self.posed.system, part))
+            for name in chosen:
+                roots[name].append(state.roots[names.index(name)])
+        joined = {
+            name: Base(*(np.concatenate([getattr(each, key) for each in frames]) for key in ("a", "w", "alpha")))
+            for name, frames in roots.items()
+        }
+        return {name: (base, run.q[:, self.posed.columns(name)]) for name, base in joined.items()}
 
     def histories(self, steps: Indices, *, loads: bool) -> tuple[dict[str, Any], dict[str, Loads]]:
         """Histories by key at indices of the steps and, if `loads`, the loads along each beam by name."""

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.outline import assembly_of, outline_of
-from gbeam.analysis.response.outcome import yielding
+from gbeam.analysis.response.outcome import Ending, ending_of, yielding
 from gbeam.analysis.response.peaks import half_ranges, load_peaks, system_peaks
 from gbeam.analysis.response.posed import begun_in_words
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.analysis.system.accuracy import doubts
 from gbeam.analysis.system.histories import beams_of, deflection, meshes_of
-from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.namespace import is_jax, namespace
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.tree.signals import units_of
@@ -63,20 +62,8 @@ def system_response_of(
     if motion is None:
         invariants = Invariants(*(over_time.pop(key) for key in ("momentum", "angular_momentum", "energy")))
     base: Any = None if motion is None else motion.base(time)
-    outcome, message = "done", ""
-    if not trajectory.whole:
-        outcome, end = "not converged", trajectory.time[-1]
-        message = f"Newton's method failed at {end:.4g} s: give a smaller step, or look for what breaks there"
-    if trajectory.failure is not None:
-        outcome, message = trajectory.failure.outcome, str(trajectory.failure)
-    if (step := run.without_mass) is not None:
-        free = [system.coordinates[k] for k in system.tree.free]
-        words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"
-        if not trajectory.whole or bent_most(system, free, trajectory.q)[1] > 1:
-            outcome, message = MASSLESS, words
-        else:
-            warnings += (f"{words}; what moves so grows without bound where steps resolve it",)
-    warnings += (*settings.warnings, *yielded)
+    ending = Ending() if traced else ending_of(run, run.alone(), time)
+    warnings += (*ending.warnings, *settings.warnings, *yielded)
     of_errors = doubts(errors, settings.tolerance)
     warnings += tuple(warning for warning in of_errors if warning not in warnings) + system.warnings
     warnings += () if traced else run.solution(1).left_out
@@ -91,8 +78,8 @@ def system_response_of(
     return SystemResponse(
         name=name,
         environment=kind,
-        outcome=outcome,
-        message=message,
+        outcome=ending.outcome,
+        message=ending.message,
         time=time,
         points=system.points,
         coordinates=system.coordinates,

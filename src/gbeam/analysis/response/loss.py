@@ -1,0 +1,155 @@
+"""When the frozen equations of a body in a run stop being stable.
+
+The straight beam (of a complete model, the bent one) is stable while its stiffness, with the terms of the base's motion
+and of the loads, is positive definite; where loads follow the beam the eigenvalues decide. A disturbance grows by
+exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its size.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.analysis.steady.equilibrium import expanded
+from gbeam.arrays.namespace import Array
+from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.structure import Structure
+from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, symmetric, unsymmetric
+from gbeam.results.parts import Base
+
+_BLOCK = 2000  # times whose stiffness is computed together
+_STRETCHES, _MOST = 4, 32  # stretches whose growth is computed, and times of each, at most
+_SHARE = 0.01  # of the elastic stiffness: a term that takes less of it is no cause
+_ROW, _COLUMN = np.tril_indices(3, -1)
+
+
+class Loss(NamedTuple):
+    """A stretch of time, s, in which a disturbance grows by exp(`growth`), and its causes at the start, in words."""
+
+    start: float
+    end: float
+    growth: float
+    flutter: bool
+    causes: tuple[str, ...]
+
+
+class Drive(NamedTuple):
+    """Motion of the base (t, 3) and components of the loads (t, loads, 6), or those of one time."""
+
+    a_WO_B: Array
+    w_WB_B: Array
+    alpha_WB_B: Array
+    loads: Array | None = None
+
+    def at(self, times: Any) -> Drive:
+        """Base and loads at an index, slice or array of the times."""
+        return Drive(*(None if values is None else values[times] for values in self))
+
+    def between(self, before: int, after: int, share: float) -> Drive:
+        """Base and loads interpolated a share of the way between two times, given by their indices."""
+        ends = zip(self.at(before), self.at(after), strict=True)
+        return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
+
+
+def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss | None:
+    """Stretch of time in which a disturbance grows most, or None; about q (t, n) of a complete model, of which growth
+    that ends within a stretch does not count: there it is on its way to a stable shape.
+    """
+    c = structure.coefficients
+    loads = None if c.loads is None or structure.history is None else structure.history(time)
+    drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+
+    def matrices(i: int) -> tuple[Array, Array, Array]:
+        about = c if structure.linear else expanded(structure, q[i])[0]
+        return about.mass, *about.frozen(*drive.at(i))
+
+    def loss(part: Array) -> Loss | None:
+        """Loss over a stretch of indices, by growth rates at some of them."""
+        some = part[:: -(-len(part) // _MOST)]
+        until = np.append(some[1:], min(part[-1] + 1, len(time) - 1))
+        rate = np.array([growth_rate(*matrices(i)) for i in some])
+        run = np.cumsum(np.diff(rate > 0, prepend=False))  # numbers of runs of growth and of decay
+        growth = np.bincount(run, rate * (time[until] - time[some]))
+        if not structure.linear:
+            growth[: run[-1]] = 0.0
+        if not growth.any():
+            return None
+        worst = np.flatnonzero(run == growth.argmax())
+        first = int(some[worst[0]])
+        before = int(some[worst[0] - 1]) if worst[0] else max(first - 1, 0)
+        margins = stability_margin(*matrices(before)), stability_margin(*matrices(first))
+        share = margins[0] / (margins[0] - margins[1]) if margins[0] > 0 > margins[1] else 1.0
+        return Loss(
+            start=float(time[before] + share * (time[first] - time[before])),
+            end=float(time[until[worst[-1]]]),
+            growth=float(growth.max()),
+            flutter=unsymmetric(matrices(first)[2]),
+            causes=_causes(structure, drive.between(before, first, share), matrices(first)),
+        )
+
+    if not c.size:
+        return None
+    doubtful, most = _doubtful(c, drive)
+    stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
+    stretches.sort(key=lambda part: -most[part].sum())
+    losses = [lost for part in stretches[:_STRETCHES] if (lost := loss(part)) is not None]
+    return max(losses, key=lambda lost: lost.growth, default=None)
+
+
+def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
+    """Indices of times at which the straight beam may be unstable, and bounds (t,) 1/s of the growth. Eigenvalues are
+    computed only where the sum of the terms' bounds reaches the elastic stiffness; loads that follow the beam, which
+    these bounds do not cover, make the growth infinite.
+    """
+    scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # by which the elastic stiffness is one
+    w, most = drive.w_WB_B, np.zeros(len(drive.w_WB_B))
+    terms = [c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]]
+    sizes = [drive.a_WO_B, drive.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN], w**2]
+    if drive.loads is not None and c.loads is not None:
+        slope, values = c.loads.slope[:, :, 6:].reshape(-1, c.size, c.size), drive.loads.reshape(len(w), -1)
+        terms.append(-slope)
+        sizes.append(values)
+        most[np.any(values[:, [unsymmetric(matrix) for matrix in slope]], axis=1)] = np.inf
+    size = np.concatenate(sizes, axis=1)
+    driven = size.any(axis=0)
+    size, term = size[:, driven], symmetric(np.concatenate(terms)[driven])
+    share = np.linalg.eigvalsh(scale @ term @ scale.T)
+    taken = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
+    large = np.flatnonzero((taken >= 1.0) & (most == 0))
+    for block in (large[i : i + _BLOCK] for i in range(0, len(large), _BLOCK)):
+        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, drive.at(block)), 0))
+    return np.flatnonzero(most), most
+
+
+def lowest_over_time(c: Coefficients, drive: Drive) -> Array:
+    """Lowest eigenvalue of K, M-normalised, over time: negative where K is not positive definite, rad²/s²."""
+    scale = np.linalg.inv(np.linalg.cholesky(c.mass))
+    return np.linalg.eigvalsh(scale @ symmetric(c.frozen(*drive)[1]) @ scale.T)[..., 0]
+
+
+def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Array]) -> tuple[str, ...]:
+    """Name the terms of base and loads that take stiffness from the fastest growing mode, or feed it."""
+    c, (a, w, alpha, loads) = structure.coefficients, drive
+    value, modes = eigenvalues(*matrices)
+    mode = modes[:, value.real.argmax()]
+
+    def taken(stiffness: Array) -> float:
+        """Share of the mode's elastic stiffness that a term takes away, or feeds by asymmetry."""
+        share = (mode.conj() @ stiffness @ mode) / (mode.conj() @ c.stiffness @ mode).real
+        return float(max(-share.real, abs(share.imag)))
+
+    terms = {
+        f"the base turns at {np.linalg.norm(w):.4g} rad/s": np.einsum("i,j,ijnm->nm", w, w, c.k_ww),
+        f"its rate changes by {np.linalg.norm(alpha):.4g} rad/s²": symmetric(np.tensordot(alpha, c.k_al, 1)),
+        f"the root is pushed with {np.linalg.norm(a):.4g} m/s²": np.tensordot(a, c.k_a, 1),
+    }
+    if loads is not None and c.loads is not None and structure.work is not None:
+        points = np.bincount(structure.work.load)
+        for k, (values, slope) in enumerate(zip(loads, c.loads.slope[:, :, 6:], strict=True)):
+            force, moment = np.linalg.norm(values[:3]), np.linalg.norm(values[3:])
+            size = f"{force:.4g} N" if force > 0 else f"{moment:.4g} N m"
+            words = f"beam.loads[{k}] acts with {size}{'/m' if points[k] > 1 else ''}"
+            terms[words] = -np.tensordot(values, slope, 1)
+    shares = {words: taken(stiffness) for words, stiffness in terms.items()}
+    return tuple(words for words, share in shares.items() if share > min(_SHARE, max(shares.values()) / 2))
