@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.problem import STATE_WORDS, Problem
+from gbeam.analysis.response.problem import Problem
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import (
     LOADS_STEPS,
@@ -21,11 +21,11 @@ from gbeam.analysis.response.stepping import (
     steps_beyond,
 )
 from gbeam.analysis.system.feedback import SystemControllers
+from gbeam.analysis.system.initial import STATE_WORDS, Initial
 from gbeam.analysis.system.point import Point, started, unknown_at_start
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
-from gbeam.constants import State
 from gbeam.errors import InputError
 from gbeam.guards.limits import HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
@@ -118,19 +118,21 @@ def corners(system: System, motion: Motion | None, step: float) -> Floats:
 
 def state_at(system: System, motion: Motion | None, settings: ResponseSettings) -> tuple[Floats, Floats]:
     """Coordinates and rates (n,) of a system at the start of the settings."""
-    point = started(system, motion, settings.start, settings.begin.state)
+    point = started(system, motion, settings.start, settings.begin)
     return point.y, point.yd
 
 
-def begun_in_words(system: System, initial: State) -> str:
+def begun_in_words(system: System, initial: Initial) -> str:
     """Sentence on the state in which a system begins."""
     floating = [name for name in system.flexible if name in system.floating]
     held = [name for name in system.flexible if name not in floating]
-    how = STATE_WORDS[initial]
-    if initial == "equilibrium" and floating:
+    if initial.displaces:
+        return f"{initial}, joints at their initial values"
+    how = STATE_WORDS[initial.state]
+    if initial.state == "equilibrium" and floating:
         of_held = f"with {', '.join(held)} in relative equilibrium, {', '.join(floating)} " if held else ""
         how = f"{of_held}undeformed ({'it floats' if len(floating) == 1 else 'they float'})"
-    deforms = system.flexible or unknown_at_start(system, initial)[0].any()
+    deforms = system.flexible or unknown_at_start(system, initial.state)[0].any()
     return f"begins {how}, joints at their initial values" if deforms else "begins with joints at their initial values"
 
 

@@ -40,6 +40,7 @@ from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.section_forces import accelerations, root_loads, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.one_body import on_motion
+from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
@@ -118,7 +119,8 @@ class StructureRun(Run):
                 of = self.trajectory.at(slice(None, None, stride))
                 return Solution(system, of, lambda other, times: other.inputs(of.time[times], ground))
 
-            def begun(body: Structure) -> tuple[Floats, Floats]:
+            def begun(other: System) -> tuple[Floats, Floats]:
+                (body,) = other.flexible.values()
                 return start_of(body, motion, settings.start, settings.begin)[:2]
 
             settled = not motion.free and (self.up is not None or settings.begin.settled)

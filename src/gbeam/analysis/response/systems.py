@@ -32,6 +32,7 @@ from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of, steps_to_tr
 from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, doubts, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, deflection, deflections, histories, loads_of, meshes_of
+from gbeam.analysis.system.initial import on_bodies
 from gbeam.analysis.system.point import Point, in_words, started, started_traced, unknown_at_start
 from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.solution import Solution
@@ -84,17 +85,13 @@ class SystemRun(Run):
                 fix = "leave one out: a motion carries its own, as specific force"
                 raise InputError("gravity", "is given beside a motion of the base", fix)
             motion = motion.over(settings.start, settings.start + settings.duration)
-        begin = settings.begin
-        if begin != type(begin)(begin.state):
-            raise InputError(
-                "initial", "displaces a tip", 'give "equilibrium", "undeformed" or "relief"; joints have initial values'
-            )
+        on_bodies(system.flexible, (*settings.begin.displaced, *settings.begin.moving))  # raises what it refuses
         return motion, settings
 
     @classmethod
     def poses(cls, system: System, motion: Motion | None, settings: ResponseSettings) -> Iterator[PosedSystem]:
         """Yield the problem with each of the steps of results to try, the longest first."""
-        point, bends = started(system, motion, settings.start, settings.begin.state), partial(corners, system, motion)
+        point, bends = started(system, motion, settings.start, settings.begin), partial(corners, system, motion)
         for kept, limit in steps_to_try(first_step(point, bends, settings), LOADS_STEPS, bends, settings):
             ends = with_ends(motion, settings, settings.step or kept)
             refuse_long(system, ends, ends.step or kept)
@@ -112,7 +109,7 @@ class SystemRun(Run):
     ) -> SystemResponse:
         """Response traced by JAX, by given steps: no branch depends on its values."""
         ends = with_ends(motion, settings, step)
-        start = started_traced(system, motion, ends.start, settings.begin.state)
+        start = started_traced(system, motion, ends.start, settings.begin)
         refuse_long(system, ends, step)
         posed = PosedSystem(system, motion, ends, settings, start, step)
         return _described(cls(posed.integrated(step, corners=posed.commands), step, posed), Errors(), name)
@@ -134,6 +131,8 @@ class SystemRun(Run):
             peaks_by_step = dict(zip(of_loads, errors.peaks, strict=False))
             by_step |= dict(zip(of_loads, errors.each, strict=False))
             starting = Starting(partial(unknown_at_start, initial=settings.begin.state))
+            if settings.begin.displaces:
+                starting = replace(starting, state=lambda other: state_at(other, posed.motion, settings))
             rerun = again if posed.system.controllers else None
             rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
             friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
@@ -460,7 +459,7 @@ def _described(run: SystemRun, errors: Errors, name: str, warnings: tuple[str, .
         residual_amplitude=residual,
         kept_every=settings.kept_every(len(time), run.step, stride),
         peaks=None if traced else system_peaks(system, time, over_time),
-        initial=begun_in_words(system, settings.begin.state),
+        initial=begun_in_words(system, settings.begin),
         warnings=warnings,
         notes=notes_on({name: motion}),
         scale=level_factor(motion),
