@@ -127,7 +127,7 @@ class Samples:
                     "gravity": (0.0, 0.0, -9.8), "stiffness": 0.0, "damping": 0.0,
                 },
             ),
-            "Initial": (("undeformed",), {"tip_velocity": {"z": 0.1}}),
+            "Initial": (("undeformed",), {"tip_velocity": {"z": 0.1}, "velocity": {"tip": {"y": 0.1}}}),
             "Line": ((0.3, straight), {"breaks": [0.1], "corners": [0.2], "turns": [[0.0, 0.0, 0.1]]}),
             "Load": ((0.1,), {"force": (0.0, 0.0, 1.0), "moment": (0.0, 1.0, 0.0), "follower": False}),
             "Joint": (
@@ -375,7 +375,8 @@ def test_every_public_function_refuses_objects_of_the_wrong_type(
     if name != "rerun":
         called(function, *args, **keywords)
     names = [each.name for each in signature(function).parameters.values() if each.kind is not Parameter.VAR_KEYWORD]
-    left_out = {"acceleration", "torque", "settings", "conditioning", "provenance", "rates", "tip_displacement"}
+    left_out = {"acceleration", "torque", "settings", "conditioning", "provenance", "rates"}
+    left_out |= {"tip_displacement", "displacement"}
     assert {*names[: len(args)], *keywords} | left_out >= {*names}, name
     problems = []
     for at in [*range(len(args)), *keywords]:

@@ -17,7 +17,6 @@ from gbeam.analysis.imitation.plan import axis_commands as axis_commands
 from gbeam.analysis.imitation.plan import plan as plan
 from gbeam.analysis.model_study import compare_models as compare_models
 from gbeam.analysis.response.batch import simulate_batch as simulate_batch
-from gbeam.analysis.response.problem import Initial as Initial
 from gbeam.analysis.response.settings import ResponseSettings as ResponseSettings
 from gbeam.analysis.response.simulation import simulate as simulate
 from gbeam.analysis.steady.campbell import campbell as campbell
@@ -28,6 +27,7 @@ from gbeam.analysis.steady.stability import critical_load as critical_load
 from gbeam.analysis.steady.stability import critical_speed as critical_speed
 from gbeam.analysis.steady.stability import critical_speed_map as critical_speed_map
 from gbeam.analysis.steady.static import static as static
+from gbeam.analysis.system.initial import Initial as Initial
 from gbeam.errors import ComputationError as ComputationError
 from gbeam.errors import GbeamError as GbeamError
 from gbeam.errors import InputError as InputError

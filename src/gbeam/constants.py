@@ -31,4 +31,5 @@ Coordinate = Literal["x", "y", "z", "rx", "ry", "rz", "angle", "displacement", "
 Rate = Literal[Coordinate, "wx", "wy", "wz"]
 Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]  # of questions
 Across = Literal["y", "z"]  # the beam
+Axis = Literal["x", "y", "z"]
 Direction = Literal["x", "y", "z", "rx", "ry", "rz"]  # the last three components of a rotation vector

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Hub, Initial, InputError, Response, Structure, modes, simulate, static
-from gbeam.analysis.response.problem import initial_state
+from gbeam.analysis.system.point import started
+from gbeam.mechanics.tree.system import System
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST
@@ -80,7 +81,8 @@ def test_a_tip_velocity_rings_with_its_amplitude_over_the_frequency() -> None:
 def test_large_displacements_are_those_of_the_tip(kind: str) -> None:
     structure = hub_beam(kind)
     initial = Initial(tip_displacement={"y": 1.5}, tip_velocity={"y": 0.3})
-    q, qd, _ = initial_state(structure, None, 0.0, initial)
+    point = started(System.of(structure), None, 0.0, initial)
+    q, qd = point.y, point.yd
     tip = np.asarray(structure.displacement(q))[-1]
     assert tip[1] == pytest.approx(1.5, rel=1e-12)
     assert (structure.station_slopes(q)[-1] @ qd)[1] == pytest.approx(0.3, rel=1e-12)

@@ -182,3 +182,117 @@ def test_commands_say_how_it_begins(gbeam: Callable[..., Answer], tmp_path: Path
     assert relief["initial"] == relief["lines"][0] == "begins in inertia relief, joints at their initial values"
     refused = gbeam("run", file, "--set", "response.initial.state=releif")
     assert refused.status == 2 and "did you mean 'relief'" in refused.err
+    drawn_aside = gbeam("run", file, "--set", 'response.initial.displacement={"panel.tip" = {y = "2 mm"}}', "--json")
+    words = "begins with panel.tip displaced by y 2 mm, as by a force there, at rest, joints at their initial values"
+    assert drawn_aside.json["motions"]["ground"]["initial"] == words
+    missing = gbeam("run", file, "--set", 'response.initial.displacement={"panel.end" = {y = "2 mm"}}')
+    assert missing.status == 2 and "response.initial.displacement.panel.end: is of panel.end" in missing.err
+
+
+def drawn(**more: Any) -> gb.SystemResponse:
+    """Run of a hub on a hinge with two panels, of which one begins displaced and moving."""
+    hub = gb.RigidBody(1.0, (INERTIA,) * 3, points={"far": (-0.2, 0.0, 0.0)})
+    joints = {
+        "axis": gb.Joint("revolute", "hub", axes=[(0, 0, 1)]),
+        "clamp": gb.Joint("fixed", "panel", on="hub.root"),
+        "other": gb.Joint("fixed", "still", on="hub.far", turn=(0, 0, np.pi)),
+    }
+    beam = panel(axial=1, y=2, z=2)
+    system = gb.System({"hub": hub, "panel": beam, "still": beam}, joints, gravity=(0.0, 0.0, -9.81))
+    return gb.simulate(system, duration=0.02, step=5e-4, estimate=False, **more)
+
+
+def test_a_point_of_a_system_is_drawn_aside_and_let_go() -> None:
+    initial = gb.Initial(displacement={"panel.tip": {"z": 4e-3}}, velocity={"panel.tip": {"y": 0.2}})
+    response = drawn(initial=initial)
+    words = "begins with panel.tip displaced by z 4 mm, as by a force there, panel.tip moving at y 0.2 m/s"
+    assert response.initial == f"{words}, joints at their initial values"
+    beam = panel(axial=1, y=2, z=2)
+    alone = gb.simulate(beam, gb.Flight(z=0.0), duration=0.02, step=5e-4, estimate=False, initial=gb.Initial(
+        tip_displacement={"z": 4e-3}, tip_velocity={"y": 0.2}
+    ))  # fmt: skip
+    settled = drawn()
+    names = response.coordinates
+    of_panel, of_still = (
+        [k for k, name in enumerate(names) if name.startswith(f"{body}.")] for body in ("panel", "still")
+    )
+    # The panel as alone; the other one in equilibrium under gravity, at rest.
+    np.testing.assert_allclose(response.q[0, of_panel], alone.q[0], rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(response.qd[0, of_panel], alone.qd[0], rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(response.q[0, of_still], settled.q[0, of_still], rtol=1e-9, atol=1e-15)
+    assert np.abs(settled.q[0, of_still]).max() > 1e-3 and not response.qd[0, of_still].any()
+    assert not response.q[0, names.index("axis.angle")]
+
+
+def test_a_system_is_released_from_a_static_deflection() -> None:
+    response = drawn(initial=gb.Initial(acceleration=(0.0, 3.0, 20.0)))
+    static = gb.static(panel(axial=1, y=2, z=2), acceleration=(0.0, 3.0, 20.0)).tip
+    at = [response.points.index(f"{body}.tip") for body in ("panel", "still")]
+    rooted = [response.points.index(f"{body}.root") for body in ("panel", "still")]
+    moved = response.place[0, at] - response.place[0, rooted] - [[LENGTH, 0, 0], [-LENGTH, 0, 0]]
+    # The other panel points the other way.
+    np.testing.assert_allclose(moved[:, 1:], [static[1:], static[1:]], rtol=1e-6)
+    assert response.initial.startswith("begins in the static deflection under (0, 3, 20) m/s², at rest, joints")
+
+
+def test_what_is_displaced_states_the_error_that_one_body_states() -> None:
+    how: dict[str, Any] = {"duration": 0.5, "step": 1e-3, "integrator": "newmark"}
+    beam = gb.assemble(gb.Beam(LENGTH, gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS),
+        damping_ratio=0.01), "FOAM", axial=1, y=1, z=1)  # fmt: skip
+    one = gb.simulate(beam, gb.Flight(z=0.0), initial=gb.Initial(tip_displacement={"z": 5e-3}), **how)
+    of_system = gb.simulate(
+        gb.System.of(beam, "strip"), initial=gb.Initial(displacement={"strip.tip": {"z": 5e-3}}), **how
+    )
+    assert one.errors.displacement.shapes > 1e-3
+    for part in ("shapes", "model", "beam_theory"):
+        ours, theirs = (getattr(errors.displacement, part) for errors in (of_system.errors, one.errors))
+        assert ours == pytest.approx(theirs, rel=0.01, abs=1e-9), part
+
+
+def test_a_traced_start_is_that_of_numbers() -> None:
+    import jax
+
+    from gbeam.analysis.system.point import started, started_traced
+
+    initial = gb.Initial(displacement={"panel.tip": {"z": 4e-3, "y": 1e-3}}, velocity={"panel.tip": {"z": 0.1}})
+
+    def system(thickness: Any) -> gb.System:
+        section = gb.Section.rectangle(WIDTH, thickness)
+        beam = gb.Beam(LENGTH, section, gb.Material(DENSITY, MODULUS), damping_ratio=0.0)
+        return craft(gb.Joint("revolute", "hub", axes=[(0, 0, 1)]), gb.assemble(beam, "FOAM", axial=0, y=2, z=2), 1.0)
+
+    def begun(thickness: Any) -> Any:
+        return started_traced(system(thickness), None, 0.0, initial)
+
+    point, traced = started(system(THICKNESS), None, 0.0, initial), jax.jit(begun)(THICKNESS)
+    for ours, theirs in zip(traced, (point.y, point.yd), strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-14)
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "no point": (
+        {"displacement": {"panel.end": {"z": 1e-3}}},
+        r"displacement\.panel\.end is of panel\.end, which is no",
+    ),
+    "two bodies": (
+        {"tip_displacement": {"z": 1e-3}},
+        r"tip_displacement is of tip, and 2 bodies deform; name one of pan",
+    ),
+    "no shapes": (
+        {"velocity": {"still.tip": {"x": 1.0}}},
+        r"velocity\.still\.tip\.x is along a direction without shapes",
+    ),
+    "a body that is rigid": ({"displacement": {"hub.far": {"x": 1e-3}}}, "no point of a body that deforms"),
+    "no axis": ({"displacement": {"panel.tip": {"w": 1e-3}}}, "choose one of x, y, z"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_start_of_no_point_is_refused(name: str) -> None:
+    of, message = REFUSED[name]
+    beam = panel(axial=0, y=1, z=1)
+    hub = gb.RigidBody(1.0, (INERTIA,) * 3, points={"far": (-0.2, 0.0, 0.0)})
+    joints = {"axis": gb.Joint("revolute", "hub", axes=[(0, 0, 1)])}
+    joints |= {name: gb.Joint("fixed", name, on="hub.far") for name in ("panel", "still")}
+    with pytest.raises(gb.InputError, match=message):
+        gb.simulate(gb.System({"hub": hub, "panel": beam, "still": beam}, joints), initial=gb.Initial(**of), **SHORT)

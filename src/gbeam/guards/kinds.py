@@ -116,6 +116,7 @@ _BY_OWNER: dict[str, dict[str, Declared]] = {
     "Flight": {"x": "acceleration", "y": "acceleration", "z": "acceleration", "scale": "ratio"},
     "Gauge": {"y": "length", "z": "length"},
     "Hub": {"stiffness": "rotational stiffness", "damping": "rotational damping"},
+    "Initial": {"displacement": "length", "velocity": "speed"},
     "ImportedModel": {"nodes": "length", "mass": ""},
     "ModalTest": {"nodes": "length", "modal_mass": "mass"},
     "PointForce": {"force": "force", "moment": "torque"},

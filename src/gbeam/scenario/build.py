@@ -176,8 +176,8 @@ def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor]) -> dict[str,
 
 def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
     """Settings, over the time that all records cover if no duration is written; None, without one, or refused."""
-    from gbeam.analysis.response.problem import Initial
     from gbeam.analysis.response.settings import ResponseSettings
+    from gbeam.analysis.system.initial import Initial
     from gbeam.integrate.schemes import SCHEMES
     from gbeam.motion import Flight
 

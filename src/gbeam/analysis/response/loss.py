@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.steady.equilibrium import expanded
+from gbeam.analysis.steady.equilibrium import expanded, keeps
 from gbeam.arrays.namespace import Array
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
-from gbeam.numerics.eigen import eigenvalues, growth_rate, stability_margin, symmetric, unsymmetric
+from gbeam.numerics.eigen import eigenvalues, growth_rate, positive_definite, stability_margin, symmetric, unsymmetric
 from gbeam.results.parts import Base
 
 _BLOCK = 2000  # times whose stiffness is computed together
@@ -95,6 +95,15 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
     stretches.sort(key=lambda part: -most[part].sum())
     losses = [lost for part in stretches[:_STRETCHES] if (lost := loss(part)) is not None]
     return max(losses, key=lambda lost: lost.growth, default=None)
+
+
+def holds(structure: Structure, time: float, base: Base, q: Array) -> bool:
+    """True if a structure that rests at coordinates `q` (n,) at a time, s, stays there in a motion (3,) of its root."""
+    now = structure.at_time(time)
+    c, _ = expanded(now, q)
+    if now.load_values is not None:
+        return keeps(c, base, now.load_values)
+    return positive_definite(c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, None)[1])
 
 
 def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:

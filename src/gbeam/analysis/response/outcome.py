@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import BENT_FAR, FEW_MODES, ROUGH_MESH, cure_of_theory, percent
-from gbeam.analysis.response.loss import worst_loss
+from gbeam.analysis.response.loss import holds, worst_loss
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
@@ -84,6 +84,7 @@ def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Fl
     loss, lost, bent = None, "", ""
     if states is not None:
         base, q = states
+        begun = each_leaf(lambda values: values[0], base), q[0]
         loss, first = worst_loss(structure, time, base, q), 0
         if loss is not None:
             first = int(np.searchsorted(time, loss.start))
@@ -119,7 +120,7 @@ def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Fl
     if loss is not None and loss.growth > NOTICED:
         grows = f"whatever deviates grows {math.exp(loss.growth):.2g}-fold meanwhile{unknown}"
         warnings.append(f"{lost}, to t = {loss.end:.4g} s: {grows}")
-    elif not run.posed.start.stable:
+    elif states is not None and run.posed.settings.begin.settled and not holds(structure, time[0], *begun):
         warnings.append(
             "the run starts from an equilibrium that is not stable, which no beam would keep"
             f"{unknown or '; `gbeam critical-speed` finds where that begins'}"

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.response.problem import STATE_WORDS, start_of
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import (
     LOADS_STEPS,
@@ -28,11 +27,11 @@ from gbeam.analysis.response.stepping import (
 )
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.feedback import SystemControllers
+from gbeam.analysis.system.initial import STATE_WORDS, Initial, on_bodies
 from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
-from gbeam.arrays.namespace import Array, is_jax, namespace
+from gbeam.arrays.namespace import Array, holds_jax, is_jax
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags, Floats
-from gbeam.constants import State
 from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.driver import through
@@ -53,11 +52,10 @@ PER_PERIOD = 20  # steps of the results to a period of the slowest vibration
 
 @dataclass(frozen=True)
 class Begun:
-    """Coordinates and rates (n,) in which a run begins; `stable` is False if they are of an equilibrium that is not."""
+    """Coordinates and rates (n,) in which a run begins."""
 
     y: Array
     yd: Array
-    stable: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,10 +224,7 @@ def prepared(structure: Structure | System, motion: Motion | None, settings: Res
     if subject.ground is not None and subject.system.gravity is not None:
         fix = "leave one out: a motion carries its own, as specific force"
         raise InputError("gravity", "is given beside a motion of the base", fix)
-    begin = settings.begin
-    if not subject.body and begin != type(begin)(begin.state):
-        fix = 'give "equilibrium", "undeformed" or "relief"; joints have initial values'
-        raise InputError("initial", "displaces a tip", fix)
+    on_bodies(subject.system.flexible, (*settings.begin.displaced, *settings.begin.moving))  # raises what it refuses
     return subject
 
 
@@ -262,27 +257,24 @@ def corners(subject: Subject, step: float) -> Floats:
 
 def begun(subject: Subject, settings: ResponseSettings, time: float) -> Begun:
     """Coordinates and rates (n,) in which a system begins at a time, s."""
-    system, initial = subject.system, settings.begin
-    if subject.body:
-        q, qd, stable = start_of(subject.structure, subject.motion, time, initial)
-        ahead = len(system.tree.free) - subject.structure.size
-        q, qd = (namespace(each).concatenate([np.zeros(ahead), each]) for each in (q, qd))
-        return Begun(q, qd, stable)
-    if system.holds_jax:
-        return Begun(*started_traced(system, subject.ground, time, initial.state))
-    point = started(system, subject.ground, time, initial.state)
+    system, ground = subject.system, subject.ground
+    if system.holds_jax or holds_jax(ground):
+        return Begun(*started_traced(system, ground, time, settings.begin))
+    point = started(system, ground, time, settings.begin)
     return Begun(point.y, point.yd)
 
 
-def begun_in_words(system: System, initial: State) -> str:
+def begun_in_words(system: System, initial: Initial) -> str:
     """Sentence on the state in which a system begins."""
     floating = [name for name in system.flexible if name in system.floating]
     held = [name for name in system.flexible if name not in floating]
-    how = STATE_WORDS[initial]
-    if initial == "equilibrium" and floating:
+    if initial.displaces:
+        return f"{initial}, joints at their initial values"
+    how = STATE_WORDS[initial.state]
+    if initial.state == "equilibrium" and floating:
         of_held = f"with {', '.join(held)} in relative equilibrium, {', '.join(floating)} " if held else ""
         how = f"{of_held}undeformed ({'it floats' if len(floating) == 1 else 'they float'})"
-    deforms = system.flexible or unknown_at_start(system, initial)[0].any()
+    deforms = system.flexible or unknown_at_start(system, initial.state)[0].any()
     return f"begins {how}, joints at their initial values" if deforms else "begins with joints at their initial values"
 
 

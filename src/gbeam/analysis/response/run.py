@@ -14,8 +14,7 @@ from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantit
 from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
 from gbeam.analysis.response.contacts import creeping, missed_stop, turned_over
 from gbeam.analysis.response.peaks import peaks_of_coordinates
-from gbeam.analysis.response.posed import Posed, split
-from gbeam.analysis.response.problem import start_of
+from gbeam.analysis.response.posed import Posed, begun, split
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
@@ -233,10 +232,13 @@ class Run:
         jointed = len(posed.system.tree.free) > sum(body.size for body in self.deforming.values())
         if not jointed and (posed.before or begin.settled):
             return None
-        subject, flags = posed.subject, partial(unknown_at_start, initial=begin.state)
-        if not subject.body:
-            return Starting(flags)
-        return Starting(flags, lambda body: start_of(body, subject.motion, posed.settings.start, begin)[:2])
+
+        def state(other: System) -> tuple[Floats, Floats]:
+            start = begun(replace(posed.subject, system=other), posed.settings, posed.settings.start)
+            return start.y, start.yd
+
+        flags = partial(unknown_at_start, initial=begin.state)
+        return Starting(flags, state if begin.displaces or posed.subject.body else None)
 
     def _of_friction(self, progress: Progress) -> list[float]:
         """Errors by the smooth law of friction, of :attr:`moved` and of :meth:`loads`, which go as the rate below which

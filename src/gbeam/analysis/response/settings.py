@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypedDict
 
-from gbeam.analysis.response.problem import Initial, begun
+from gbeam.analysis.system.initial import Initial, begun
 from gbeam.arrays.tree import Value
 from gbeam.constants import Integrator, Parameter, State
 from gbeam.errors import InputError

@@ -100,7 +100,7 @@ def system_response_of(
         residual_amplitude=residual,
         kept_every=settings.kept_every(len(time), run.step, stride),
         peaks=None if traced else system_peaks(system, time, over_time),
-        initial=begun_in_words(system, settings.begin.state),
+        initial=begun_in_words(system, settings.begin),
         warnings=warnings,
         notes=notes_on({name: motion}),
         scale=level_factor(motion),

@@ -74,12 +74,12 @@ LOST = 10.0  # times the motion, or the extent of the system: a larger answer of
 
 @dataclass(frozen=True)
 class Starting:
-    """Starts of richer systems: flags of what is bent and accelerated, see :func:`unknown_at_start`, or the state in
-    which the only body that deforms begins.
+    """Starts of richer systems: flags of what is bent and accelerated, see :func:`unknown_at_start`, or the coordinates
+    and rates at which they begin, or the last of these.
     """
 
     flags: Callable[[System], tuple[Flags, Flags]]
-    state: Callable[[Structure], State] | None = None
+    state: Callable[[System], State] | None = None
 
 
 def unmoved(size: float, place: Floats) -> bool:
@@ -413,9 +413,8 @@ def _departing(
     total = departures.answer(residual, begun)
     few_shapes, truth = computed, within.moved(total)
     if not exact:
-        same = richer(solution.system, bases, exact=False, along=along).system.flexible
-        body = next(iter(same.values()))
-        start = _begun(starting, rich.system, within, departures, within.of_new, body=body)
+        same = richer(solution.system, bases, exact=False, along=along).system
+        start = _begun(starting, rich.system, within, departures, within.of_new, like=same)
         few_shapes = within.moved(total.less(departures.answer(within.of_new(residual), start)))
     alone = list[Reading]()
     for name in bases if len(bases) > 1 else ():
@@ -464,12 +463,11 @@ def _beyond(
     def begun(departures: Departures, within: Within, plate: Floats) -> State | None:
         if starting is None or starting.state is None:
             return _begun(starting, thick, within, departures, lambda left: left + within.of.q[0] @ plate)
-        (theory,) = theories.values()
-        less, more = starting.state(theory.slender), starting.state(theory.thick)
-        new = theory.thick.size - theory.slender.size
-        q, qd = (b - np.pad(a, (0, new)) for a, b in zip(less, more, strict=True))
-        before = len(within.more.names) - len(q)
-        return np.pad(q, (before, 0)), np.pad(qd, (before, 0))
+        departure = np.zeros((2, len(within.more.names)))
+        for sign, other in ((-1, bent({name: theory.slender for name, theory in theories.items()})), (1, thick)):
+            names, values = [other.coordinates[k] for k in other.tree.free], np.array(starting.state(other))
+            departure[:, [within.more.names.index(name) for name in names[-values.shape[1] :]]] += sign * values
+        return departure[0], departure[1]
 
     lacking = beyond(
         solution.posed(theories),
@@ -491,30 +489,30 @@ def _begun(
     departures: Departures,
     part: Callable[[Floats], Floats] = np.asarray,
     departing: System | None = None,
-    body: Structure | None = None,
+    like: System | None = None,
 ) -> State | None:
     """Initial departure by a `part` of the residual that a solution within another `system` leaves at the start, or to
-    the state in which its `body`, by default that of the system, begins; the `departing` system is the same unless
-    given. None in equilibrium.
+    the state in which this begins, or one `like` it; the `departing` system is the same unless given. None in
+    equilibrium.
     """
     if starting is None:
         return None
     if starting.state is not None:
-        (only,) = system.flexible.values()
-        return _departure(starting.state, only if body is None else body, within.of)
+        return _departure(starting.state, system if like is None else like, within.of)
     flags = starting.flags(system)
     left = part(within.held_residual(flags[1]))
     return departures.settled(left, *(flags if departing is None else starting.flags(departing)))
 
 
-def _departure(state: Callable[[Structure], State], body: Structure, of: Trajectory) -> State:
-    """Initial state of the only body that deforms, the last, minus that of a trajectory; NaN if there is none."""
+def _departure(state: Callable[[System], State], system: System, of: Trajectory) -> State:
+    """Initial state of a system, or of its last coordinates, minus that of a trajectory; NaN if there is none."""
     departure = np.zeros((2, of.q.shape[1]))
     try:
-        begun = state(body)
+        begun = state(system)
     except ComputationError:
         departure[:] = np.nan
         return departure[0], departure[1]
     for row, values, coordinates in zip(departure, begun, (of.q[0], of.qd[0]), strict=True):
-        row[-body.size :] = values - coordinates[-body.size :]  # the axial shapes, which SFOAM lacks, come first
+        size = len(values)
+        row[-size:] = values - coordinates[-size:]  # the axial shapes, which SFOAM lacks, come first
     return departure[0], departure[1]

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gbeam.analysis.system.initial import Initial, on_bodies, rates_of, shape_of
 from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, together
 from gbeam.arrays.types import Flags, Floats
@@ -17,7 +18,7 @@ from gbeam.integrate.equations import Trajectory, accelerations, slopes, solved
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
-from gbeam.mechanics.tree.signals import local_names, unit_of_effort
+from gbeam.mechanics.tree.signals import deforming, local_names, unit_of_effort
 from gbeam.mechanics.tree.steps import Ball
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -209,7 +210,7 @@ def _root_near(left: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]
     return z, change, False
 
 
-def started(system: System, motion: Motion | None, time: float, initial: str) -> Point:
+def started(system: System, motion: Motion | None, time: float, initial: Initial) -> Point:
     """State at the start of the joints, with the accelerations that its forces make. ComputationError where no shape of
     the bodies is as `initial` says: see :class:`gbeam.Initial`.
     """
@@ -217,22 +218,66 @@ def started(system: System, motion: Motion | None, time: float, initial: str) ->
     y, yd = (each[tree.free] for each in system.start)
     undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
     refuse_massless(system, undeformed, undeformed.slopes()[3])
-    bent, accelerated = unknown_at_start(system, initial)
-    y, ydd, adrift = solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated)
-    if adrift >= 0:
-        body, fix = system.coordinates[tree.free[adrift]].rpartition(".")[0], 'begin with initial = "undeformed"'
+    begun, bent, accelerated = _begun(system, inputs, initial)
+    y, yd = begun.q, _moving(system, begun.q, yd, initial)
+    if begun.adrift >= 0:
+        body, fix = system.coordinates[tree.free[begun.adrift]].rpartition(".")[0], 'begin with initial = "undeformed"'
         raise ComputationError("no equilibrium", f"{body} has no place to rest at the start; {fix}")
-    if not (bent | accelerated).all():  # what was held is let go
+    ydd = begun.qdd
+    if initial.acceleration is not None or initial.moving or not (bent | accelerated).all():  # what was held is let go
         (ydd,) = accelerations(tree, y[None], yd[None], undeformed.driven())
     return Point(tree, y, yd, ydd, inputs)
 
 
-def started_traced(system: System, motion: Motion | None, time: float, initial: str) -> tuple[Array, Array]:
+def started_traced(system: System, motion: Motion | None, time: float, initial: Initial) -> tuple[Array, Array]:
     """Coordinates and rates (n,) as `started` has them, of a system that JAX traces; NaN where no shape is at rest."""
-    inputs = system.inputs(np.asarray(time), motion)
-    y, yd = (each[system.tree.free] for each in system.start)
-    bent, accelerated = unknown_at_start(system, initial)
-    return solve_start(system.tree, y, yd, inputs, bent=bent, accelerated=accelerated).q if bent.any() else y, yd
+    y = _begun(system, system.inputs(np.asarray(time), motion), initial)[0].q
+    return y, _moving(system, y, system.start[1][system.tree.free], initial)
+
+
+def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Flags, Flags]:
+    """Coordinates and accelerations of a start, and flags (n,) of the coordinates that were bent and accelerated."""
+    tree, moved = system.tree, on_bodies(system.flexible, initial.displaced)
+    y, yd = (each[tree.free] for each in system.start)
+    bent, accelerated = unknown_at_start(system, initial.state)
+    if initial.acceleration is not None:  # joints are held, and what floats deforms, too
+        bodies = [_of_body(system, name).any(axis=0) for name in system.flexible]
+        bent, accelerated = np.any([bent, *bodies], axis=0), np.zeros_like(bent)
+        inputs, yd = _accelerated(inputs, np.asarray(initial.acceleration)), 0 * yd
+    for name, components in moved.items():
+        if components:
+            onto = _of_body(system, name)
+            y = y + shape_of(system.flexible[name], components) @ onto
+            held = ~onto.any(axis=0)
+            bent, accelerated = bent & held, accelerated & held
+    if not (bent | accelerated).any():
+        return Begun(y, 0 * y), bent, accelerated
+    return solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated), bent, accelerated
+
+
+def _of_body(system: System, name: str) -> Floats:
+    """Entries of one (m, n) at the free coordinates that deform a body."""
+    return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.free).astype(float)
+
+
+def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
+    """Rates (n,) of coordinates y, of which the joints' begin with `yd`."""
+    for name, components in on_bodies(system.flexible, initial.moving).items():
+        if components:
+            onto = _of_body(system, name)
+            yd = yd + rates_of(system.flexible[name], onto @ y, components) @ onto
+    return yd
+
+
+def _accelerated(inputs: Inputs, acceleration: Floats) -> Inputs:
+    """Inputs of a ground with an acceleration alone, and joints that rest."""
+    ground, still = inputs.ground, 0 * inputs.ground.w
+    moving = inputs.prescribed
+    return replace(
+        inputs,
+        ground=replace(ground, a=still + acceleration, w=still, alpha=still),
+        prescribed=None if moving is None else moving * np.array([[1.0], [0.0], [0.0]]),
+    )
 
 
 def unknown_at_start(system: System, initial: str) -> tuple[Flags, Flags]:

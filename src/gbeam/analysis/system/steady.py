@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.system.initial import Initial
 from gbeam.analysis.system.point import (
     NEAR,
     NONE,
@@ -517,7 +518,7 @@ def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
 
 def beginning(system: System, drive: Drive) -> SteadySystem:
     """System in motion as it starts, its bodies bent as in inertia relief, so that none of them is shaken."""
-    return SteadySystem(system, drive, started(system, drive.motion, drive.time, "relief"), begins=True)
+    return SteadySystem(system, drive, started(system, drive.motion, drive.time, Initial("relief")), begins=True)
 
 
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:

@@ -29,16 +29,17 @@ def resting(residual: Any, base: Base, loads: Array | None) -> Array:
     return root(force, still)
 
 
-@partial(jax.jit, static_argnames="axes")
-def displaced(structure: Any, axes: tuple[int, ...], wanted: Array) -> Array:
-    """Coordinates (n,) of least strain energy at which the tip is displaced along `axes` by `wanted`, m; NaN where
+@partial(jax.jit, static_argnames=("stations", "axes"))
+def displaced(structure: Any, stations: tuple[int, ...], axes: tuple[int, ...], wanted: Array) -> Array:
+    """Coordinates (n,) of least strain energy at which `stations` are displaced along `axes` by `wanted`, m; NaN where
     Newton's method does not converge.
     """
     n, equations = structure.size, structure.equations
 
     def energy(z: Array, share: Any) -> Array:
         q, pull = z[:n], z[n:]
-        return equations.strain_energy(q) - pull @ (structure.tip(q)[jnp.array(axes)] - share * wanted)
+        moved = structure.displacement(q)[jnp.array(stations), jnp.array(axes)]
+        return equations.strain_energy(q) - pull @ (moved - share * wanted)
 
     return root(jax.grad(energy), jnp.zeros(n + len(axes)))[:n]
 

@@ -106,8 +106,24 @@ class TipVelocity(Table):
     z: Speed | None = optional("component through the thickness")
 
 
+class PointDisplacement(Table):
+    """A displacement of a point relative to its body's root, by components; those left out are free."""
+
+    x: Offset | None = optional("component along the body, which needs axial shapes")
+    y: Offset | None = optional("component along the width")
+    z: Offset | None = optional("component through the thickness")
+
+
+class PointVelocity(Table):
+    """A velocity of a point relative to its body's root, by components; those left out are free."""
+
+    x: Speed | None = optional("component along the body, which needs axial shapes")
+    y: Speed | None = optional("component along the width")
+    z: Speed | None = optional("component through the thickness")
+
+
 class Initial(Table):
-    """The state of the beam, relative to its base, in which a response begins; a machine's with its spin-up."""
+    """The state of what deforms, relative to its root, in which a response begins; a machine's with its spin-up."""
 
     state: State = Field(
         default="equilibrium",
@@ -119,19 +135,25 @@ class Initial(Table):
     )
     acceleration: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
         'released from the static deflection under this acceleration of the root, [0, 0, "2 g"], and under '
-        "the loads then"
+        "the loads then; of a system under this of its ground, joints held where they begin"
+    )
+    displacement: dict[str, PointDisplacement] = by_name(
+        "released from the static deflection by forces at points that displace these so, relative to their bodies' "
+        'roots: { "arm.tip" = { z = "2 mm" } }; of one body by the names of its points alone'
+    )
+    velocity: dict[str, PointVelocity] = by_name(
+        "velocities of points relative to their bodies' roots, the bodies moving in the shapes of such deflections: "
+        '{ "arm.tip" = { z = "0.1 m/s" } }'
     )
     tip_displacement: TipDisplacement | None = optional(
-        "released from the static deflection by a force at the tip that displaces it so: { y, z }"
+        "displacement of the tip of the only body that deforms, in short: { y, z }"
     )
-    tip_velocity: TipVelocity | None = optional(
-        "velocity of the tip relative to the base, the beam moving in the shape of that deflection: { y, z }"
-    )
+    tip_velocity: TipVelocity | None = optional("velocity of the tip of the only body that deforms, in short: { y, z }")
 
     @property
     def settings(self) -> dict[str, Any]:
         """Settings that are written, as keywords of the object."""
-        return self.model_dump(exclude_none=True)
+        return {key: value for key, value in self.model_dump(exclude_none=True).items() if value != {}}
 
 
 class Response(Table):

@@ -330,17 +330,11 @@ class SystemScenario(Environments, Tree):
         return data
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """Errors of keys that a body in a system must not have or lacks, and of [response] keys beside joints."""
+        """Errors of keys that a body in a system must not have or lacks."""
         for name, body in self.bodies.items():
             for place, error in OF_TABLE[type(body)].among(body):
                 yield ("bodies", name, *place), error
         yield from _stations(self)
-        for key in self.response.initial.settings.keys() - {"state"}:
-            hint = "leave it out, and give the joint its initial values"
-            yield (
-                ("response", "initial", key),
-                wrong("displaces a body whose joint says where it begins", hint, mark="key"),
-            )
 
 
 class _Specimen(Titled):

@@ -1,0 +1,240 @@
+"""The state in which a response begins: as it is said, by points of bodies, and their shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, get_args
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
+from gbeam.constants import Across, Axis, State
+from gbeam.errors import ComputationError, InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import choice, finite
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import stations_of
+
+_ITERATIONS = 60
+STATE_WORDS: dict[State, str] = {
+    "equilibrium": "in relative equilibrium",
+    "undeformed": "undeformed",
+    "relief": "in inertia relief",
+}
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Initial(Value):
+    """The state of what deforms, relative to its root, in which a response begins; a machine's with its spin-up.
+
+    Joints begin at their own initial values.
+    What is given of the displacement takes the place of the equilibrium, of the bodies whose points are displaced; what
+    is not given of the velocity is zero.
+
+    Parameters
+    ----------
+    state : str
+        ``equilibrium``: at rest in the relative equilibrium with the base's motion and the loads then, a free hub at
+        rest. The bodies of a system are bent as where joints hold what they move; what floats, held by nothing but a
+        free joint without springs and prescribed rates, is undeformed. The springs of a clamp are bent, too, unless
+        the joint says where they begin; those at the root of a body that deforms let it go at once.
+        ``undeformed``: straight and at rest. ``relief``: inertia relief, bent as what is accelerated by the forces
+        at the start is bent by its inertia, so that they shake no body.
+    acceleration : (3,), optional
+        Released from the static deflection under this acceleration of the ground, or specific force, its axes, m/s²,
+        under the loads then, the joints held where they begin; of one beam, of its root, in base axes.
+    displacement : mapping of str to mapping of str to float, optional
+        Displacements of named points of bodies that deform, relative to the body's root, in its axes, by ``x``, ``y``
+        and ``z``, m, such as ``{"arm.tip": {"z": 2e-3}}``: released from the shape of least strain energy with these,
+        which is that of static forces at the points. Where one body deforms its name may be left out.
+    velocity : mapping of str to mapping of str to float, optional
+        Velocities of points relative to the body's root likewise, m/s, the body moving in the same shape.
+    tip_displacement, tip_velocity : mapping of str to float, optional
+        The same of the tip of the only body that deforms, by ``y`` and ``z``.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or two displacements are given.
+
+    Examples
+    --------
+    >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    >>> drawn = gb.Initial(tip_displacement={"z": 2e-3})
+    >>> response = gb.simulate(structure, gb.Flight(z=0.0), duration=0.5, initial=drawn)
+    >>> print(f"{1e3 * response.displacement[0, -1, 2]:.3f} mm")
+    2.000 mm
+    """
+
+    state: State = "equilibrium"
+    acceleration: Numbers | None = None
+    tip_displacement: Mapping[Across, float] | None = None
+    tip_velocity: Mapping[Across, float] | None = None
+    displacement: Mapping[str, Mapping[Axis, float]] | None = None
+    velocity: Mapping[str, Mapping[Axis, float]] | None = None
+
+    def __post_init__(self) -> None:
+        choice("state", self.state, STATE_WORDS)
+        names = "acceleration", "tip_displacement", "displacement"
+        displaced = [name for name in names if getattr(self, name) is not None]
+        if displaced and self.state != "equilibrium":
+            raise InputError(displaced[0], f'is given beside state = "{self.state}"', "keep one of them")
+        if "acceleration" in displaced and len(displaced) > 1:
+            raise InputError(displaced[1], f"is given beside {displaced[0]}", "keep one of them")
+        if self.acceleration is not None:
+            if np.shape(self.acceleration) != (3,) or not np.isfinite(np.asarray(self.acceleration, dtype=float)).all():
+                fix = "give three finite components, x, y and z"
+                raise InputError("acceleration", f"is {self.acceleration!r}", fix)
+            object.__setattr__(self, "acceleration", tuple(float(each) for each in self.acceleration))
+        for name in ("tip_displacement", "tip_velocity"):
+            for axis in getattr(self, name) or {}:
+                choice(name, axis, get_args(Across))
+        for where, _, axis, value in (*self.displaced, *self.moving):
+            choice(where.rpartition(".")[0], axis, get_args(Axis))
+            finite(where, value)
+
+    @property
+    def displaces(self) -> bool:
+        """True if it says more than a state by its name."""
+        return self != Initial(self.state)
+
+    @property
+    def settled(self) -> bool:
+        """True if it is the relative equilibrium at rest."""
+        return self == Initial()
+
+    @property
+    def displaced(self) -> tuple[Moved, ...]:
+        """Components of points' displacements."""
+        return (*_moved("tip_displacement", {"tip": self.tip_displacement}), *_moved("displacement", self.displacement))
+
+    @property
+    def moving(self) -> tuple[Moved, ...]:
+        """Components of points' velocities."""
+        return (*_moved("tip_velocity", {"tip": self.tip_velocity}), *_moved("velocity", self.velocity))
+
+    def __str__(self) -> str:
+        if self.acceleration is not None:
+            words = f"in the static deflection under ({', '.join(f'{a:.4g}' for a in self.acceleration)}) m/s²"
+        elif self.displaced:
+            words = f"with {_in_words(self.displaced, 'displaced by', 1e3, 'mm')}, as by a force there"
+        else:
+            words = STATE_WORDS[self.state]
+        return f"begins {words}, {self.speed}"
+
+    @property
+    def speed(self) -> str:
+        """Words on the rates at which it begins."""
+        return _in_words(self.moving, "moving at", 1.0, "m/s") if self.moving else "at rest"
+
+
+class Moved(NamedTuple):
+    """A component, m or m/s, of a point's displacement or velocity, and where it is given."""
+
+    where: str
+    point: str
+    axis: Axis
+    value: float
+
+
+def _moved(where: str, points: Mapping[str, Mapping[Any, float] | None] | None) -> list[Moved]:
+    """Components of points by name; those of the tip alone are given without its name."""
+    of = {name: values or {} for name, values in (points or {}).items()}
+    places = {name: where if where.startswith("tip_") else f"{where}.{name}" for name in of}
+    return [Moved(f"{places[name]}.{axis}", name, axis, of[name][axis]) for name in of for axis in of[name]]
+
+
+def _in_words(moved: Sequence[Moved], how: str, size: float, unit: str) -> str:
+    """Say how points are displaced or move."""
+    by_point = dict[str, list[str]]()
+    for _, point, axis, value in moved:
+        by_point.setdefault("its tip" if point == "tip" else point, []).append(f"{axis} {size * value:.4g} {unit}")
+    return " and ".join(f"{point} {how} {', '.join(values)}" for point, values in by_point.items())
+
+
+def begun(initial: Initial | State) -> Initial:
+    """The initial state, or that which a name stands for; InputError if it is neither."""
+    if isinstance(initial, Initial):
+        return initial
+    choice("initial", initial, STATE_WORDS)
+    return Initial(initial)
+
+
+def on_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) -> dict[str, list[Moved]]:
+    """Components by the names of bodies that deform, the points without them. A point may be named without its body
+    where one alone deforms. InputError if there is no such point, or no shape moves it so.
+    """
+    out: dict[str, list[Moved]] = {name: [] for name in flexible}
+    for each in moved:
+        owner, _, point = each.point.rpartition(".")
+        points = [f"{name}.{station}" for name, body in flexible.items() for station in stations_of(body)]
+        if not owner and len(flexible) == 1:
+            (owner,) = flexible
+        where = f"response.initial.{each.where}"
+        if f"{owner}.{point}" not in points:
+            problem = f"is of {each.point}, which is no point of a body that deforms"
+            if not owner and len(flexible) > 1:
+                problem = f"is of {each.point}, and {len(flexible)} bodies deform"
+            fix = f"name one of {', '.join(points)}" if points else "leave it out: no body deforms"
+            raise InputError(where.rpartition(".")[0], problem, fix)
+        body = flexible[owner]
+        number = "xyz".index(each.axis)
+        if not np.any(body.station_places.first[stations_of(body)[point], number]):
+            family = ("axial", "y", "z")[number]
+            fix = f"give model.modes.{family} = 1 or more"
+            raise InputError(where, "is along a direction without shapes", fix)
+        if any((point, each.axis) == (other.point, other.axis) for other in out[owner]):
+            raise InputError(where, "is given twice", "keep one of them")
+        out[owner].append(Moved(where, point, each.axis, each.value))
+    return out
+
+
+def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
+    """Coordinates (n,) of least strain energy with displacements of points, by Newton's method with multipliers; NaN
+    where JAX traces the body and there are none.
+    """
+    stations, axes, wanted = _rows(body, moved)
+    if body.traced:
+        from gbeam.mechanics.equations.compiled import displaced
+
+        return displaced(body, stations, axes, wanted)
+    q = np.zeros(body.size)
+    for _ in range(_ITERATIONS):
+        coefficients, elastic = body.about(q)
+        left = wanted - body.displacement(q)[stations, axes]
+        change = _constrained(coefficients.stiffness, -elastic, body.station_slopes(q)[stations, axes], left)
+        q = q + change
+        if np.abs(change).max() <= 1e-12 * np.abs(q).max():
+            return q
+    words = _in_words(moved, "displaced by", 1e3, "mm")
+    raise ComputationError("not converged", f"no shape of the beam has {words}; give less")
+
+
+def rates_of(body: Structure, q: Array, moved: Sequence[Moved]) -> Array:
+    """Rates (n,) with velocities of points, in the shape of least strain energy; zero without any."""
+    if not moved:
+        return 0.0 * q
+    stations, axes, wanted = _rows(body, moved)
+    return _constrained(body.coefficients.stiffness, 0.0 * q, body.station_slopes(q)[stations, axes], wanted)
+
+
+def _rows(body: Structure, moved: Sequence[Moved]) -> tuple[tuple[int, ...], tuple[int, ...], Array]:
+    """Stations and axes of components, and their values (k,)."""
+    indices = stations_of(body)
+    stations, axes = (
+        tuple(each) for each in zip(*((indices[m.point], "xyz".index(m.axis)) for m in moved), strict=True)
+    )
+    return stations, axes, np.asarray([m.value for m in moved], dtype=float)
+
+
+def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) -> Array:
+    """Solve K x = f + Jᵀ λ with J x = v for x (n,)."""
+    solve = namespace(stiffness, force, slopes).linalg.solve
+    unconstrained, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
+    return unconstrained + shapes @ solve(slopes @ shapes, value - slopes @ unconstrained)
