@@ -14,7 +14,7 @@ from gbeam.analysis.automatic import sufficient
 from gbeam.analysis.case import Case
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
-from gbeam.errors import ComputationError, InputError, placing_within
+from gbeam.errors import ComputationError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.numerics.peaks import vector_peaks
 from gbeam.progress import Progress, tell
@@ -61,9 +61,9 @@ def study(case: Case, progress: Progress = None) -> Any:
     0.0%
     """
     settings = case.over_time
-    if case.automatic and not settings.estimate:
+    if not settings.estimate:
         fix = "give it, or leave response.estimate out"
-        raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
+        case.refuse_automatic("is left out, and estimate = false leaves nothing to choose it by", fix)
     limits = {"shapes": min(settings.tolerance / 3, ENOUGH), "strains": settings.tolerance}
     case, (responses, failures) = sufficient(case, partial(_answers, progress=progress), _errors_of, **limits)
     return study_of(case, responses, failures)
