@@ -86,6 +86,18 @@ def test_automatic_numbers_of_shapes_twist_and_shear_a_stout_bar() -> None:
     assert slender.error_estimate.max() > 0.05
 
 
+def test_a_body_of_a_system_has_as_many_shapes_as_its_errors_ask_for() -> None:
+    """The bar at the end of a rigid arm that is clamped on the ground has Timoshenko's frequencies, too."""
+    bar = gb.assemble(beam(5 * THICKNESS), gb.Model.of("FOAM"))
+    arm = gb.RigidBody(1.0, (0.1, 0.1, 0.1), points={"end": (0.2, 0.0, 0.0)})
+    joints = {"foot": gb.Joint("fixed", "arm"), "clamp": gb.Joint("fixed", "bar", "arm.end")}
+    case = gb.Case("bar", gb.System({"arm": arm, "bar": bar}, joints), {}, None)
+    lowest = np.sort(modes(case).frequency)[:6]
+    for expected in timoshenko(5 * THICKNESS, 2):
+        assert np.abs(lowest / expected - 1).min() < 1e-4
+    assert list(case.automatic_beams) == ["bar"]
+
+
 def test_numbers_that_are_given_are_kept() -> None:
     case = gb.Case.of_beam("bar", beam(5 * THICKNESS), gb.Model("FOAM", axial=1, y=2, z=2), {}, None)
     assert len(modes(case).frequency) == 5

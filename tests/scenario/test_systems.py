@@ -185,7 +185,6 @@ MISSING = {
     'kind = "free"\nbody = "bus"\n': ("joints.orbit", "kind is missing"),
     "axes = [[0, 1, 0]]\n": ("joints.hinge_left", "axes is missing"),
     'mass = "50 kg"\n': ("bodies.bus", "mass is missing"),
-    ", modes = { axial = 0, y = 1, z = 2 }": ("bodies.left.model", "modes is missing"),
 }
 
 

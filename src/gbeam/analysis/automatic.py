@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from gbeam.analysis.case import Case
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
+from gbeam.mechanics.assembly import model_of, remade, stations_asked
 from gbeam.mechanics.models import STRAINS, Model, StrainName
 from gbeam.mechanics.plausibility import refuse_unknown
+from gbeam.mechanics.structure import Structure
 from gbeam.results.errors import FrequencyErrors, Lacking
 from gbeam.structure.beam import Beam
 
@@ -35,10 +37,10 @@ def sufficient(
     answer = ask(case)
     while case.automatic:
         errors = [each for each in errors_of(answer) if each is not None]
-        richer = _richer(case.model, case.beam, errors, shapes, strains)
-        if richer is None:
+        richer = _richer_bodies(case, errors, shapes, strains)
+        if not richer:
             break
-        case = case.remade(model=richer)
+        case = replace(case, system=replace(case.system, bodies={**case.system.bodies, **richer}))
         answer = ask(case)
     return case, answer
 
@@ -50,6 +52,17 @@ def of_lowest(frequency: Floats, errors: FrequencyErrors | None) -> FrequencyErr
     lowest = np.argsort(frequency)[:LOWEST]
     unseen = tuple(each for each in errors.unseen if each < frequency[lowest[-1]])
     return replace(errors[lowest], unseen=unseen)
+
+
+def _richer_bodies(case: Case, errors: list[Lacking], shapes: float, strains: float) -> dict[str, Structure]:
+    """Beams of a case with what the errors of one with fewer shapes ask for, by name."""
+    richer = {}
+    for name, body in case.automatic_beams.items():
+        source: Any = body.source
+        model = _richer(model_of(body), source.beam, errors, shapes, strains)
+        if model is not None:
+            richer[name] = remade(body, model, stations_asked(body))
+    return richer
 
 
 def _richer(model: Model, beam: Beam, errors: Iterable[Lacking], shapes: float, strains: float) -> Model | None:

@@ -13,7 +13,9 @@ from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import kinds
+from gbeam.mechanics.assembly import model_of
 from gbeam.mechanics.models import Model
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -176,8 +178,19 @@ class Case(OneBody, Value):
 
     @property
     def automatic(self) -> bool:
-        """True if a study chooses the numbers of shapes of the only beam by the errors that they leave."""
-        return self.only_beam is not None and self.model.automatic
+        """True if a study chooses the numbers of shapes of a beam by the errors that they leave."""
+        return bool(self.automatic_beams)
+
+    @property
+    def automatic_beams(self) -> Mapping[str, Structure]:
+        """Bodies whose numbers of shapes a study chooses, by name."""
+        beams = {name: body for name, body in self.system.flexible.items() if body.source is not None}
+        return {name: body for name, body in beams.items() if model_of(body).automatic}
+
+    def refuse_automatic(self, problem: str, fix: str) -> None:
+        """Raise InputError, at the place of its numbers of shapes, where a beam leaves them to be chosen."""
+        for name in self.automatic_beams:
+            raise InputError("model.modes" if name == BEAM else f"bodies.{name}.model.modes", problem, fix)
 
     @property
     def environments(self) -> Mapping[str, Motion | None]:

@@ -14,7 +14,7 @@ from gbeam.analysis.automatic import sufficient
 from gbeam.analysis.case import Case
 from gbeam.analysis.imitation.comparison import compare
 from gbeam.analysis.response.simulation import simulate
-from gbeam.errors import ComputationError, InputError, placing_within
+from gbeam.errors import ComputationError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.numerics.peaks import vector_peaks
 from gbeam.progress import Progress, tell
@@ -60,13 +60,18 @@ def study(case: Case, progress: Progress = None) -> Any:
     >>> print(f"{answer.comparisons[0].relative[2]:.1%}")
     0.0%
     """
+    return studied(case, progress)[1]
+
+
+def studied(case: Case, progress: Progress = None) -> tuple[Case, Study]:
+    """A case with as many shapes as its responses need, where their numbers are automatic, and its study."""
     settings = case.over_time
-    if case.automatic and not settings.estimate:
+    if not settings.estimate:
         fix = "give it, or leave response.estimate out"
-        raise InputError("model.modes", "is left out, and estimate = false leaves nothing to choose it by", fix)
+        case.refuse_automatic("is left out, and estimate = false leaves nothing to choose it by", fix)
     limits = {"shapes": min(settings.tolerance / 3, ENOUGH), "strains": settings.tolerance}
     case, (responses, failures) = sufficient(case, partial(_answers, progress=progress), _errors_of, **limits)
-    return study_of(case, responses, failures)
+    return case, study_of(case, responses, failures)
 
 
 def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})) -> Study:

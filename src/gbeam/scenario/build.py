@@ -103,7 +103,8 @@ def _of_beam(parts: Collector, scenario: schema.Scenario) -> System | None:
     from gbeam.analysis.one_body import structure_of
     from gbeam.mechanics.tree.system import System
 
-    beam, model = beam_of(parts, "beam", scenario.beam), model_of(parts, "model", scenario.model)
+    beam = beam_of(parts, "beam", scenario.beam)
+    model = model_of(parts, "model", scenario.model, beam)
     if beam is None or model is None:
         return None
     return System.of(structure_of(beam, model, scenario.response.stations or ()), BEAM)

@@ -172,10 +172,11 @@ def _load(parts: Collector, where: str, table: schema.Load) -> Load | None:
     return None if None in built.values() else parts.attempt(where, Load, table.at, follower=table.follower, **built)
 
 
-def model_of(parts: Collector, where: str, table: schema.Model) -> Model | None:
-    """The model of a table; without numbers of modes, one that chooses them automatically. None if it is refused."""
+def model_of(parts: Collector, where: str, table: schema.Model, beam: Beam | None) -> Model | None:
+    """The model of a table for a beam; without numbers of modes, one that chooses them. None if it is refused."""
     from gbeam.mechanics.models import Model
 
     if table.modes is None:
-        return parts.attempt(where, Model.of, table.kind, table.shapes)
+        coupled = beam is not None and beam.coupled
+        return parts.attempt(where, Model.of, table.kind, table.shapes or ("clamped-free" if coupled else None))
     return parts.attempt(where, Model, table.kind, shapes=table.shapes or "clamped-free", **table.modes.model_dump())

@@ -219,6 +219,8 @@ class Line(Value):
         """
         at = np.atleast_1d(np.asarray(x, dtype=float))
         place, axes = np.zeros((len(at), 3)), np.zeros((len(at), 3, 3))
+        if not at.size:  # of no bodies, as every response asks
+            return place, axes
         from scipy.integrate import solve_ivp  # these take longer to import than a straight beam to compute
         from scipy.spatial.transform import Rotation
 

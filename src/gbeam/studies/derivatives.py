@@ -21,6 +21,7 @@ from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.io.kept import unkept
+from gbeam.mechanics.assembly import model_of, remade, stations_asked
 from gbeam.mechanics.tree.system import System
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
@@ -302,8 +303,13 @@ class Quantities:
 
 
 def in_model_of(like: Case, case: Case) -> Case:
-    """The case with as many shapes as another, where both are of a beam alone and their numbers are automatic."""
-    return case.remade(model=like.model) if like.automatic and case.model != like.model else case
+    """The case with as many shapes as another, of every beam whose numbers are automatic there."""
+    bodies = {
+        name: remade(case.system.flexible[name], model_of(body), stations_asked(case.system.flexible[name]))
+        for name, body in like.automatic_beams.items()
+        if model_of(case.system.flexible[name]) != model_of(body)
+    }
+    return replace(case, system=replace(case.system, bodies={**case.system.bodies, **bodies})) if bodies else case
 
 
 def _differentiable(system: System) -> bool:

@@ -114,8 +114,7 @@ def shape_hub_command(
     """
     command = driven_of(template_of(scenario, overrides).built(), motion, joint)
     case, name, hub, where = command.case, command.name, command.hub, command.where
-    if case.automatic:
-        raise InputError("model.modes", "is left out, and a command knows the modes of given shapes", "give it")
+    case.refuse_automatic("is left out, and a command knows the modes of given shapes", "give it")
     if check and check not in KINDS:
         raise InputError("--check", f"is {check!r}", advise(check, KINDS))
     if check and not any(body.source for body in case.system.flexible.values()):

@@ -44,7 +44,7 @@ def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
         return BENT_FAR if model > shapes else FEW_MODES
     if not shapes >= model:
         return "the model", 'check with model.kind = "exact"'
-    return "too few shapes", "raise model.modes; one [beam] that leaves them out has enough for the lowest six"
+    return "too few shapes", "raise model.modes, or leave them out: then there are enough for the lowest six"
 
 
 def fuller(errors: ErrorEstimate) -> str:
@@ -98,7 +98,7 @@ NOTHING = 1e-7  # of what another load makes
 UNMOVED = 1e-14  # of the length
 ROUNDING = sys.float_info.epsilon  # of a peak
 FEW_MODES = "too few modes", "raise modes"
-MORE_SHAPES = "raise its model.modes, of a mesh its modes"  # systems have no automatic number of modes
+MORE_SHAPES = "raise its model.modes, of a mesh its modes"
 BENT_FAR = "the bend, in which its stiffness is of first order", "give a strip or a rod as [beam], which is exact"
 ROUGH_MESH = "the mesh", "mesh it finer"
 NO_MESH = "the mesh is not judged"

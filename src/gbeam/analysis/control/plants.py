@@ -21,7 +21,7 @@ from gbeam.analysis.system.histories import deflection
 from gbeam.analysis.system.steady import Drive, SteadySystem, steady, undeformed
 from gbeam.arrays.tree import altered
 from gbeam.arrays.types import Floats
-from gbeam.errors import InputError
+from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import accelerations, slopes
@@ -328,6 +328,8 @@ class OnJoint:
         # Derivatives need the states at all ends of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
         run = through(posed.equations, scheme, posed.start.y, posed.start.yd, steps)
+        if len(run.q) <= len(steps):
+            raise ComputationError("diverged", f"the run of a command ends at {run.time[-1]:.4g} s, before its time")
 
         def command(profile: Profile, time: Floats) -> Floats:
             """The effort (t, 1), or angle, rate and acceleration (t, 3)."""

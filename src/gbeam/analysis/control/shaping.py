@@ -271,7 +271,12 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         tell(progress, words, 0.0)
         width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
         pairs = [(commands.of(inner - width / 2 * move), commands.of(inner + width / 2 * move)) for move in moves.T]
-        nominal, varied = plant.about(commands.of(inner), settings, pairs, width, partial(tell, progress, words))
+        try:
+            nominal, varied = plant.about(commands.of(inner), settings, pairs, width, partial(tell, progress, words))
+        except ComputationError:
+            if not k:
+                raise
+            break  # the last step went too far
         residual = _left(nominal, commands.goal.duration) / design.scale
         size = float(np.linalg.norm(residual))
         if size < least:

@@ -59,7 +59,11 @@ def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
     numbers, known = Numbers(), facts(result)
     view = viewer(known["form"]["kind"], known, variables_of(result) if isinstance(result, SHOWN) else {}, numbers)
     if not view:
-        raise InputError("result", f"{type(result).__name__} has no motion to show", "print it, or plot it")
+        kind = type(result).__name__
+        problem = (
+            f"{kind} is of nodes, with no surface to show" if isinstance(result, SHOWN) else f"{kind} has no motion"
+        )
+        raise InputError("result", problem, "print it, or plot it")
     return {"plots": [], "maps": [], **view}, numbers
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
-from pydantic_core import PydanticCustomError
 
 from gbeam.scenario.bodies.common import BodyKind
 from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.fields import Loc, Position, listed, wrong
+from gbeam.scenario.schema.fields import Position, listed
 from gbeam.scenario.schema.scenario import Model
 
 if TYPE_CHECKING:
@@ -22,7 +20,7 @@ class BeamBody(Beam):
     """A beam as a body: the keys of [beam], and its model. Its points are its named ones, tip and root."""
 
     kind: Literal["beam"] = Field(description="kind of the body")
-    model: Model = Field(description="the model of its deformation; modes are to be given: { kind, modes, shapes }")
+    model: Model = Field(description="the model of its deformation: { kind, modes, shapes }")
     stations: tuple[Position, ...] = listed(
         "positions from the root of sections with loads and stress, beside those of its points"
     )
@@ -32,14 +30,9 @@ def _body(parts: Collector, where: str, table: BeamBody) -> Structure | None:
     from gbeam.mechanics.assembly import assemble
     from gbeam.scenario.build_beam import beam_of, model_of
 
-    beam, model = beam_of(parts, where, table), model_of(parts, f"{where}.model", table.model)
+    beam = beam_of(parts, where, table)
+    model = model_of(parts, f"{where}.model", table.model, beam)
     return None if beam is None or model is None else parts.attempt(where, assemble, beam, model, table.stations)
 
 
-def _among(table: BeamBody) -> Iterator[tuple[Loc, PydanticCustomError]]:
-    if table.model.modes is None:
-        hint = "add modes = { axial = 1, y = 2, z = 2 }: numbers of shapes of a body are not chosen"
-        yield ("model",), wrong("modes is missing", hint, mark="key")
-
-
-BODY = BodyKind(BeamBody, _body, among=_among)
+BODY = BodyKind(BeamBody, _body)
