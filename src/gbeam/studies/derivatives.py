@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case
-from gbeam.analysis.environments import study, study_of
+from gbeam.analysis.environments import studied, study_of
 from gbeam.analysis.response.differentiated import Differentiated, Grid, Variant
 from gbeam.analysis.response.simulation import simulate
 from gbeam.errors import ComputationError, GbeamError, InputError
@@ -78,8 +78,7 @@ class Neighbourhood:
         self.answer: Any
         if self.runs:
             if grids is None:
-                self.answer = study(self.case, self.progress)
-                self._enrich()
+                self.case, self.answer = studied(self.case, self.progress)
             else:
                 runs = {name: self._differentiated(name, grid).unvaried() for name, grid in grids.items()}
                 self.answer = study_of(self.case, runs)
@@ -226,12 +225,6 @@ class Neighbourhood:
         of_motions = [place.startswith("motion.") for place in self.parameters[k].places]
         motion = case.environments[name] if any(of_motions) else None
         return None if all(of_motions) else case.subject, motion
-
-    def _enrich(self) -> None:
-        """Give the case's model as many shapes as the runs of the study took."""
-        if self.case.automatic and self.answer.responses:
-            counts = next(iter(self.answer.responses.values())).shapes
-            self.case = self.case.remade(model=replace(self.case.model, **counts))
 
 
 class Quantities:

@@ -74,7 +74,7 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Wit
     residuals = [[_residual(posed, within) for posed in pair] for pair in pairs]
 
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        inputs = nominal.drive(time)
+        inputs = nominal.equations.drive(time)
         if isinstance(residual, _Linear):
             mass, c, k, f = residual.slopes(inputs)
             qdd = np.linalg.solve(mass[0], (f - (k @ q[..., None] + c @ qd[..., None])[..., 0]).T).T
@@ -85,7 +85,7 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Wit
         for j, pair in enumerate(pairs):
             # A parameter of the bodies alone leaves the motion as it is.
             less, more = (
-                residual_of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.drive(time))
+                residual_of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.equations.drive(time))
                 for residual_of, posed in zip(residuals[j], pair, strict=True)
             )
             forces[..., j] = -(more - less) / width[j]
