@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -179,6 +180,24 @@ def test_a_force_moves_it_too_and_an_inertia_that_changes_is_said() -> None:
     options = {"angle": 1.0, "duration": 5.0, "robust": 0.1}
     turned = gb.shape_command(gb.System({"arm": arm, "panel": PANEL}, joints), "elbow.angle", **options)  # type: ignore[arg-type]
     assert "shaped moves by 0.96" in turned.warnings[0] and "another inertia on its way" in turned.warnings[0]
+
+
+def test_a_refinement_that_cannot_be_run_keeps_the_command_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A free body under a constant thrust had a refined command so large that its run broke off: an IndexError."""
+    from gbeam.analysis.control.plants import OnJoint
+
+    about, rounds = OnJoint.about, []
+
+    def breaking(self: OnJoint, *of: Any) -> Any:
+        rounds.append(of)
+        if len(rounds) > 1:
+            raise gb.ComputationError("diverged", "the run of a command ends at 0.01 s, before its time")
+        return about(self, *of)
+
+    monkeypatch.setattr(OnJoint, "about", breaking)
+    options: dict[str, Any] = {"distance": 5.0, "duration": 8.0, "point": "load.hook"}
+    shaped = gb.shape_command(crane(effort=0.0), "rail.displacement", **options)
+    assert len(rounds) == 2 and shaped.outcome == "done"
 
 
 def test_joints_that_no_command_leaves_at_rest_are_refused() -> None:

@@ -188,7 +188,13 @@ class Case(OneBody, Value):
         return {name: body for name, body in beams.items() if model_of(body).automatic}
 
     def refuse_automatic(self, problem: str, fix: str) -> None:
-        """Raise InputError, at the place of its numbers of shapes, where a beam leaves them to be chosen."""
+        """Raise InputError, at the place of its numbers of shapes, where a beam leaves them to be chosen.
+
+        Parameters
+        ----------
+        problem, fix : str
+            Of the error.
+        """
         for name in self.automatic_beams:
             raise InputError("model.modes" if name == BEAM else f"bodies.{name}.model.modes", problem, fix)
 
