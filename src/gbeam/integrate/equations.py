@@ -163,7 +163,8 @@ def expanded(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tup
         values = residual(*(value + steps[:, :, k] for k, value in enumerate(state)), inputs_piece)
         pieces.append(values)
     every = np.concatenate(pieces, axis=1)
-    return every[0].real, (every.imag / STEP).reshape(3, n, len(q), every.shape[-1]).transpose(0, 2, 3, 1)
+    value = every[0].real if n else residual(q, qd, qdd, inputs)
+    return value, (every.imag / STEP).reshape(3, n, len(q), every.shape[-1]).transpose(0, 2, 3, 1)
 
 
 def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:

@@ -350,6 +350,8 @@ def _newton(
         point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], accelerated))
     for _ in range(RELAXING if relaxing else ITERATIONS):
         left, k, c, m = point.slopes()
+        if not np.isfinite(left).all():
+            return point, (k, c, m), left, False
         change = relaxation(left, k, m, accelerated) if relaxing else balanced(left - left_over, k, m, accelerated)[0]
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
@@ -424,6 +426,8 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
         return _rested_at_once(Point(tree, still, still, still, inputs))
     begun = point = Point(tree, (system.start[0] if start is None else start)[tree.free], still, still, inputs)
     residual, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
+    if not np.isfinite(residual).all():
+        raise ComputationError("no equilibrium", "the forces are not finite where the search begins")
     while reached < 1.0:
         share = min(reached + stride, 1.0)
         moved, slope, change, converged = _newton(point, (1.0 - share) * residual, shrinking=nearby)
@@ -485,7 +489,9 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
     """
     still, y = np.zeros(len(tree.free)), system.start[0][tree.free]
     left, k, _, m = Point(tree, y, still, still, _eased(inputs, 0.0)).slopes()
-    course = answered(k, m, left - tree(y, still, still, inputs))  # dy/dshare, along which a stride starts
+    pull = left - tree(y, still, still, inputs)
+    # dy/dshare, along which a stride starts
+    course = answered(k, m, pull) if np.isfinite(pull).all() else still
     holds, reached, stride = True, 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
