@@ -14,6 +14,7 @@ from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
 from gbeam.mechanics.tree.system import System
+from gbeam.numerics.eigen import positive_definite
 from gbeam.results.parts import Base
 
 
@@ -62,9 +63,12 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     """
     system, still = System.of(structure if time is None else structure.at_time(time), "beam"), np.zeros(structure.size)
     drive = Drive(base=base)
-    if not holds_jax(system.tree, base, system.flexible["beam"].load_values):
+    loads = system.flexible["beam"].load_values
+    if not holds_jax(system.tree, base, loads):
         state = steady(system, drive)
-        return Equilibrium(state.point.y, state.stable)
+        # Loads that follow the beam may shake it, which inertia decides.
+        stable = positive_definite(state.point.slopes()[1]) if loads is None else state.stable
+        return Equilibrium(state.point.y, stable)
     if is_linear(system.tree):
         import jax.numpy as jnp
 

@@ -528,6 +528,8 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     coordinates, InputError where some motion has no mass. `slope` is K, C and M.
     """
     tree, (k, c, m) = point.tree, slope
+    if len(tree.free) == sum(link.body.size for link in tree.links) and bends_back(tree, k):
+        return point  # the stiffness holds all, whatever its mass
     refuse_massless(system, point, m)
     slides, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
     turns = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)

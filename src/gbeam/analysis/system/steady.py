@@ -18,6 +18,7 @@ from gbeam.analysis.system.point import (
     adrift,
     bends_back,
     followed,
+    refuse_massless,
     relaxed,
     rested,
     rested_together,
@@ -264,6 +265,8 @@ class SteadySystem(Steady):
         k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
             raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
+        if self.point.minimal:  # of others mass is looked at where they rest
+            refuse_massless(self.system, self.point, m)
         for name, body in self.system.flexible.items():
             if (bending := body.coefficients.bending) is not None:
                 columns = deforming(self.names, name)
