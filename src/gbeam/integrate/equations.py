@@ -152,12 +152,19 @@ FEWEST = 50  # states evaluated at once: of fewer, each call costs more than its
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
     """Derivatives (3, t, r, n) of a function (t, r) by q, q̇, q̈ (t, n), of a residual K, C, M, at inputs (t, ...)."""
+    return expanded(residual, q, qd, qdd, inputs)[1]
+
+
+def expanded(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array]:
+    """Values (t, r) of a function, and its derivatives as of :func:`slopes`, which are evaluated together."""
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
     for *state, inputs_piece in _pieces(n**2, q, qd, qdd, inputs):
         values = residual(*(value + steps[:, :, k] for k, value in enumerate(state)), inputs_piece)
-        pieces.append(values.imag / STEP)
-    return np.concatenate(pieces, axis=1).reshape(3, n, len(q), pieces[0].shape[-1]).transpose(0, 2, 3, 1)
+        pieces.append(values)
+    every = np.concatenate(pieces, axis=1)
+    value = every[0].real if n else residual(q, qd, qdd, inputs)
+    return value, (every.imag / STEP).reshape(3, n, len(q), every.shape[-1]).transpose(0, 2, 3, 1)
 
 
 def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:

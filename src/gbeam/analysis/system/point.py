@@ -14,7 +14,7 @@ from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, together
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError, InputError
-from gbeam.integrate.equations import Trajectory, accelerations, slopes, solved
+from gbeam.integrate.equations import Trajectory, accelerations, expanded, slopes, solved
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
@@ -92,8 +92,10 @@ class Point:
         if is_linear(self.tree):
             m, c, k, force = frozen_equations(self.tree, self.inputs)
             return m @ self.ydd + c @ self.yd + k @ self.y - force, k, c, m
-        k, c, m = slopes(self.tree.frictionless, self.y[None], self.yd[None], self.ydd[None], self.driven())
-        return self.tree(self.y, self.yd, self.ydd, self.inputs), k[0], c[0], m[0]
+        rubs = any(link.holder.friction.any() for link in self.tree.links)
+        tree = self.tree.frictionless if rubs else self.tree
+        left, (k, c, m) = expanded(tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
+        return self.tree(self.y, self.yd, self.ydd, self.inputs) if rubs else left[0], k[0], c[0], m[0]
 
     def standing(self, time: float = 0.0) -> Trajectory:
         """A trajectory of this state alone."""
@@ -348,6 +350,8 @@ def _newton(
         point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], accelerated))
     for _ in range(RELAXING if relaxing else ITERATIONS):
         left, k, c, m = point.slopes()
+        if not np.isfinite(left).all():
+            return point, (k, c, m), left, False
         change = relaxation(left, k, m, accelerated) if relaxing else balanced(left - left_over, k, m, accelerated)[0]
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
@@ -410,24 +414,26 @@ def rested_together(
     return points
 
 
-def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None) -> Point:
+def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None, *, nearby: bool = False) -> Point:
     """State of a tree in relative equilibrium: rates are zero, and only coordinates that nothing holds are accelerated.
 
     Linear equations are solved at once. If there are several states, the nearest one to coordinates `start`, by default
     the joints' start with bodies undeformed. Where Newton's method fails from there, the residual at the start is taken
-    away in shares. ComputationError if there is no equilibrium.
+    away in shares, or not at all if the state has to be `nearby`. ComputationError if there is no equilibrium.
     """
     still = np.zeros(len(tree.free))
     if is_linear(tree):
         return _rested_at_once(Point(tree, still, still, still, inputs))
     begun = point = Point(tree, (system.start[0] if start is None else start)[tree.free], still, still, inputs)
     residual, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
+    if not np.isfinite(residual).all():
+        raise ComputationError("no equilibrium", "the forces are not finite where the search begins")
     while reached < 1.0:
         share = min(reached + stride, 1.0)
-        moved, slope, change, converged = _newton(point, (1.0 - share) * residual)
+        moved, slope, change, converged = _newton(point, (1.0 - share) * residual, shrinking=nearby)
         if converged:
             point, reached, stride = moved, share, 2 * stride
-        elif stride > SHORTEST:
+        elif stride > SHORTEST and not nearby:
             stride /= 4
         else:
             _steady(system, begun, begun.slopes()[1:])
@@ -483,7 +489,9 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
     """
     still, y = np.zeros(len(tree.free)), system.start[0][tree.free]
     left, k, _, m = Point(tree, y, still, still, _eased(inputs, 0.0)).slopes()
-    course = answered(k, m, left - tree(y, still, still, inputs))  # dy/dshare, along which a stride starts
+    pull = left - tree(y, still, still, inputs)
+    # dy/dshare, along which a stride starts
+    course = answered(k, m, pull) if np.isfinite(pull).all() else still
     holds, reached, stride = True, 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
@@ -520,6 +528,8 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     coordinates, InputError where some motion has no mass. `slope` is K, C and M.
     """
     tree, (k, c, m) = point.tree, slope
+    if len(tree.free) == sum(link.body.size for link in tree.links) and bends_back(tree, k):
+        return point  # the stiffness holds all, whatever its mass
     refuse_massless(system, point, m)
     slides, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
     turns = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)

@@ -18,6 +18,7 @@ from gbeam.analysis.system.point import (
     adrift,
     bends_back,
     followed,
+    refuse_massless,
     relaxed,
     rested,
     rested_together,
@@ -57,6 +58,7 @@ from gbeam.results.errors import Accelerated
 from gbeam.results.parts import Base
 
 MASSLESS = "no positive mass"  # an outcome
+PREDICTED = 1e-3  # of the coordinates: a state so near to where those of lower drives lead has not left their path
 SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
 SAME, STILL = 1e-6, 1e-9  # of modes' matrices, and m or rad: what changes with the angle changes by more
 CORRECTIONS, CLOSE = 50, 1e-12  # of joints beside bodies that are held: their number, and m or rad
@@ -263,6 +265,8 @@ class SteadySystem(Steady):
         k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
             raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
+        if self.point.minimal:  # of others mass is looked at where they rest
+            refuse_massless(self.system, self.point, m)
         for name, body in self.system.flexible.items():
             if (bending := body.coefficients.bending) is not None:
                 columns = deforming(self.names, name)
@@ -524,14 +528,21 @@ def beginning(system: System, drive: Drive) -> SteadySystem:
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
     """The equilibrium of :func:`steady`, what turns held."""
     tree, inputs, state, lost = _held(system, drive), drive.inputs(system), None, None
+    only_bodies = len(tree.free) == sum(link.body.size for link in tree.links)
     try:
-        state = SteadySystem(system, drive, rested(system, tree, inputs, start))
+        # Where nothing but bodies gives way, a state that is not near is found along the path of growing drives.
+        state = SteadySystem(system, drive, rested(system, tree, inputs, start, nearby=only_bodies))
         if is_linear(tree):
             return state
     except ComputationError as error:
         lost = error
-    only_bodies = len(tree.free) == sum(link.body.size for link in tree.links)
-    if not is_linear(tree) and (only_bodies if state is None else not bends_back(tree, state.point.slopes()[1])):
+    if state is None:
+        off_path = only_bodies and not is_linear(tree)
+    else:
+        y = state.point.y
+        apart = np.abs(y - start[tree.free]).max(initial=0.0)
+        off_path = apart > PREDICTED * np.abs(y).max(initial=0.0) and not bends_back(tree, state.point.slopes()[1])
+    if off_path:
         try:
             state = SteadySystem(system, drive, followed(system, tree, inputs))
         except ComputationError as error:
