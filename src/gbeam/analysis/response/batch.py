@@ -183,7 +183,8 @@ def _responses(
         if traced or holds_jax(subject.motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
         *longer, posed = poses(subject, settings)
-        if longer or posed.before or posed.after or posed.controllers is not None:
+        alone = posed.before or posed.after or posed.controllers is not None or not len(posed.start.y)
+        if longer or alone:
             yield index, simulate(structure, subject.motion, settings)
             continue
         common = [body.equations for body in posed.system.flexible.values()] if one_structure else None

@@ -29,7 +29,7 @@ from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.feedback import SystemControllers
 from gbeam.analysis.system.initial import STATE_WORDS, Initial, on_bodies
 from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
-from gbeam.arrays.namespace import Array, holds_jax, is_jax
+from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import InputError
@@ -169,9 +169,9 @@ class Posed:
 
     def integrated(self, step: float, cut: Corners | None = None, progress: Any = None) -> Trajectory:
         """Integrate by steps of a length, s, until the model of a body ceases to hold."""
-        how: Any = {} if is_jax(self.start.y) or self.system.holds_jax else {"stop": self.too_far}
         y, yd, steps = self.start.y, self.start.yd, self.steps(step, cut)
-        return through(self.equations, scheme_of(self.settings), y, yd, steps, progress=progress, **how)
+        scheme = scheme_of(self.settings)
+        return through(self.equations, scheme, y, yd, steps, stop=self.too_far, progress=progress)
 
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
@@ -224,7 +224,8 @@ def prepared(structure: Structure | System, motion: Motion | None, settings: Res
     if subject.ground is not None and subject.system.gravity is not None:
         fix = "leave one out: a motion carries its own, as specific force"
         raise InputError("gravity", "is given beside a motion of the base", fix)
-    on_bodies(subject.system.flexible, (*settings.begin.displaced, *settings.begin.moving))  # raises what it refuses
+    for moved in (settings.begin.displaced, settings.begin.moving):
+        on_bodies(subject.system.flexible, moved)  # raises what it refuses
     return subject
 
 

@@ -17,7 +17,7 @@ from gbeam.analysis.response.stepping import (
     LOADS_STEPS,
     scheme_of,
 )
-from gbeam.arrays.namespace import Array, is_jax
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.fields.basis import FAMILIES
@@ -75,7 +75,7 @@ def response_of(
     """
     posed, trajectory, stride, entire = run.posed, run.flight, run.stride, run.trajectory
     subject, settings = posed.subject, posed.settings
-    structure, beam, traced = subject.structure, posed.columns(subject.body), is_jax(trajectory.q)
+    structure, beam, traced = subject.structure, posed.columns(subject.body), run.traced
     assert subject.motion is not None
     motion, chosen = subject.motion, run.sampled(stride)
     fine = structure.displacement(trajectory.q[:, beam]) if moved is None else moved

@@ -21,7 +21,7 @@ from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, beams_of, carried, deflections, histories, loads_of
 from gbeam.analysis.system.point import Point, unknown_at_start
 from gbeam.analysis.system.solution import Solution
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.structure import Structure
@@ -63,6 +63,11 @@ class Run:
     def whole(self) -> bool:
         """True if the run came to its end."""
         return self.trajectory.whole
+
+    @cached_property
+    def traced(self) -> bool:
+        """True if its arrays are JAX's, or what it follows from is."""
+        return is_jax(self.trajectory.q) or self.posed.system.holds_jax or holds_jax(self.posed.subject.motion)
 
     @property
     def in_flight(self) -> slice:
@@ -106,9 +111,9 @@ class Run:
 
     @property
     def _moving(self) -> list[Quantity]:
-        """Quantities of which :attr:`moved` has the histories: deflections, and places where joints may move."""
+        """Quantities of which :attr:`moved` has the histories: deflections, and places where joints move or shift."""
         deforming = [(name, DEFLECTION) for name in self.deforming]
-        jointed = len(self.posed.system.tree.free) > sum(body.size for body in self.deforming.values())
+        jointed = any(link.steps for link in self.posed.system.tree.links)
         return [*deforming, PLACE] if jointed else deforming
 
     @cached_property
@@ -265,7 +270,7 @@ class Run:
         that where a joint carries little inertia but that of deformed bodies.
         """
         system, run = self.posed.system, self.trajectory
-        if is_jax(run.q) or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+        if self.traced or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
             return None
         steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
         q, qd, still = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])

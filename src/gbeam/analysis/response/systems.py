@@ -16,7 +16,7 @@ from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.analysis.system.accuracy import doubts
 from gbeam.analysis.system.histories import beams_of, deflection, meshes_of
-from gbeam.arrays.namespace import is_jax, namespace
+from gbeam.arrays.namespace import namespace
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.tree.signals import units_of
 from gbeam.motion import Centrifuge
@@ -39,7 +39,7 @@ def system_response_of(
 ) -> SystemResponse:
     """Response at all steps; the residual vibration is measured over the flight's times alone."""
     trajectory, stride, system, motion = run.trajectory, run.stride, run.posed.system, run.posed.motion
-    settings, traced, warnings = run.posed.settings, is_jax(trajectory.q), tuple[str, ...]()
+    settings, traced, warnings = run.posed.settings, run.traced, tuple[str, ...]()
     time, errors = trajectory.time, Errors()
     if not traced:
         errors, of_bodies = run.errors(of_steps, progress)

@@ -173,14 +173,15 @@ def on_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) -> dict
     out: dict[str, list[Moved]] = {name: [] for name in flexible}
     for each in moved:
         owner, _, point = each.point.rpartition(".")
-        points = [f"{name}.{station}" for name, body in flexible.items() for station in stations_of(body)]
-        if not owner and len(flexible) == 1:
-            (owner,) = flexible
+        deforming = {name: body for name, body in flexible.items() if body.size}
+        points = [f"{name}.{station}" for name, body in deforming.items() for station in stations_of(body)]
+        if not owner and len(deforming) == 1:
+            (owner,) = deforming
         where = f"response.initial.{each.where}"
         if f"{owner}.{point}" not in points:
             problem = f"is of {each.point}, which is no point of a body that deforms"
-            if not owner and len(flexible) > 1:
-                problem = f"is of {each.point}, and {len(flexible)} bodies deform"
+            if not owner and len(deforming) > 1:
+                problem = f"is of {each.point}, and {len(deforming)} bodies deform"
             fix = f"name one of {', '.join(points)}" if points else "leave it out: no body deforms"
             raise InputError(where.rpartition(".")[0], problem, fix)
         body = flexible[owner]
