@@ -112,12 +112,13 @@ def test_steps_are_fitted_where_modes_hold_wherever_joints_are() -> None:
 
 
 def test_fitted_steps_of_a_hub_keep_the_time_of_its_vibration() -> None:
-    """Of the same steps newmark, which fits none, and gauss: the latter is nearer to short steps by far."""
+    """Steps of 20 ms leave 1e-5 of the bending in the plane, and would 1.5e-4 if they were not fitted."""
     system = on_hub()
 
-    def swung(step: float, integrator: Any = "gauss") -> gb.SystemResponse:
-        return gb.simulate(system, duration=2.0, step=step, integrator=integrator, estimate=False, loads=False)
+    def swung(step: float) -> gb.SystemResponse:
+        return gb.simulate(system, duration=2.0, step=step, integrator="gauss", estimate=False, loads=False)
 
     fine, coarse = swung(1e-3), swung(0.02)
-    errors = np.abs(coarse.q - fine.q[::20]).max(axis=0)
-    assert (errors[1:] < 2e-3 * np.abs(fine.q[:, 1:]).max()).all()
+    bending = fine.coordinates.index("beam.q2")
+    error = np.abs(coarse.q - fine.q[::20])[:, bending].max()
+    assert error < 5e-5 * np.abs(fine.q[:, 1:]).max()

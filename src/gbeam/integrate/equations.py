@@ -169,8 +169,11 @@ def expanded(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tup
 
 def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """M (t, n, n) of equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...), as :func:`slopes` gives it."""
-    steps = 1j * STEP * np.eye(q.shape[1])[:, None]
-    return np.moveaxis(residual(q, qd, np.repeat(steps, len(q), axis=1), inputs).imag / STEP, 0, 2)
+    count, n = q.shape
+    if not n:  # all motion is prescribed
+        return np.zeros((count, 0, 0))
+    steps = np.repeat(1j * STEP * np.eye(n)[:, None], count, axis=1)
+    return np.moveaxis(residual(q, qd, steps, inputs).imag / STEP, 0, 2)
 
 
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:

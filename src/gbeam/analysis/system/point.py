@@ -14,7 +14,7 @@ from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, together
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError, InputError
-from gbeam.integrate.equations import Trajectory, accelerations, expanded, slopes, solved
+from gbeam.integrate.equations import Trajectory, accelerations, expanded, masses, slopes, solved
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
@@ -219,7 +219,7 @@ def started(system: System, motion: Motion | None, time: float, initial: Initial
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
     y, yd = (each[tree.free] for each in system.start)
     undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
-    refuse_massless(system, undeformed, undeformed.slopes()[3])
+    refuse_massless(system, undeformed, masses(tree, y[None], yd[None], undeformed.driven())[0])
     begun, bent, accelerated = _begun(system, inputs, initial)
     y, yd = begun.q, _moving(system, begun.q, yd, initial)
     if begun.adrift >= 0:
