@@ -8,6 +8,7 @@ import numpy as np
 
 from gbeam import Hub, Structure
 from gbeam.motion import Base
+from validation.residuals import hinged
 
 from .differences import jacobian
 from .specimens import HUB_INERTIA, HUB_RADIUS
@@ -19,13 +20,13 @@ MOUNTED_HUB = Hub(radius=HUB_RADIUS, inertia=HUB_INERTIA, stiffness=30.0, dampin
 
 
 def base_residual(structure: Structure, q: Array, qd: Array, qdd: Array, base: Base, loads: Array) -> Array:
-    return structure.residual()(q, qd, qdd, (base, loads))
+    return structure.equations.residual(q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
 
 
 def hub_residual(
     structure: Structure, hub: Hub, y: Array, yd: Array, ydd: Array, torque: Array, loads: Array
 ) -> tuple[Array, Array]:
-    residual = structure.residual(hub)
+    residual = hinged(structure, hub)
 
     def hub_row(acceleration: Array) -> Array:
         return residual(y, 0 * yd, acceleration, (torque, loads))[0]

@@ -18,9 +18,9 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from gbeam import Structure
 from gbeam.integrate.newton import accelerations
-from gbeam.mechanics.equations.dalembert import OnHub
 from gbeam.mechanics.equations.inertia import Bodies, Particles, inertia_of
 from gbeam.motion import Base
+from validation.residuals import Hinged, hinged
 
 from ..differences import along, jacobian, rate
 from ..lagrange import energy_of, hub_kinetic, on_prescribed_base
@@ -155,7 +155,7 @@ class Turning:
     def __init__(self, kind: str, axial: int, damping_ratio: float) -> None:
         self.structure = hub_beam(kind, axial, damping_ratio=damping_ratio)
         self.energy = energy_of(self.structure)
-        self.equations = OnHub(self.structure.on_free_hub(HUB), HUB.mount)
+        self.equations = hinged(self.structure, HUB)
 
     def residual(self, y: np.ndarray, yd: np.ndarray, ydd: np.ndarray, torque: float) -> np.ndarray:
         return self.equations(y, yd, ydd, (np.asarray(torque), None))
@@ -215,7 +215,7 @@ def test_power_balance(name: str, damping_ratio: float) -> None:
 
 
 @jax.jit
-def trajectory(equations: OnHub, start: Any, step: Any, amplitude: Any) -> Any:
+def trajectory(equations: Hinged, start: Any, step: Any, amplitude: Any) -> Any:
     """States (y, ẏ) at ten times and STEPS between them, by Dormand and Prince's method of eighth order.
 
     It is explicit and damps nothing. The torque is one sine over the ten times.

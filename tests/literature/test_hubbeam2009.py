@@ -27,11 +27,11 @@ from gbeam import (
     simulate,
 )
 from gbeam.arrays.jax_setup import with_slope
-from gbeam.mechanics.equations.dalembert import OnHub
 from gbeam.mechanics.equations.linear import Coefficients
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH, Paper
 from validation.published.specimens import pulse, slew
 from validation.published.tables import TABLE_2
+from validation.residuals import hinged
 
 from ..differences import jacobian
 from ..lagrange import quickly_compiled
@@ -53,7 +53,7 @@ def structure(kind: str, axial: int, bending: int, mt: float = 0.0, at: float = 
 
 def residual(s: Structure, y: Any, yd: Any, ydd: Any) -> Any:
     """Residual of the library, without torque."""
-    return OnHub(s.on_free_hub(FREE_HUB), FREE_HUB.mount)(y, yd, ydd, (np.zeros(()), None))
+    return hinged(s, FREE_HUB)(y, yd, ydd, (np.zeros(()), None))
 
 
 @quickly_compiled

@@ -23,8 +23,8 @@ from gbeam import (
     read_scenario,
     study,
 )
-from gbeam.mechanics.equations.dalembert import OnHub
 from gbeam.structure.attachments import Load
+from validation.residuals import hinged
 
 from ..differences import rate
 from ..lagrange import energy_of, hub_kinetic
@@ -101,7 +101,7 @@ def test_a_moment_at_the_root_drives_the_hub_as_a_torque_does() -> None:
     structure = assemble(loaded, Model("FOAM", 0, 1, 1))
     hub = Hub(radius=0.5, inertia=200.0, torque=constant(0.0))
     y, yd, ydd = np.zeros((3, 3))
-    row = OnHub(structure.on_free_hub(hub), hub.mount)(y, yd, ydd, (0.0, structure.load_values))[0]
+    row = hinged(structure, hub)(y, yd, ydd, (0.0, structure.load_values))[0]
 
     # ... and a force F_y at x adds F_y (r + x).
     torque = 11.0 + 2.0 * 5.5

@@ -17,6 +17,7 @@ from gbeam import Beam, Hub, Model, Structure, assemble
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import gauss, newmark
+from validation.residuals import hinged
 
 from .strategies import beams, first_frequency, numbers, theorem, vectors
 
@@ -78,7 +79,7 @@ def test_a_free_hub(
     lengths = beam.length * np.append(SMALL, np.full(n - len(SMALL), 0.01))
     q, qd = size[:n] * lengths, size[n : 2 * n] * lengths * scale
     angle, rate, torque = size[-3], size[-2] * scale / 4, size[-1] * inertia * scale**2 / 20
-    equations = structure.on_free_hub(hub)
+    equations = hinged(structure, hub)
     y, yd = np.append(angle, q), np.append(rate, qd)
     rest = equations.residual(y, yd, 0 * y, torque)
     mass = np.stack([equations.residual(y, yd, unit, torque) - rest for unit in np.eye(n + 1)], axis=1)

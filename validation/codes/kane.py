@@ -18,6 +18,7 @@ import sympy as sp
 from sympy.physics import mechanics as me
 
 import gbeam as gb
+from validation.residuals import hinged
 from validation.table import Row
 
 TITLE = "Kane's method (sympy): the equations of motion"
@@ -117,7 +118,7 @@ def on_hub(kind: str) -> Iterator[Row]:
     """A model on the free hub at random states."""
     section, material = gb.Section.general(AREA, INERTIA, INERTIA), gb.Material(DENSITY, YOUNG)
     beam = gb.Beam(LENGTH, section, material, [gb.PointMass(LENGTH, TIP)], rotary_inertia=False)
-    equations = gb.assemble(beam, kind, axial=1, y=1).on_free_hub(gb.Hub(radius=RADIUS, inertia=HUB))
+    equations = hinged(gb.assemble(beam, kind, axial=1, y=1), gb.Hub(radius=RADIUS, inertia=HUB))
     size = np.array([1.0, *SIZES.get(kind, (0.02, 0.5))])
     states = np.random.default_rng(2009).normal(size=(STATES, 3, 3)) * size
     theirs = np.array([by_kane_on_hub(kind, *state) for state in states])

@@ -13,10 +13,10 @@ from itertools import zip_longest
 import numpy as np
 
 from gbeam import Hub, Response, ResponseSettings, Sine, SmoothStep, constant, critical_speed, modes, simulate
-from gbeam.mechanics.equations.dalembert import OnHub
 from validation.published.hubbeam2009 import HUB_RADIUS, LENGTH, Paper
 from validation.published.specimens import FREE_HUB, appendage, hub_beam, pulse, slew
 from validation.published.tables import CRITICAL_2009, TABLE_2
+from validation.residuals import hinged
 from validation.table import Row
 
 TITLE = "Hub-beam with tip mass (2009): every printed number"
@@ -55,7 +55,7 @@ def mass_and_rest(
 ) -> tuple[np.ndarray, np.ndarray]:
     """M and h of gbeam's equations M ÿ + h = 0 on a free hub: the residual is affine in ÿ."""
     structure = hub_beam(kind, *counts, mass=mass, at=at)
-    residual = OnHub(structure.on_free_hub(FREE_HUB), FREE_HUB.mount)
+    residual = hinged(structure, FREE_HUB)
     none, inputs = np.zeros_like(y), (np.zeros(()), None)
     h = np.asarray(residual(y, yd, none, inputs))
     return np.stack([np.asarray(residual(y, yd, unit, inputs)) - h for unit in np.eye(len(y))], axis=1), h
@@ -221,7 +221,7 @@ def pulsed(kind: str, torque: float, counts: tuple[int, int] = FIVE) -> Response
 def hub_force(torque: float, counts: tuple[int, int] = FIVE) -> float:
     """Largest |Q_θ| of (32), N m: the terms of the hub's row that are quadratic in the rates."""
     response = pulsed("FOAM", torque, counts)
-    equations = hub_beam("FOAM", *counts, mass=0.0).on_free_hub(FREE_HUB)
+    equations = hinged(hub_beam("FOAM", *counts, mass=0.0), FREE_HUB)
     none, still = np.zeros(response.q.shape[1] + 1), np.zeros(())
     assert response.hub is not None
     return max(

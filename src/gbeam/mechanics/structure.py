@@ -14,7 +14,7 @@ from gbeam.constants import Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import implausible, positive
-from gbeam.mechanics.equations.dalembert import Complete, CompleteHub, FreeHub, OnBase, OnHub, free_hub, ground_of
+from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
     Bending,
@@ -310,26 +310,6 @@ class Structure:
             return self.coefficients
         assert self.inertia is not None
         return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
-
-    def on_free_hub(self, hub: Any) -> FreeHub | CompleteHub:
-        """The equations with the angle of a free hub as one more coordinate.
-
-        Parameters
-        ----------
-        hub : gbeam.Hub
-        """
-        if self.linear:
-            return free_hub(self.coefficients, hub.mount, ground_of(hub), hub_force=self.hub_force)
-        return CompleteHub(self.equations, hub.mount, ground_of(hub))  # type: ignore[arg-type]
-
-    def residual(self, hub: Any = None) -> OnBase | OnHub:
-        """The equations as a residual of one form, on a prescribed base or on a free hub.
-
-        Parameters
-        ----------
-        hub : gbeam.Hub, optional
-        """
-        return OnBase(self.equations) if hub is None else OnHub(self.on_free_hub(hub), hub.mount)
 
     def about(self, q: Array) -> tuple[Coefficients, Array]:
         """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,)."""

@@ -571,8 +571,8 @@ class System(Value):
 
 
 def stations_of(structure: Structure) -> dict[str, int]:
-    """Indices, by name, of a structure's named stations."""
-    if structure.source is None:
+    """Indices, by name, of a structure's named stations; of the tip alone where JAX traces their positions."""
+    if structure.source is None or is_traced(structure.stations):
         names = structure.points or ("tip",)
         return {name: len(structure.stations) - len(names) + k for k, name in enumerate(names)}
     named = structure.source.beam.named_points
