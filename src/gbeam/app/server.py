@@ -29,6 +29,7 @@ from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
 from gbeam.guards.processes import alone, tightly
 from gbeam.io.netcdf import csv_of, read_stored
+from gbeam.numerics.sparse import solver
 from gbeam.scenario.text.source import parse
 
 _KINDS = {".js": "text/javascript", ".css": "text/css", ".html": "text/html; charset=utf-8"}
@@ -61,6 +62,7 @@ def create_app(folder: Path) -> FastAPI:
         yield
         await jobs.stop()
 
+    solver()  # RSLAB's allocator ends the process where the thread that imported it has ended
     app = FastAPI(title="gbeam", docs_url=None, redoc_url=None, lifespan=lifespan)
     app.add_middleware(_Tight)
 
