@@ -21,8 +21,8 @@ from gbeam.guards.kinds import kind_of_argument
 from .scenarios import FAST, FREE_HUB
 
 RESULTS = {
-    "Comparison", "Fit", "Modes", "Optimum", "Response", "Rest", "Sensitivity", "ShapedCommand", "StateSpace", "Study", "Sweep",
-    "SystemResponse", "SystemStudy",
+    "Comparison", "Fit", "Modes", "Optimum", "Response", "Rest", "Sensitivity", "ShapedCommand", "StateSpace", "Study",
+    "Sweep", "SystemResponse", "SystemStudy",
 }  # fmt: skip
 NO_FUNCTIONS = {
     "GbeamError",

@@ -334,9 +334,10 @@ def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
         ("stress is", "its largest", errors.stress, errors.stress_by_beam),
     ):
         parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh, error.friction
-        if what == "deflections are" and error is errors.place:
+        one, other = errors.displacement, errors.place
+        if what == "deflections are" and one is other:
             continue
-        if what == "places are" and math.isclose(error.total, errors.displacement.total, rel_tol=ALIKE):
+        if what == "places are" and one is not other and math.isclose(one.total, other.total, rel_tol=ALIKE):
             continue  # of one body on the ground
         stated = largest_known(error.total, error.step)
         if not stated > tolerance:
