@@ -16,7 +16,7 @@ def respond(structure: gb.Structure, motion: gb.Flight) -> None:
     gb.simulate(structure, motion, duratoin=10.0)  # type: ignore[call-overload]
     gb.simulate(structure, motion, duration=[10.0])  # type: ignore[call-overload]
     gb.simulate_batch([(structure, motion)], duration=1.0, stpe=0.1)  # type: ignore[call-arg]
-    gb.static(structure, motoin=motion)  # type: ignore[call-overload]
+    gb.static(structure, motoin=motion)  # type: ignore[call-arg]
     gb.ResponseSettings(1.0, integrator="rk4")  # type: ignore[arg-type]
     gb.ResponseSettings(1.0, parameters={"bta": 0.3})  # type: ignore[dict-item]
     gb.ResponseSettings(1.0, initial="undefrmed")  # type: ignore[arg-type]
@@ -108,7 +108,6 @@ def draw(
     comparison.plot("parts y")
     comparison.plot("part y")  # type: ignore[arg-type]
     gb.static(structure).plot("loads")
-    gb.static(structure).plot("load")  # type: ignore[arg-type]
     gb.modes(structure).plot("modes")
     gb.modes(structure).plot("mode")  # type: ignore[arg-type]
     system.plot("pole")  # type: ignore[arg-type]

@@ -21,8 +21,8 @@ from gbeam.guards.kinds import kind_of_argument
 from .scenarios import FAST, FREE_HUB
 
 RESULTS = {
-    "Comparison", "Fit", "Optimum", "Response", "Sensitivity", "ShapedCommand", "StateSpace", "Study", "Sweep",
-    "SystemModes", "SystemResponse", "SystemRest",
+    "Comparison", "Fit", "Modes", "Optimum", "Response", "Rest", "Sensitivity", "ShapedCommand", "StateSpace", "Study",
+    "Sweep", "SystemResponse",
 }  # fmt: skip
 NO_FUNCTIONS = {
     "GbeamError",

@@ -27,10 +27,10 @@ def beam(length: float = 0.3, section: gb.Section = STRIP, metal: gb.Material = 
     return gb.Beam(length, section, metal, damping_ratio=more.pop("damping_ratio", 0.01), **more)
 
 
-def doubts(result: gb.Deflection) -> list[str]:
+def doubts(result: gb.Rest) -> list[str]:
     """Its warnings of its input; one shape is too few besides, and the exact beam may have no equilibrium."""
-    of_error = "estimated to be wrong", "shapes and model are not judged", "a beam that twists would not stay"
-    return [each for each in result.warnings if not each.startswith(of_error) and "twists under it" not in each]
+    of_error = "wrong by an estimated", "shapes and model are not judged", "a beam that twists would not stay"
+    return [each for each in result.warnings if not any(words in each for words in (*of_error, "twists under it"))]
 
 
 SLIPS = {

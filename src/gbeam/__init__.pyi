@@ -61,6 +61,8 @@ from gbeam.motion.records.record import read_record as read_record
 from gbeam.results.cases import Sensitivity as Sensitivity
 from gbeam.results.cases import Sweep as Sweep
 from gbeam.results.comparison import Comparison as Comparison
+from gbeam.results.equilibrium import Rest as Rest
+from gbeam.results.modal import Modes as Modes
 from gbeam.results.response import Response as Response
 from gbeam.results.response import Sensor as Sensor
 from gbeam.results.searches import Fit as Fit
@@ -69,9 +71,7 @@ from gbeam.results.searches import ShapedCommand as ShapedCommand
 from gbeam.results.state_space import Gauge as Gauge
 from gbeam.results.state_space import StateSpace as StateSpace
 from gbeam.results.study import Study as Study
-from gbeam.results.system import SystemModes as SystemModes
 from gbeam.results.system import SystemResponse as SystemResponse
-from gbeam.results.system import SystemRest as SystemRest
 from gbeam.scenario.build import read_scenario as read_scenario
 from gbeam.scenario.rerun import rerun as rerun
 from gbeam.solids.imported import ImportedModel as ImportedModel

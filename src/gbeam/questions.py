@@ -20,11 +20,10 @@ from gbeam.printable import advise
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
     from gbeam.results.comparison import MachinePlan
-    from gbeam.results.equilibrium import Critical, Deflection
+    from gbeam.results.equilibrium import Critical, Rest
     from gbeam.results.modal import Campbell, Modes
     from gbeam.results.placement import Placement
     from gbeam.results.study import Study
-    from gbeam.results.system import SystemModes, SystemRest
 
 Varied = Literal["rate", "loads", "acceleration"]
 # Options of all questions by name, as studies take them; quantities are numbers in SI, or texts.
@@ -248,10 +247,8 @@ def run(case: Case, motion: str | None = None, at: float | None = None, needs: N
     motion=None,
     deforms=False,
 )
-def static(
-    case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()
-) -> tuple[Deflection, ...] | tuple[SystemRest, ...]:
-    """Deflections at rest in all motions, or one."""
+def static(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> tuple[Rest, ...]:
+    """Rest in all motions, or one."""
     from gbeam.analysis.automatic import sufficient
     from gbeam.analysis.steady.static import static
 
@@ -280,7 +277,7 @@ def modes(
     needs: Needs = Needs(),
     *,
     gyroscopic: Annotated[bool, "Keep Coriolis coupling."] = True,
-) -> Modes | SystemModes:
+) -> Modes:
     """Small vibrations about the equilibrium."""
     from gbeam.analysis.automatic import of_lowest, sufficient
     from gbeam.analysis.steady import modal

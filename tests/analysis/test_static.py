@@ -22,7 +22,7 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.analysis.steady.static import deflection
+from gbeam.analysis.steady.static import rest_of
 from gbeam.analysis.steady.subject import subject_of
 from gbeam.analysis.system.steady import Drive, settled
 from gbeam.motion import Base
@@ -136,7 +136,7 @@ def test_an_equilibrium_states_its_error(seed: int) -> None:
     base = Base(size * random.normal(size=3), 10 * random.normal(size=3), 30 * random.normal(size=3))
     few, exact = (assemble(beam, model) for model in (Model(kind, axial, along_y, along_z), Model("exact", 6, 12, 12)))
     subjects = subject_of(few, None), subject_of(exact, None)
-    answer, true = (deflection(each, settled(each.system, Drive(base=base))) for each in subjects)
+    answer, true = (rest_of(each, settled(each.system, Drive(base=base))) for each in subjects)
     for name, ours, theirs in (
         ("displacement", answer.tip, true.tip),
         ("loads", answer.loads.root_moment[0], true.loads.root_moment[0]),

@@ -139,7 +139,7 @@ def test_a_shaft_turns_a_disc_by_saint_venants_torsion() -> None:
     # The shape is a sine, and its edge moves by 1 where it moves most.
     sine = np.sin(2 * np.pi * expected[0] * np.sqrt(POLAR / TORSION) * structure.stations)
     assert computed.twist[0, 0] / computed.twist[0, 1] == pytest.approx(sine[0] / sine[1], rel=1e-6)
-    assert np.abs(computed.edge[0]).max() == pytest.approx(1.0) and not np.abs(computed.shape[0]).any()
+    assert np.abs(computed.body.moved(0)[1]).max() == pytest.approx(1.0) and not np.abs(computed.shape[0]).any()
 
 
 def test_a_mass_off_the_axis_bends_and_twists_the_beam() -> None:
@@ -227,4 +227,4 @@ def test_other_models_twist_and_shear_to_their_order(kind: str) -> None:
     )
     np.testing.assert_allclose(one.frequency, two.frequency, rtol=1e-9)
     assert two.twist is not None
-    np.testing.assert_allclose(np.abs(one.twist), np.abs(two.twist), atol=1e-6)
+    np.testing.assert_allclose(np.abs(one.twist), np.abs(two.twist), rtol=1e-5, atol=1e-6)

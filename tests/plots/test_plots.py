@@ -21,10 +21,10 @@ from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.equilibrium import Deflection
+from gbeam.results.equilibrium import BodyRest, Rest
 from gbeam.results.machine import LimitUse
 from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
-from gbeam.results.parts import Loads
+from gbeam.results.parts import Base, Loads
 from gbeam.results.study import Study
 
 
@@ -305,12 +305,19 @@ def test_loads_have_the_signs_of_the_comparison(study: Study) -> None:
     assert {"spin-up", "below idle", "spin-down"} <= set(_shaded(force))
 
 
+def at_rest(name: str, base: Base, x: np.ndarray, moved: np.ndarray, loads: Loads | None = None) -> Rest:
+    """A beam at rest, displaced so."""
+    body = BodyRest("FOAM", base, x, moved, np.zeros(3), 0.0, loads)
+    tip, still, none = ("beam.tip",), np.zeros((1, 4)), np.zeros(3)
+    return Rest(
+        name, 0.0, base, tip, ("beam.q1",), ("",), moved[-1:], moved[-1:], still, none, none, True, none, none,
+        {"beam": body},
+    )  # fmt: skip
+
+
 def test_several_at_rest_are_all_seen(study: Study) -> None:
     base, x = study.responses["spin"].base, np.linspace(0, 40.0, 5)  # a long blade
-    rest = [
-        Deflection(name, "FOAM", 0.0, base, x, np.outer(x, [0.0, 1e-4, 0.05]), np.zeros(3), 0.0, True)
-        for name in ("flight", "spin")
-    ]
+    rest = [at_rest(name, base, x, np.outer(x, [0.0, 1e-4, 0.05])) for name in ("flight", "spin")]
     (panel,) = plot_static(rest).axes
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("position from the root, m", "z, m")
     wide, thin = panel.get_lines()
@@ -333,5 +340,5 @@ def test_a_result_draws_itself(study: Study) -> None:
     x = np.linspace(0, 0.3, 5)
     along = Loads(x, *(np.ones((1, 5, 3)) for _ in range(4)), *np.ones((2, 1, 5)), np.ones((1, 5, 3)))
     moved = np.outer(x, [0.0, 1.0, 2.0])
-    rest = Deflection("flight", "FOAM", 0.0, spin.base, x, moved, np.zeros(3), 0.0, True, along)
-    assert [len(rest.plot(what)) for what in ("", "shape", "loads")] == [2, 2, 3]
+    rest = at_rest("flight", spin.base, x, moved, along)
+    assert [len(rest.plot(what)) for what in ("", "static", "loads flight")] == [2, 2, 3]

@@ -140,8 +140,8 @@ def test_page_of_json_is_that_of_the_result(tmp_path: Path) -> None:
     (tmp_path / "modes.json").write_text(as_json(answer))
     page = report_of_file(tmp_path / "modes.json")
     assert all(f"{frequency:#.4g}" in page for frequency in modes.frequency)
-    header = header_of(page)
-    assert header["modes"]["labels"][0].startswith("1: 36.5")  # type: ignore[index]
+    (plot,) = header_of(page)["plots"]  # type: ignore[misc]
+    assert plot["series"][0]["label"].startswith("36.5")
 
 
 def test_no_report_without_a_result(tmp_path: Path) -> None:

@@ -136,7 +136,7 @@ def test_figures_have_the_names_that_type_checkers_know(matrix: dict[str, Any]) 
         "Comparison": [replace(each, peak_centrifuge=np.ones(3)) for each in wide],
     }
     named = {kind: figure_names(type(each)) for kind, each in matrix.items() if isinstance(each, Figured)}
-    open_names = {"Study", "SystemResponse", "SystemRest", "Sweep", "Sensitivity"}
+    open_names = {"Study", "SystemResponse", "Rest", "Sweep", "Sensitivity"}
     assert {kind for kind, names in named.items() if not names} == open_names
     for kind, names in named.items():
         if names:

@@ -56,7 +56,7 @@ def test_goes_to_xarray_and_to_a_file(every: dict[str, Any], kind: str, tmp_path
 
 def test_values_in_xarray(every: dict[str, Any]) -> None:
     static, modes, system = every["static"], every["modes"], every["system"]
-    tip = static.to_xarray()["displacement"].isel(station=-1).sel(axis="z")
+    tip = static.to_xarray()["beam_displacement"].isel(beam_station=-1).sel(axis="z")
     assert float(tip) == static.tip[2]
     first = modes.to_xarray().sel(mode=1)
     assert float(first["frequency"]) == modes.frequency[0] and str(first["direction"].values) == modes.direction[0]

@@ -11,6 +11,7 @@ import pytest
 import gbeam as gb
 from gbeam.mechanics.tree.joints import KINDS
 from gbeam.questions import QUESTIONS, Needs
+from gbeam.report import text
 from gbeam.scenario import Diagnostic, ScenarioError, build, load, loads
 
 from ..scenarios import SLEW, SPECIMEN, model, response
@@ -138,7 +139,7 @@ def test_a_motion_carries_a_system() -> None:
     weighed = build(loads(text.replace("[response]", '[system]\ngravity = [0, 0, "-1 g"]\n[response]')))
     rest = gb.static(case.system, case.motions["flight"]), gb.static(weighed.system)
     np.testing.assert_allclose(rest[0].place, rest[1].place, rtol=1e-12)
-    assert rest[0].displacement[:, 2].min() < -0.1
+    assert rest[0].point_displacement[:, 2].min() < -0.1
 
 
 WRONG = {
@@ -201,13 +202,15 @@ def test_a_damping_that_is_not_given_is_missed_by_answers_that_depend_on_it() ->
     case = build(loads(SATELLITE[:at] + SATELLITE[at + len(line) :], "s.toml"))
     for ask, answer in (
         (gb.study, "the response"),
-        (QUESTIONS["modes"].answer, "that of its modes"),
         (lambda case: gb.linearize(case.subject), "the state-space model"),
     ):
         with pytest.raises(gb.InputError, match=f"bodies.left.damping_ratio is missing, and {answer} depends on it"):
             ask(case)
     (rest,) = QUESTIONS["static"].answer(case, needs=Needs(errors=False))
-    assert rest.displacement.shape[1] == 3
+    assert rest.point_displacement.shape[1] == 3
+    modes = QUESTIONS["modes"].answer(case, needs=Needs(errors=False))
+    assert not modes.damping_given and "undamped: left.damping_ratio is not given" in text(modes)
+    assert not modes.bodies["left"].damping_given and modes.bodies["right"].damping_given
 
 
 def test_a_body_that_hangs_on_nothing() -> None:

@@ -141,7 +141,7 @@ def test_an_interface_has_the_stress_and_strain_of_its_section() -> None:
     rest = gb.static(with_body(bar, "seat", gb.RigidBody(0.1, (2e-5, 4e-5, 3e-5)), gravity=(g, 0.0, 0.0)))
     area = WIDTH * HEIGHT
     pull = (STIFF.density * area * half + 0.1) * g / area
-    carried = rest.solids["strip"]
+    carried = rest.bodies["strip"].solid
     assert carried.points == ("seat", "cut", "tip") and {"strip.cut", "strip.seat"} <= set(rest.points)
     assert carried.point_stress[0, 1, 0] == pytest.approx(pull, rel=1e-3)
     assert carried.strain_at("cut")[0] == pytest.approx(pull / STIFF.youngs_modulus, rel=1e-3)

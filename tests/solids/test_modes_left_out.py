@@ -230,10 +230,10 @@ def test_a_bracket_in_a_system_errs_as_alone(bracket: dict[int, gb.Structure]) -
     turning = hub(rate=150.0)
     alone, held = gb.modes(bracket[2], turning), gb.modes(system, turning)
     assert alone.errors is not None and held.errors is not None
-    np.testing.assert_allclose(held.errors.shapes[:2], alone.errors.shapes, rtol=1e-3)
+    np.testing.assert_allclose(held.errors.shapes, alone.errors.shapes, rtol=1e-3)
     assert np.isnan(held.errors.model).all() and held.error_note == alone.error_note == "the mesh is not judged"
-    assert held.reached == pytest.approx(190.2, abs=0.1) and held.errors.shapes[2:].max() > 0.1
-    assert not any("wrong" in each for each in held.warnings)  # of those above what is reached it is said
+    assert held.reached == pytest.approx(190.2, abs=0.1)
+    assert not any("wrong" in each for each in held.warnings)
 
 
 def test_poles_of_a_linear_model(bracket: dict[int, gb.Structure]) -> None:

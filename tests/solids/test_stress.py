@@ -180,9 +180,9 @@ def test_colours_end_at_the_largest_stress_that_is_judged(verb: str) -> None:
         else:
             data = gb.static(structure, acceleration=(0, 0, 9.81)).to_xarray()
             variables = {f"motions/rest/{key}": each.values for key, each in data.variables.items()}
-            motions = viewer("Deflection", {"motions": {"rest": {}}}, variables, Numbers())["scene"]
+            motions = viewer("Rest", {"motions": {"rest": {}}}, variables, Numbers())["scene"]
         shown.append(motions["motions"][0]["parts"][0]["surface"])
-        edge.append(data["surface_vertices"].values[~data["surface_judged"].values.astype(bool)])
+        edge.append(data["beam_surface_vertices"].values[~data["beam_surface_judged"].values.astype(bool)])
     assert shown[0]["beyond"] is False and not len(edge[0])
     assert shown[1]["beyond"] is (verb == "static") and len(edge[1])
     at_corner = (np.abs(edge[1][:, [0, 2]] - (0.04, -0.02)) < 0.0101).all(axis=1)

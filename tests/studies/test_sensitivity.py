@@ -276,7 +276,7 @@ def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
     about = Neighbourhood(
         Inquiry(ScenarioTemplate(base), "static", "flight"), physical_values(ScenarioTemplate(base), [LENGTH]), [0.2]
     )
-    answer = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["tip"]["z"]]))
+    answer = about.slopes(lambda _, facts: np.array([facts["motions"]["flight"]["bodies"]["beam"]["tip"]["z"]]))
     assert answer.slopes[0, 0] * 0.2 / answer.values[0] == pytest.approx(4, abs=1e-9)
 
 

@@ -60,7 +60,7 @@ def test_a_rod_under_thrust_is_pressed_as_it_is_accelerated(kind: str) -> None:
     assert faster.coordinate == "air.x" and faster.acceleration == pytest.approx(thrust / LINEAR / LENGTH, rel=1e-9)
     shorter = rest.at("rod.root")[0] - rest.at("rod.tip")[0] + LENGTH
     assert shorter == pytest.approx(thrust * LENGTH / 2 / EA, rel=1e-2)
-    loads = rest.loads["rod"]
+    loads = rest.bodies["rod"].loads
     assert loads.section_force[0, :, 0] == pytest.approx(thrust * (loads.stations / LENGTH - 1), abs=1e-2 * thrust)
     assert not rest.ground_force.any() and not rest.ground_moment.any() and rest.stable
     assert rest.errors.loads_by_beam == pytest.approx([0.0])  # of a free root, which carries rounding
@@ -105,9 +105,9 @@ def test_what_falls_is_not_deformed(kind: str) -> None:
     joints = {"air": gb.Joint("free", "hull", turn=(0.0, 0.4, 0.0)), "weld": gb.Joint("fixed", "rod", on="hull.root")}
     falls, floats = (gb.System(bodies, joints, gravity=g) for g in ((0, 0, -9.81), None))
     rest = gb.static(falls)
-    assert np.abs(rest.displacement).max() < 1e-12 and rest.stable
+    assert np.abs(rest.point_displacement).max() < 1e-12 and rest.stable
     assert [str(each) for each in rest.accelerated] == ["air.z by -9.81 m/s²"]
-    assert np.abs(rest.loads["rod"].section_moment).max() < 1e-9
+    assert np.abs(rest.bodies["rod"].loads.section_moment).max() < 1e-9
     assert not gb.static(floats).accelerated
     moving, beside = (gb.modes(each, errors=False) for each in (falls, floats))
     assert moving.rigid == beside.rigid == 6
@@ -165,9 +165,9 @@ def test_a_rod_pushed_across_is_relieved_by_its_inertia(kind: str) -> None:
     assert faster["air.ry"].angular_acceleration == pytest.approx(6 * ACROSS / mass / LENGTH, rel=1e-5)
     # The root goes on with 4 F/m: F/m of the mass centre and α L/2.
     assert faster["air.z"].acceleration == pytest.approx(4 * ACROSS / mass, rel=1e-5)
-    share = rest.loads["rod"].stations / LENGTH
+    share = rest.bodies["rod"].loads.stations / LENGTH
     carried = -ACROSS * LENGTH * share * (1 - share) ** 2
-    assert rest.loads["rod"].section_moment[0, :, 1] == pytest.approx(carried, abs=1e-5 * ACROSS * LENGTH)
+    assert rest.bodies["rod"].loads.section_moment[0, :, 1] == pytest.approx(carried, abs=1e-5 * ACROSS * LENGTH)
     assert rest.at("rod.tip")[2] == pytest.approx(ACROSS * LENGTH**3 / 20 / EI, rel=2e-3)
     assert np.abs(rest.ground_force).max() < 1e-9 * ACROSS and rest.stable
     said = [each for each in rest.warnings if each.startswith("air begins to turn ever faster")]

@@ -318,10 +318,10 @@ def test_a_place_at_rest_is_judged() -> None:
     system = beam_on_beam()
     rest = gb.static(system)
     truth = gb.static(with_more(system).system)
-    size = np.linalg.norm(rest.displacement, axis=-1).max()
+    size = np.linalg.norm(rest.point_displacement, axis=-1).max()
     true = np.linalg.norm(truth.place - rest.place, axis=-1).max() / size
     assert true > 1e-3 and rest.errors.place.slender == pytest.approx(true, rel=1e-6)
-    each = [apart(rest.loads[name], truth.loads[name]) for name in ("first", "second")]
+    each = [apart(rest.bodies[name].loads, truth.bodies[name].loads) for name in ("first", "second")]
     assert rest.errors.loads.slender == pytest.approx(max(loads for loads, _ in each), rel=1e-6)
     assert rest.errors.stress.slender == pytest.approx(max(stress for _, stress in each), rel=1e-6)
     assert rest.errors.beams == ("first", "second") and any("most of" in each for each in rest.warnings)

@@ -162,7 +162,7 @@ def test_static_answers_where_friction_holds() -> None:
     rest = gb.static(on_incline(friction=12.0))
     (held,) = rest.warnings
     assert held.startswith("nothing but friction holds slide.displacement, where it begins, with 9.81 of its 12 N")
-    assert rest.stable and not rest.displacement.any() and not rest.accelerated
+    assert rest.stable and not rest.point_displacement.any() and not rest.accelerated
     np.testing.assert_allclose(rest.effort, [-WEIGHT], rtol=1e-9)
     for question in (gb.static, gb.modes, gb.linearize):
         with pytest.raises(gb.ComputationError, match=r"accelerated by 9\.81 N, of which friction holds 9 N"):

@@ -90,13 +90,13 @@ def test_a_tree_at_rest_balances_at_every_cut() -> None:
     weight = 2700 * 0.05 * 0.02 * 10
     shear = -weight * (2 - x) - 5.0 * (x <= 0.5)
     bending = weight * (2 - x) ** 2 / 2 + 5.0 * np.maximum(0.5 - x, 0)
-    near = rest.loads["near"]
+    near = rest.bodies["near"].loads
     assert near.stations == pytest.approx(x)
     np.testing.assert_allclose(near.section_force[0, :, 2], shear, rtol=1e-6)
     np.testing.assert_allclose(near.section_moment[0, :, 1], bending, rtol=1e-6)
     stress = bending[0] * 0.01 / (0.05 * 0.02**3 / 12)
     assert near.stress[0, 0] == pytest.approx(stress, rel=1e-6)
-    known = json.loads(as_json(json_of(rest)))["beams"]["near"]
+    known = json.loads(as_json(json_of(rest)))["bodies"]["near"]["loads"]
     assert known["stress"][0] == pytest.approx(stress, rel=1e-6)
     assert known["margin"][0] == pytest.approx(1e6 / stress - 1, rel=1e-6)
 

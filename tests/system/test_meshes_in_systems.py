@@ -115,7 +115,7 @@ def test_at_rest_a_mesh_has_the_stress_of_its_section() -> None:
     held = gb.static(gb.System({"strip": strip()}, {"clamp": gb.Joint("fixed", "strip")}, gravity=(0.0, 0.0, -g)))
     bent = METAL.density * B * H * g * x**2 / 2 * (H / 2) / (B * H**3 / 12)
     assert alone.solid is not None
-    for stress in (alone.solid, held.solids["strip"]):
+    for stress in (alone.solid, held.bodies["strip"].solid):
         assert stress.point_stress[0, 0, 0] == pytest.approx(bent, rel=5e-3)
         assert stress.worst.node == alone.solid.worst.node
         assert stress.worst.von_mises == pytest.approx(alone.solid.worst.von_mises, rel=1e-6)
@@ -147,9 +147,9 @@ def test_modes_of_a_mesh_are_drawn_by_its_surface() -> None:
     system = gb.System({"strip": strip()}, {"clamp": gb.Joint("fixed", "strip")})
     held = gb.modes(system)
     count = len(alone.frequency)
-    np.testing.assert_allclose(held.frequency[:count], alone.frequency, rtol=1e-6)
-    assert count == strip().resolved < strip().size == len(held.frequency)
-    assert held.reached == pytest.approx(alone.frequency[-1], rel=1e-6) and "upper bounds" in text(held)
+    np.testing.assert_allclose(held.frequency, alone.frequency, rtol=1e-6)
+    assert count == strip().resolved < strip().size
+    assert held.reached == pytest.approx(alone.frequency[-1], rel=1e-6)
     drawn = []
     for result in (alone, held):
         header, numbers = shown(result)

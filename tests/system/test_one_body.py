@@ -84,8 +84,8 @@ def test_a_hub_turns_by_the_momentum_of_its_torque() -> None:
     hub = gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(2.0), damping=0.25)
     rest = gb.static(gb.assemble(light, "FOAM", axial=1, y=2, z=2), hub, 3.0)
     rate = 2.0 / 0.25 * (1 - np.exp(-0.25 * 3.0 / 0.5))
-    assert rest.base.w_WB_B[2] == pytest.approx(rate, rel=1e-6)
-    assert rest.base.alpha_WB_B[2] == pytest.approx((2.0 - 0.25 * rate) / 0.5, rel=1e-5)
+    assert rest.body.base.w_WB_B[2] == pytest.approx(rate, rel=1e-6)
+    assert rest.body.base.alpha_WB_B[2] == pytest.approx((2.0 - 0.25 * rate) / 0.5, rel=1e-5)
 
 
 def test_an_exact_beam_keeps_its_branch_past_a_bifurcation() -> None:

@@ -37,15 +37,15 @@ def test_points_beams_and_turns_of_a_mode_belong_together() -> None:
     foot, root, tip, end, hinge = (at(name) for name in ("foot.root", "strip.root", "strip.tip", "rod.end", "rod.root"))
     arms = modes.place[[root, end]] - modes.place[[foot, hinge]]
     for moved, from_, arm in zip((root, end), (foot, hinge), arms, strict=True):
-        carried = modes.shape[:, from_] + np.cross(modes.turn[:, from_], arm)
-        np.testing.assert_allclose(modes.shape[:, moved], carried, atol=1e-12)
-    np.testing.assert_allclose(modes.turn[:, root], modes.turn[:, foot], atol=1e-12)
-    beam, axes = modes.beams["strip"], Rotation.from_quat(np.roll(modes.attitude[root], -1)).as_matrix()
+        carried = modes.point_shape[:, from_] + np.cross(modes.point_turn[:, from_], arm)
+        np.testing.assert_allclose(modes.point_shape[:, moved], carried, atol=1e-12)
+    np.testing.assert_allclose(modes.point_turn[:, root], modes.point_turn[:, foot], atol=1e-12)
+    beam, axes = modes.bodies["strip"], Rotation.from_quat(np.roll(modes.attitude[root], -1)).as_matrix()
     bent = modes.place[tip] - modes.place[root]
     np.testing.assert_allclose(bent, axes @ ([1, 0, 0] + beam.outline.displacement[0, -1]), atol=1e-9)
-    swung = modes.shape[:, root] + np.cross(modes.turn[:, root], bent) + beam.shape[:, -1] @ axes.T
-    np.testing.assert_allclose(modes.shape[:, tip], swung, atol=1e-9)
-    assert np.abs(modes.turn[:, at("rod.root")] - modes.turn[:, tip]).max() > 0.1  # the hinge turns
+    swung = modes.point_shape[:, root] + np.cross(modes.point_turn[:, root], bent) + beam.outline_shape[:, -1] @ axes.T
+    np.testing.assert_allclose(modes.point_shape[:, tip], swung, atol=1e-9)
+    assert np.abs(modes.point_turn[:, at("rod.root")] - modes.point_turn[:, tip]).max() > 0.1  # the hinge turns
 
 
 def test_a_mode_is_drawn_as_a_motion_of_a_period() -> None:

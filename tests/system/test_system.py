@@ -262,7 +262,7 @@ def test_a_body_that_turns_in_its_place_is_said_to_turn() -> None:
     hub = replace(wheel, points={})
     hinge = gb.Joint("revolute", "wheel", axes=[(0, 0, 1)], effort=1.0, stiffness=5.0)
     assert repr(gb.static(gb.System({"wheel": hub}, {"hinge": hinge}))).startswith(
-        "SystemRest: no point moves; hinge.angle reaches 0.2 rad"
+        "Rest at 0 s: no point moves; hinge.angle reaches 0.2 rad"
     )
     turned = gb.simulate(gb.System({"wheel": hub}, {"hinge": hinge}), duration=0.5, step=0.01)
     assert f"no point moves; hinge.angle reaches {turned.q[-1, 0]:.4g} rad" in repr(turned)

@@ -156,7 +156,7 @@ def test_what_falls_is_said_to_be_accelerated() -> None:
     falls = gb.System(bodies, joints, gravity=(0, 0, -9.81))
     for ask in (gb.static, gb.modes):
         assert [str(each) for each in ask(falls).accelerated] == ["air.z by -9.81 m/s²"]
-    assert gb.static(gb.System(bodies, joints)).displacement.max() == 0
+    assert gb.static(gb.System(bodies, joints)).point_displacement.max() == 0
     # Its run is one of positive masses, which those of Euler parameters are not.
     fallen = gb.simulate(falls, duration=0.1)
     assert fallen.outcome == "done" and not any("positive mass" in each for each in fallen.warnings)

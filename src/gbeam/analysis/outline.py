@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Complex, Floats
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.system import RigidBody, System
@@ -56,25 +56,23 @@ def _box(body: object) -> tuple[Floats, Floats, Floats]:
 
 
 POINTS = 16  # along a straight beam, at most; twice as many along a line
+OF_MODES = 65  # of the shapes of modes, likewise
 TIMES = 1500
 
 
-def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Floats) -> Outline | None:
-    """Outline of a beam at times (t,) by `q` (t, n), with hub and attitude of a motion; None if it is no beam."""
+def outline_of(
+    structure: Structure, motion: Motion | None, time: Floats, q: Floats, count: int = POINTS
+) -> Outline | None:
+    """Outline of a beam at times (t,) by `q` (t, n), with hub and attitude of a motion, at so many points; None if it
+    is no beam.
+    """
     if structure.field is None or structure.sections is None or structure.source is None:
         return None
-    beam = structure.source.beam
-    outline = structure.field.points(slice(None))
-    x, index = np.unique(np.round(structure.sections.along / beam.length, 9), return_index=True)
-    count = POINTS if beam.line is None else 2 * POINTS
-    chosen = index[np.unique(np.linspace(0, len(x) - 1, count - 1).round().astype(int))]
+    beam, chosen = structure.source.beam, _chosen(structure, count)
+    outline = structure.field.points(slice(None))[chosen]
     sampled = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
     rest = structure.sections.along[chosen]
-    moved = np.asarray(outline[chosen].positions(q[sampled]) - outline[chosen].positions(np.zeros(structure.size)))
-    # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
-    root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
-    if not beam.root.springs:
-        root = np.zeros_like(root)
+    moved = np.asarray(outline.positions(q[sampled]) - outline.positions(np.zeros(structure.size)))
     points = np.concatenate([[0.0], rest])
     section = beam.section.at(points)
     width, thickness = section.extents()
@@ -86,12 +84,46 @@ def outline_of(structure: Structure, motion: Motion | None, time: Floats, q: Flo
         round=section.round,
         bodies=np.array([(body.at, body.mass) for body in beam.masses], dtype=float).reshape(-1, 2),
         time=time[sampled],
-        displacement=np.concatenate([root[:, None], moved], axis=1),
+        displacement=_from_root(structure, rest, moved),
         place=place,
         across=None if axes is None else axes[:, :, 1],
         **_carrier(motion),
         attitude=_attitude(motion, time, sampled),
     )
+
+
+def _chosen(structure: Any, count: int) -> Any:
+    """Indices of points of a beam's field all along it."""
+    beam, sections = structure.source.beam, structure.sections
+    x, index = np.unique(np.round(sections.along / beam.length, 9), return_index=True)
+    count = count if beam.line is None else 2 * count
+    return index[np.unique(np.linspace(0, len(x) - 1, count - 1).round().astype(int))]
+
+
+def _from_root(structure: Any, rest: Floats, moved: Any) -> Any:
+    """Values (t, p, ...) at positions (p,) m along a beam, with those of its root in front, (t, p + 1, ...)."""
+    # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
+    root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
+    if not structure.source.beam.root.springs:
+        root = np.zeros_like(root)
+    return np.concatenate([root[:, None], moved], axis=1)
+
+
+def outline_in_modes(structure: Structure, q: Floats, modes: Complex) -> dict[str, Any]:
+    """Outline of a beam at coordinates (n,), and the displacement (k, p, 3) and twist (k, p) of its points by modes
+    (n, k), by the names of fields; empty if it is no beam.
+    """
+    outline = outline_of(structure, None, np.zeros(1), q[None], OF_MODES)
+    if outline is None or structure.field is None:
+        return {}
+    chosen, rest = _chosen(structure, OF_MODES), outline.points[1:]
+    shape = np.moveaxis(structure.field.points(slice(None))[chosen].slopes(q) @ modes, -1, 0)
+    twist = structure.twist_slopes(q, chosen)
+    return {
+        "outline": outline,
+        "outline_shape": _from_root(structure, rest, shape),
+        "outline_twist": None if twist is None else _from_root(structure, rest, (twist @ modes).T),
+    }
 
 
 def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:

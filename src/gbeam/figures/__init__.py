@@ -15,7 +15,7 @@ from gbeam.figures.description import Figure
 from gbeam.printable import closest
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.results.equilibrium import Critical, CriticalMap, Rest
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
@@ -25,7 +25,7 @@ from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
-from gbeam.results.system import SystemModes, SystemResponse, SystemRest, named
+from gbeam.results.system import SystemResponse, named
 
 Describe = Callable[[], Figure]
 # Of kinds that always have the same.
@@ -59,9 +59,11 @@ def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
 def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
     """Return what describes each figure of a result, or of several of one kind, by name."""
     match result:
-        case (Deflection(), *_):
-            return _of_deflections(result, title)
-        case (MachinePlan() | SystemRest(), *_):
+        case Rest():
+            return _of_rests((result,), title)
+        case (Rest(), *_):
+            return _of_rests(result, title)
+        case (MachinePlan(), *_):
             return _by_motion({each.name: figures_of(each, title) for each in result})
         case Study():
             return _of_study(result, title or result.title)
@@ -71,9 +73,6 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"models": partial(response.models, result, title)} if any(len(r.time) for r in result.rows) else {}
         case Comparison():
             return _of_comparison(result, title, "parts", "parts ")
-        case Deflection():
-            loads = result.loads and {"loads": partial(response.loads_along, result, result.loads, title)}
-            return {"shape": partial(steady.static, [result], title), **(loads or {})}
         case MachinePlan():
             return _of_machine(result, result.axes, title)
         case Critical():
@@ -82,11 +81,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return _of_sweep(result, title)
         case SystemResponse():
             return _of_system(result, title)
-        case SystemRest():
-            beams = {f"loads {body}": partial(systems.loads_at_rest, result, body, title) for body in result.loads}
-            return {"rest": partial(systems.rest, result, title), **beams}
-        case SystemModes():
-            return {"modes": partial(systems.modes, result, title)} if len(result.frequency) else {}
+        case Modes() if not len(result.frequency):
+            return {}
         case Sensitivity():
             return {name: partial(studies.sensitivity, result, name, title) for name in result.measures}
     described = _OF.get(type(result))
@@ -127,13 +123,15 @@ def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
     return described
 
 
-def _of_deflections(deflections: Sequence[Deflection], title: str = "") -> dict[str, Describe]:
-    """Return what describes the figures of a beam's rest in several motions: all together, then the loads of each."""
-    bending = [deflection for deflection in deflections if deflection.solid is None and deflection.specimen is None]
-    described: dict[str, Describe] = {"static": partial(steady.static, bending, title)} if bending else {}
-    for deflection in bending:
-        if deflection.loads is not None:
-            described[f"loads_{deflection.motion}"] = partial(response.loads_along, deflection, deflection.loads, title)
+def _of_rests(rests: Sequence[Rest], title: str = "") -> dict[str, Describe]:
+    """Return what describes the figures of rest in several motions: all together, then the loads of each beam."""
+    drawn = [rest for rest in rests if rest.several or rest.specimen is None]
+    described: dict[str, Describe] = {"static": partial(steady.static, drawn, title)} if drawn else {}
+    for rest in drawn:
+        for name, body in rest.bodies.items():
+            if body.loads is not None and body.bends:
+                words = " ".join(filter(None, ("loads", name if len(rest.bodies) > 1 else "", rest.motion)))
+                described[words] = partial(steady.loads_at_rest, rest, name, title)
     return described
 
 

@@ -33,7 +33,6 @@ from gbeam.figures.description import (
 )
 from gbeam.printable import raised
 from gbeam.results.comparison import Comparison
-from gbeam.results.equilibrium import Deflection
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Base, Loads
 from gbeam.results.response import HubResult, PlotHeading, Readings, Response
@@ -157,12 +156,6 @@ def sizes(study: Study) -> Figure:
     return Figure(study.title, f"sizes of the loads at the root{stress}", tuple(panels))
 
 
-def loads_along(deflection: Deflection, loads: Loads, title: str = "") -> Figure:
-    """Describe, along the beam at rest, the sections' force and moment and the largest and smallest stress."""
-    subject = of_motion(deflection.motion, f"internal loads at rest, {deflection.model}, t = {deflection.time:.4g} s")
-    return Figure(title, subject, carried_along(loads), _judged(deflection.errors, loads))
-
-
 def carried_along(loads: Loads) -> tuple[Panel, ...]:
     """Loads of the sections at one time, along the beam."""
     scale, unit = scale_of("m", loads.stations)
@@ -184,7 +177,7 @@ def loads(response: Response, carried: Loads, title: str = "") -> Figure:
     )
     subject = of_motion(response.name, words)
     shaded = tuple(replace(each, spans=spans) for each in panels)
-    return Figure(title, subject, shaded, _judged(response.errors, carried), (response.outcome,))
+    return Figure(title, subject, shaded, judged(response.errors, carried), (response.outcome,))
 
 
 def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
@@ -193,7 +186,8 @@ def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Ite
     return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried, names)
 
 
-def _judged(errors: Any, carried: Loads) -> tuple[str, ...]:
+def judged(errors: Any, carried: Loads) -> tuple[str, ...]:
+    """Notes on the estimated errors of loads and, where it is known, stress."""
     known = bool(np.isfinite(carried.stress).all())
     stress = (errors.stress.total, errors.stress.peak) if known else (math.nan,) * 2
     parts = ("loads", "their peaks", "stress", "its peaks"), (errors.loads.total, errors.loads.peak, *stress)

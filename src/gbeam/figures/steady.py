@@ -13,6 +13,8 @@ from gbeam.figures.description import (
     GREY,
     REFERENCE,
     ROUNDING,
+    SMALL,
+    Bars,
     Dash,
     Figure,
     Line,
@@ -29,7 +31,8 @@ from gbeam.figures.description import (
     scale_of,
     scaled,
 )
-from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.figures.response import carried_along, judged
+from gbeam.results.equilibrium import BodyRest, Critical, CriticalMap, Rest
 from gbeam.results.errors import along
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
@@ -44,46 +47,97 @@ def _few(stations: Floats) -> Marks:
     return "joined" if len(stations) < 3 else ""
 
 
-def static(deflections: Sequence[Deflection], title: str = "") -> Figure:
-    """Describe where the beam rests, one panel for each direction in which it moves."""
-    shapes = [each.displacement for each in deflections]
-    axes = moving(*shapes)
-    si = declared(Deflection, "displacement")[1]
-    x_scale, x_unit = scale_of("m", *(each.stations for each in deflections))
-    errors = [each.errors.displacement.total for each in deflections]
-    panels = []
-    for i in axes:
-        scale, unit = scale_of(si, *(each[:, i] for each in shapes))
-        looks = [FLIGHT, *(imitating(k) for k in range(len(shapes) - 1))] if len(shapes) > 1 else [imitating(0)]
-        lines = tuple(
-            Line(x_scale * d.stations, scale * d.displacement[:, i], d.motion, marks=_few(d.stations), **look)
-            for d, look in zip(deflections, looks, strict=True)
-        )
-        named = len(shapes) > 1 and i == axes[0]
-        along = f"position from the root, {x_unit}"
-        panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, x=along, zero=True, named=named))
-    subject = f"displacement at rest relative to the base, {deflections[0].model}, t = {deflections[0].time:.4g} s"
+def static(rests: Sequence[Rest], title: str = "") -> Figure:
+    """Describe where a system rests in some motions: bodies that deform along their length, one panel for each
+    direction in which one moves, and the points of several bodies.
+    """
+    first = rests[0]
+    bending = [name for name, body in first.bodies.items() if body.bends]
+    looks = [FLIGHT, *(imitating(k) for k in range(len(rests) - 1))] if len(rests) > 1 else [imitating(0)]
+    panels, notes = list[Panel](), list[str]()
+    for name in bending:
+        bodies = [rest.bodies[name] for rest in rests]
+        moved = [_along(each) for each in bodies]
+        axes = moving(*(shape for _, shape in moved))
+        notes += not_drawn(axes, *(shape for _, shape in moved))
+        x_scale, x_unit = scale_of("m", *(points for points, _ in moved))
+        for i in axes:
+            scale, unit = scale_of(declared(BodyRest, "displacement")[1], *(shape[:, i] for _, shape in moved))
+            lines = tuple(
+                Line(x_scale * points, scale * shape[:, i], rest.motion, marks=_few(points), **look)
+                for rest, (points, shape), look in zip(rests, moved, looks, strict=True)
+            )
+            quantity = " ".join(filter(None, (name if len(bending) > 1 else "", "xyz"[i])))
+            x = f"position from the root, {x_unit}"
+            named = len(rests) > 1 and not panels
+            panels.append(Panel(f"{quantity}, {unit}", lines, x=x, zero=True, named=named))
+    relative = "displacement at rest relative to the base" if bending else "displacement at rest"
+    panels += [
+        _points_at_rest(rest, rest.motion if len(rests) > 1 else "") for rest in rests if rest.several or not bending
+    ]
+    errors = [each.errors.displacement.total for each in rests]
     error = {"": max((each for each in errors if math.isfinite(each)), default=math.nan)}
-    return Figure(title, subject, tuple(panels), (*not_drawn(axes, *shapes), *estimated(error)))
+    subject = ", ".join((relative, *_models(first), f"t = {first.time:.4g} s"))
+    return Figure(title, subject, tuple(panels), (*notes, *estimated(error)))
+
+
+def _along(body: BodyRest) -> tuple[Floats, Floats]:
+    """Positions along a body, (p,) m, and the displacement there, (p, 3) m: of its outline where that has more."""
+    if body.outline is not None and len(body.outline.points) > len(body.stations):
+        return body.outline.points, body.outline.displacement[0]
+    return body.stations, body.displacement
+
+
+def _points_at_rest(rest: Rest, title: str) -> Panel:
+    """Panel of the displacement of all points."""
+    scale, unit = scale_of("m", rest.point_displacement)
+    values = {axis: scale * rest.point_displacement[:, i] for i, axis in enumerate("xyz")}
+    return Panel("", title=title, x=f"displacement from the start, {unit}", bars=Bars(rest.points, values), height=2.0)
+
+
+def _models(result: Rest | Modes) -> list[str]:
+    """Kinds of the models of the bodies that deform, each once."""
+    return [*dict.fromkeys(each.model for each in result.bodies.values())]
+
+
+def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
+    """Describe, along a body at rest, the sections' force and moment and the largest and smallest stress."""
+    carried = rest.bodies[body].loads
+    assert carried is not None
+    of = f" of {body}" if len(rest.bodies) > 1 else ""
+    subject = of_motion(rest.motion, f"internal loads at rest{of}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
+    return Figure(title, subject, carried_along(carried), judged(rest.errors, carried))
 
 
 def modes(result: Modes, title: str = "") -> Figure:
-    """Describe the lowest modes, each in the direction in which it moves most."""
-    x_scale, x_unit = scale_of("m", result.stations)
-    lines = []
-    for k in range(min(SHOWN, len(result.frequency))):
-        direction = result.direction[k]
-        shape = result.edge[k] if direction == "twist" else result.shape[k, :, "xyz".index(direction)]
-        label = f"{result.frequency[k]:.4g} Hz, {direction}"
-        real = Line(x_scale * result.stations, shape.real, label, colour=k, marks=_few(result.stations))
-        lines.append(real)
-        if np.abs(shape.imag).max() > 1e-6:
-            lines.append(replace(real, y=shape.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))
-    subject = of_motion(result.motion, f"modes about the equilibrium at {result.time:.4g} s, {result.model}")
-    words = declared(Modes, "shape")[0]
-    panel = Panel(words, tuple(lines), x=f"position from the root, {x_unit}", height=2.0)
+    """Describe the lowest modes, each along the bodies that deform in the direction in which that moves most, and of
+    several bodies their shares in the kinetic energy.
+    """
+    panels = [_shapes(result, name) for name in result.bodies]
+    if len(result.body_names) > 1 or not panels:
+        names = tuple(f"{k + 1}: {frequency:.4g} Hz" for k, frequency in enumerate(result.frequency))
+        bars = Bars(names, {body: result.share[:, k] for k, body in enumerate(result.body_names)})
+        panels.append(Panel("", x="share of the bodies in the kinetic energy", bars=bars, height=2.0))
+    subject = ", ".join((f"modes about the equilibrium at {result.time:.4g} s", *_models(result)))
     errors = {"": math.nan if result.errors is None else result.errors.largest}
-    return Figure(title, subject, (panel,), estimated(errors))
+    return Figure(title, of_motion(result.motion, subject), tuple(panels), estimated(errors))
+
+
+def _shapes(result: Modes, name: str) -> Panel:
+    """Panel of the lowest modes along one body."""
+    body = result.bodies[name]
+    lines = []
+    x_scale, x_unit = 1.0, "m"
+    for k in [k for k, way in enumerate(body.direction) if way][:SHOWN]:
+        points, moved = body.moved(k)
+        x_scale, x_unit = scale_of("m", points)
+        label = f"{result.frequency[k]:.4g} Hz, {body.direction[k]}"
+        real = Line(x_scale * points, moved.real, label, colour=k % SHOWN, marks=_few(points))
+        lines.append(real)
+        if np.abs(moved.imag).max() > SMALL:
+            lines.append(replace(real, y=moved.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))
+    words = f"{name if len(result.bodies) > 1 else 'displacement'}, largest component 1"
+    return Panel(words, tuple(lines), x=f"position from the root, {x_unit}", height=2.0)
 
 
 def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0, "rad/s")) -> Figure:

@@ -1,4 +1,4 @@
-"""Figures of systems and of solids: points and coordinates over time, energies, shapes of modes, stress, loads."""
+"""Figures of systems and of solids: points and coordinates over time, energies, stress, loads."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
     ROUNDING,
-    Bars,
     Dash,
     Figure,
     Level,
@@ -21,11 +20,11 @@ from gbeam.figures.description import (
     of_motion,
     scale_of,
 )
-from gbeam.figures.response import carried_along, carried_at_root
+from gbeam.figures.response import carried_at_root
 from gbeam.printable import raised
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
-from gbeam.results.system import ENERGIES, SystemModes, SystemResponse, SystemRest, named
+from gbeam.results.system import ENERGIES, SystemResponse, named
 
 COLOURS = 6
 DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
@@ -110,12 +109,6 @@ def loads(response: SystemResponse, body: str, title: str = "") -> Figure:
     return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
-def loads_at_rest(result: SystemRest, body: str, title: str = "") -> Figure:
-    """Describe the sections' force and moment and the stress along a beam at rest."""
-    subject = f"internal loads of {body} at rest, t = {result.time:.4g} s"
-    return Figure(title, of_motion(result.name, subject), carried_along(result.loads[body]))
-
-
 def energy(response: SystemResponse, title: str = "") -> Figure:
     """Describe kinetic and elastic energy, that of gravity, and their sum."""
     assert response.invariants is not None
@@ -123,21 +116,6 @@ def energy(response: SystemResponse, title: str = "") -> Figure:
     lines = [Line(response.time, parts[:, k], name, colour=k) for k, name in enumerate(ENERGIES)]
     lines.append(Line(response.time, parts.sum(axis=1), "whole", colour=len(ENERGIES), dash="dashed"))
     return Figure(title, "energy", (Panel("energy, J", tuple(lines)),), outcomes=(response.outcome,))
-
-
-def rest(result: SystemRest, title: str = "") -> Figure:
-    """Describe how far every point is displaced at rest."""
-    scale, unit = scale_of("m", result.displacement)
-    values = {axis: scale * result.displacement[:, i] for i, axis in enumerate("xyz")}
-    bars = Bars(result.points, values)
-    return Figure(title, "displacement at rest", (Panel("", x=f"displacement, {unit}", bars=bars),))
-
-
-def modes(result: SystemModes, title: str = "") -> Figure:
-    """Describe which bodies move in which mode: their shares in the kinetic energy."""
-    names = tuple(f"{k + 1}: {frequency:.4g} Hz" for k, frequency in enumerate(result.frequency))
-    bars = Bars(names, {body: result.share[:, k] for k, body in enumerate(result.bodies)})
-    return Figure(title, "shares of the bodies in the kinetic energy", (Panel("", x="share", bars=bars),))
 
 
 NEAR = 3.0  # times the largest stress: a strength beyond would press the lines to the ground

@@ -104,6 +104,9 @@ _NUMBERED = {
 }
 
 
+_OF_ALL = {"time", "mode", *_LABELLED}  # dimensions that rows by name share
+
+
 def name_of(key: str, declaration: Declaration, pattern: str) -> str:
     """Return the name of a field in files, which stands for the ``*`` of the pattern of its record."""
     before, _, after = pattern.partition("*")
@@ -135,6 +138,8 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
         name = name_of(key, declaration, pattern)
         after = pattern.partition("*")[2]
         dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *declaration.dims))
+        if isinstance(value, (np.ndarray, np.generic)) and value.ndim < len(dims):
+            dims = tuple(dim for dim in dims if dim != "time")  # of one time
         stated = declaration.unit
         si = unit if stated is BESIDE and unit else stated(record) if callable(stated) else str(stated)
         part_pattern = pattern_of(declaration, pattern)
@@ -144,9 +149,10 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
         elif declaration.role == "rows" and isinstance(value, Mapping):
             units = declaration.unit if isinstance(declaration.unit, dict) else {}
             for row, part in value.items():
-                inner = group_of(part, (), part_pattern.replace("*", f"{row}_*"), units.get(row, ""))
-                dims_of_row = {dim for entry in inner.variables.values() for dim in entry.dims} - {"time", *_LABELLED}
+                inner = group_of(part, (), f"{row}_{part_pattern}", units.get(row, ""))
+                dims_of_row = {dim for entry in inner.variables.values() for dim in entry.dims} - _OF_ALL
                 inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in dims_of_row})
+                group.attrs.update(inner.attrs)
                 group.coordinates.update({dim: entry for dim, entry in inner.coordinates.items() if dim})
                 for label, entry in known(inner.variables).items():
                     long_name = f"{row.replace('_', ' ')}, {entry.attrs['long_name']}"

@@ -48,7 +48,6 @@ from gbeam.io.layout import (
 )
 from gbeam.results.cases import BOUNDS, ORDERS, PROBABILITY, SAMPLE, Parameter, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.equilibrium import Deflection
 from gbeam.results.errors import Errors
 from gbeam.results.machine import LimitUse
 from gbeam.results.provenance import Provenance
@@ -63,17 +62,6 @@ def response_group(response: Response) -> Group:
     group = whole_group(response)
     limits = {} if response.axes is None else limits_variables(response.axes.limits)
     return Group(known(group.variables) | limits, group.coordinates, group.attrs | _errors(response.errors))
-
-
-def deflection_group(deflection: Deflection) -> Group:
-    """Return what a file holds of a static deflection."""
-    group = whole_group(deflection)
-    if deflection.loads is not None:  # of one time
-        loads = group_of(deflection.loads)
-        carried = {name: Variable(each.dims[1:], each.values[0], each.attrs) for name, each in loads.variables.items()}
-        group.variables.update(carried)
-        group.coordinates.update(loads.coordinates)
-    return Group(group.variables, group.coordinates, group.attrs | _errors(deflection.errors))
 
 
 def _errors(errors: Errors) -> dict[str, float | str]:
@@ -171,7 +159,6 @@ FACTS = "facts"  # the variable of the root with the figures as JSON
 # Of kinds whose file has more than their declared fields.
 _GROUPS: dict[type, Callable[[Any], Group]] = {
     Response: response_group,
-    Deflection: deflection_group,
     MachinePlan: plan_group,
     Sweep: sweep_group,
 }

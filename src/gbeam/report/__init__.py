@@ -20,9 +20,9 @@ _MODULES = {
     "cases": ("Sweep",),
     "machine": ("MachinePlan", "Comparison"),
     "searches": ("Sensitivity", "Fit", "Optimum", "ShapedCommand", "Placement"),
-    "steady": ("Deflection", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
+    "steady": ("Rest", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
     "study": ("Study", "ModelStudy"),
-    "systems": ("SystemRest", "SystemModes", "SystemResponse"),
+    "systems": ("SystemResponse",),
 }
 _TITLED = ("Study", "MachinePlan", "ModelStudy")  # in a terminal
 

@@ -169,18 +169,32 @@ def specimen_tables(rigid: Facts) -> Blocks:
     yield table(bolts, of_bolts, "Largest loads of the bolts, alike and without preload", optional=("compression, N",))
 
 
-def errors(motions: Facts) -> Blocks:
-    """Table of the estimated errors in every motion by their causes, and sentences on what is not estimated."""
+def errors(motions: Facts, bodies: Facts | None = None, more: tuple[str, ...] = ()) -> Blocks:
+    """Table of the estimated errors in every motion by their causes, `more` than those of deflection, loads and stress,
+    and sentences on what is not estimated; `bodies` tells rigid specimens, by default the motions themselves.
+    """
+    rigid = all("specimen" in each for each in (motions if bodies is None else bodies).values())
     rows = [
         {"name": name, "of": quantity, **each["errors"][quantity]}
         for name, each in motions.items()
-        for quantity in (("loads",) if "specimen" in each else ("displacement", "loads", "stress"))
+        for quantity in (("loads",) if rigid or "specimen" in each else ("displacement", *more, "loads", "stress"))
         if each["errors"][quantity]["total"] is not None
     ]
     causes = {name.replace("_", " "): f"{name}:%" for name, _ in declarations(ErrorEstimate)}
     yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)
-    if not rows and not all("specimen" in each for each in motions.values()):
+    if not rows and not rigid:
         yield Sentence("no error estimate", "faint")
     for name, each in motions.items():
         if each["errors"].get("note"):
             yield Sentence(f"{name}: {each['errors']['note']}", "faint")
+
+
+def errors_by_body(errors: Facts) -> Block:
+    """Table of the errors that every body brings."""
+    count = len(errors.get("beams", ()))
+    rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
+    shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
+    shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
+    shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
+    cells = {"body": "beams", **shares, "beam theory": "theory"}
+    return table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])

@@ -29,8 +29,8 @@ from gbeam.report.blocks import (
     six,
     table,
 )
-from gbeam.report.loads import errors, parts_tables, resting_loads
-from gbeam.report.words import errors_in_words, number, percent, tidy
+from gbeam.report.loads import errors, errors_by_body, parts_tables, resting_loads
+from gbeam.report.words import errors_in_words, known, number, percent, tidy
 from gbeam.results.equilibrium import CriticalMap
 from gbeam.results.errors import Accelerated, along
 from gbeam.results.state_space import ACCURATE
@@ -39,44 +39,107 @@ RESTING = 1e-9  # rad/s: a smaller rate of a base is a profile's rounding
 ROUNDING = 1e-10  # a damping ratio smaller than this is none
 
 
-def deflection(facts: Facts) -> Blocks:
-    """Displacement of the tip in every motion, loads of the root, stress, and the errors."""
+def rest(facts: Facts) -> Blocks:
+    """Displacements of bodies and points in every motion, loads of bodies and of the ground, stress, and the errors."""
     motions = facts["motions"]
-    for name, rest in motions.items():
-        if not rest["stable"]:
-            yield Sentence(f"motion {name}: {rest.get('message') or 'UNSTABLE, no beam would stay there'}", "bad")
+    several = {name: each for name, each in motions.items() if _several(each)}
+    head, bodies = _by_body(motions, by_motion=not several)
+    yield Items(tuple(f"motion {name}: {each['message']}" for name, each in motions.items() if each["message"]), "bad")
+    for each in motions.values():
+        yield from evenly(each)
     yield Section("View", (Place("viewer"),))
-    tips: Columns = {"motion": "name", "at, s": "time", "model": "model"}
+    tips: Columns = {head: "name", "at, s": "time", "model": "model"}
     tips |= {f"{axis}, mm": f"tip.{axis}:.6g" for axis in "xyz"}
-    bending = [rest for rest in named(motions) if "specimen" not in rest]
-    yield Section("Deflection", (table(bending, tips, "Displacement of the tip"),))
-    loads = {name: rest["loads"] for name, rest in motions.items() if "loads" in rest}
-    yield Section("Loads", (resting_loads(loads), *parts_tables(motions)))
-    yield Section("Accuracy", tuple(errors(motions)))
-    yield Section("Along the beam", (FIGURES,))
+    bending = [each for each in named(bodies) if "specimen" not in each]
+    yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(several)))
+    loads = {name: each["loads"] for name, each in bodies.items() if "loads" in each}
+    yield Section("Loads", (resting_loads(loads, head), *parts_tables(bodies, head), *_on_ground(several)))
+    if bodies:
+        more = ("place",) if several else ()
+        yield Section(
+            "Accuracy", (*errors(motions, bodies, more), *(errors_by_body(e["errors"]) for e in several.values()))
+        )
+    yield Section("Figures", (FIGURES,))
+
+
+def _several(rest: Facts) -> bool:
+    """True if points are on other bodies than one that deforms."""
+    bodies = rest.get("bodies", {})
+    return len(bodies) != 1 or {point.partition(".")[0] for point in rest["points"]} != {*bodies}
+
+
+def _by_body(motions: Facts, *, by_motion: bool) -> tuple[str, Facts]:
+    """Head of a column, and bodies that deform by their names in it: of the motion, if it is asked for, the body, or
+    both where there are several motions.
+    """
+    rows = [(name, body, each | {"time": rest["time"]}) for name, rest in motions.items()
+            for body, each in rest.get("bodies", {}).items()]  # fmt: skip
+    if by_motion:
+        return "motion", {name: each for name, _, each in rows}
+    if len(motions) == 1:
+        return "body", {body: each for _, body, each in rows}
+    return "motion and body", {f"{name}, {body}": each for name, body, each in rows}
+
+
+def _points(motions: Facts) -> Blocks:
+    """Tables of the displacements of points, and on a page of all coordinates and drives."""
+    rows = [{"motion": name, **each} for name, rest in motions.items() for each in named(rest["points"])]
+    of_motion: Columns = {"motion": "motion"} if len(motions) > 1 else {}
+    cells: Columns = {**of_motion, "point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
+    places = (abs(each) for row in rows for each in row["place"].values())
+    yield table(
+        rows, cells, "Displacement of points from the start, axes of the ground", scale=max(places, default=0.0)
+    )
+    coordinates: Columns = of_motion | {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
+    rows = [{"motion": name, **each} for name, rest in motions.items() for each in named(rest["coordinates"])]
+    yield table(rows, coordinates, "Coordinates", detail=True)
+
+
+def _on_ground(motions: Facts) -> Blocks:
+    """Sentences on the force and the moment on the ground."""
+    for name, each in motions.items():
+        force, moment = ([*each[key].values()] for key in ("ground_force", "ground_moment"))
+        largest = max(map(abs, force + moment))
+        pair = (", ".join(f"{part:.5g}" for part in tidy(vector, largest)) for vector in (force, moment))
+        before = f"motion {name}: " if len(motions) > 1 else ""
+        yield Sentence("{}on the ground: force ({}) N, moment ({}) N m".format(before, *pair))
 
 
 def modes(facts: Facts) -> Blocks:
-    """Frequencies, damping and errors, and the shapes as they move."""
-    rate = float(np.linalg.norm(list(facts["base"]["angular_velocity"].values())))
-    turning = f"base turning at {number(rate if rate > RESTING else 0.0)} rad/s"
-    coupling = "in" if facts["gyroscopic"] else "left out"
-    yield where(facts, f"at {number(facts['time'])} s, {turning}, Coriolis coupling {coupling}")
+    """Frequencies, damping and errors, what moves most and the bodies' shares, and the shapes as they move."""
+    bodies, several = facts.get("bodies", {}), len(facts["body_names"]) > 1
+
+    def shares(each: Facts) -> Value:
+        pairs = zip(facts["body_names"], each["share"], strict=True)
+        # Bodies of equal shares in their own order, whatever the last digits say.
+        ranked = sorted(pairs, key=lambda pair: -round(pair[1], 2))
+        return ", ".join(f"{body} {share:.0%}" for body, share in ranked if share > 0.005) if several else None
+
+    rates = [np.linalg.norm([*each["base"]["angular_velocity"].values()]) for each in bodies.values()]
+    rate = float(max(rates, default=0.0))
+    turning = [f"turning at {number(rate)} rad/s"] if rate > RESTING else []
+    coupling = [] if facts["gyroscopic"] else ["Coriolis coupling left out"]
+    yield where(facts, f"at {number(facts['time'])} s", *turning, *coupling)
+    yield from evenly(facts)
     yield growing(facts, lambda each: f" {along(each['direction'])}")
-    yield modes_table(facts, {"along": "direction"} | ERROR)
-    if not facts["damping_given"]:
-        yield Sentence("undamped: beam.damping_ratio is not given", "faint")
+    yield modes_table(facts, {"along": "direction"} | ERROR | {"kinetic energy": shares})
+    reached = known(facts["reached"])
+    if any(each["frequency"] > reached for each in facts["modes"]):
+        yield Sentence(f"above {reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
+    undamped = [f"{name}.damping_ratio" for name, each in bodies.items() if not each["damping_given"]]
+    if undamped:
+        yield Sentence(f"undamped: {', '.join(undamped)} {'is' if len(undamped) == 1 else 'are'} not given", "faint")
     if facts["rigid"]:
-        yield Sentence("and the free rotation of hub and beam, of zero frequency")
-    unknown = "" if facts.get("section", {}).get("width") else "; a beam's section, which the result lacks, is not"
-    drawing = f"largest displacement 15 % of the length; the rest is drawn to scale{unknown}"
+        yield Sentence(f"and {facts['rigid']} motion{'' if facts['rigid'] == 1 else 's'} of zero frequency")
+    drawing = "largest displacement 15 % of the length at most; the rest is drawn to scale"
     yield Section("Shapes", (Place("viewer", drawing), FIGURES))
 
 
 def where(facts: Facts, *words: str) -> Sentence:
-    """Sentence on the motion, if it has a name, the model, and other words."""
+    """Sentence on the motion, if it has a name, the models, and other words."""
     motion = f"motion {facts['motion']}" if facts["motion"] else ""
-    return Sentence(", ".join(filter(None, (motion, f"model {facts['model']}", *words))))
+    models = dict.fromkeys(each["model"] for each in facts.get("bodies", {"": facts}).values())
+    return Sentence(", ".join(filter(None, (motion, *(f"model {each}" for each in models), *words))))
 
 
 ERROR: Columns = {"estimated error": "error_estimate:%"}
@@ -90,7 +153,7 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
 
     cells: Columns = {"mode": "number", "frequency, Hz": "frequency:.6g", GROUND: "ground_frequency:.6g"}
     cells |= {"damping ratio": damping, **more}
-    modes_of = table(numbered(facts["modes"]), cells, optional=(GROUND, *ERROR))
+    modes_of = table(numbered(facts["modes"]), cells, optional=(GROUND, *ERROR, "kinetic energy"))
     return Section("Modes", (modes_of, *framed(facts), *noted(facts)))
 
 

@@ -1,4 +1,4 @@
-"""Reports of systems of bodies: at rest, their vibrations, and their responses over time."""
+"""Reports of systems of bodies over time."""
 
 from __future__ import annotations
 
@@ -12,75 +12,12 @@ from gbeam.report.blocks import (
     Place,
     Section,
     Sentence,
-    Value,
     named,
     quantities,
     table,
 )
-from gbeam.report.loads import READ, at_points, loads_table, resting_loads, stress_table
-from gbeam.report.steady import ERROR, evenly, growing, modes_table
-from gbeam.report.words import errors_in_words, known, tidy
-
-
-def system_modes(facts: Facts) -> Blocks:
-    """Modes with the bodies' shares of the kinetic energy."""
-
-    def shares(each: Facts) -> Value:
-        pairs = zip(facts["body_names"], each["share"], strict=True)
-        # Bodies of equal shares in their own order, whatever the last digits say.
-        ranked = sorted(pairs, key=lambda pair: -round(pair[1], 2))
-        return ", ".join(f"{body} {share:.0%}" for body, share in ranked if share > 0.005)
-
-    yield Sentence(f"{facts['name']} at {facts['time']:.4g} s".lstrip())
-    yield from evenly(facts)
-    yield growing(facts, lambda each: "")
-    yield Section("View", (Place("viewer"),))
-    yield modes_table(facts, ERROR | {"kinetic energy": shares})
-    reached = known(facts["reached"])
-    if any(each["frequency"] > reached for each in facts["modes"]):
-        yield Sentence(f"above {reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
-    if facts["rigid"]:
-        yield Sentence(f"and {facts['rigid']} motion{'' if facts['rigid'] == 1 else 's'} of zero frequency")
-    yield Section("Figures", (FIGURES,))
-
-
-def system_rest(facts: Facts) -> Blocks:
-    """Displacements of the points at rest, and the loads of the ground and of every beam."""
-    yield Section("View", (Place("viewer"),))
-    for name, rest in facts["motions"].items():
-        of_motion = _rest({**rest, "units": units_in(facts)})
-        yield Section(f"motion {name} at {rest['time']:.4g} s", tuple(of_motion), titled=True)
-    yield Section("Figures", (FIGURES,))
-
-
-def _rest(rest: Facts) -> Blocks:
-    """Displacements and coordinates of a system at rest, its loads, stress and errors, and on a page all else."""
-    yield Items(tuple(filter(None, [rest.get("message")])), "bad")
-    yield from evenly(rest)
-    cells = {"point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
-    places = (abs(each) for point in rest["points"].values() for each in point["place"].values())
-    yield table(named(rest["points"]), cells, scale=max(places, default=0.0))
-    coordinates: Columns = {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
-    yield table(named(rest["coordinates"]), coordinates, detail=True)
-    force, moment = ([*rest[key].values()] for key in ("ground_force", "ground_moment"))
-    largest = max(map(abs, force + moment))
-    pair = (", ".join(f"{each:.5g}" for each in tidy(vector, largest)) for vector in (force, moment))
-    yield Sentence("on the ground: force ({}) N, moment ({}) N m".format(*pair))
-    yield resting_loads(rest.get("beams", {}), "beam")
-    yield from stress_table(rest.get("solids", {}), "body")
-    yield from errors_of_system(rest["errors"])
-    yield _others(
-        rest,
-        "points",
-        "coordinates",
-        "time",
-        "ground_force",
-        "ground_moment",
-        "beams",
-        "solids",
-        "errors",
-        "accelerated",
-    )
+from gbeam.report.loads import READ, at_points, errors_by_body, loads_table, stress_table
+from gbeam.report.words import errors_in_words, known
 
 
 def units_in(facts: Facts) -> dict[str, str]:
@@ -103,13 +40,7 @@ def errors_of_system(errors: Facts) -> Blocks:
         yield Sentence(f"estimated error {of_places}{errors_in_words(place)} of the largest displacement")
     if errors.get("note"):
         yield Sentence(errors["note"], "faint")
-    count = len(errors.get("beams", ()))
-    rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
-    shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
-    shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
-    shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
-    cells = {"body": "beams", **shares, "beam theory": "theory"}
-    yield table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])
+    yield errors_by_body(errors)
 
 
 def system_response(facts: Facts) -> Blocks:

@@ -3,73 +3,156 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
+
+import numpy as np
 
 from gbeam.constants import BY_STRAINS
 from gbeam.printable import percent
-from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
+from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.declared import quantity as entry  # a critical value has a field of that name
-from gbeam.results.errors import FRAME, MODEL, SHAPES, THEORY, TOTAL, UNKNOWN, ErrorEstimate, Errors
+from gbeam.results.errors import (
+    FRAME,
+    MODEL,
+    SHAPES,
+    THEORY,
+    TOTAL,
+    UNKNOWN,
+    Accelerated,
+    ErrorEstimate,
+    Errors,
+    accelerated,
+    evenly,
+)
 from gbeam.results.facts import at_place
-from gbeam.results.parts import Base, Loads
+from gbeam.results.one_body import DeflectedBody
+from gbeam.results.parts import Base, Loads, Outline
 from gbeam.results.result import Decided, Figured, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
+from gbeam.results.system import Assembly, Placed, most_moved
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Deflection(Decided, Figured[Literal["shape", "loads"]]):
-    """Relative equilibrium at a frozen base motion."""
+class BodyRest(Part):
+    """One body that deforms, or a rigid specimen, at rest in its system, in axes of its root."""
 
-    listed_by, unnamed = "motion", "beam"
-    motion: str = fact("name of the motion", key=None)
     model: str = fact("kind of the model")
-    time: float = fact("time at which the motion is frozen", "s")
-    base: Base = part("motion of the base at that time")
+    base: Base = part("motion of its root at that time")
     stations: Floats = quantity(
-        "m", "position along the beam from the root", "station", role="coordinate", note="the last is the tip"
+        "m", "position along the body from the root", "station", role="coordinate", note="the last is the tip"
     )
-    displacement: Floats = quantity("m", "displacement relative to the base axes", "station axis")
+    displacement: Floats = quantity("m", "displacement relative to the root", "station axis")
     q: Floats = quantity(
         lambda self: "" if self.model in BY_STRAINS else "m",
-        "generalised coordinates of the beam",
+        "generalised coordinates of the body",
         "coordinate",
         name="coordinates",
         key=None,
     )
     strain_energy: float = quantity("J", "strain energy")
-    stable: bool | None = fact(
-        "whether the stiffness about the equilibrium is positive definite",
-        note="under loads that follow the beam, whether no vibration about it grows; None where that is not known",
-    )
     loads: Loads | None = internal("", "forces, moments and stresses of the sections, of one time", default=None)
-    errors: Errors = part("of displacement, root loads and stress", name=None, default_factory=Errors)
     solid: SolidStress | None = part("stress of a solid, of one time", name=None, optional=True, default=None)
     surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
     specimen: SpecimenLoads | None = part(
         "loads of a rigid specimen, of one time", name=None, optional=True, default=None
     )
+    outline: Outline | None = part("shape of a beam, for pictures", name=INSIDE, key=None, default=None)
 
-    @declared("", "forces, moments and stresses of the sections", role="part", name=None, key="loads", optional=True)
+    @declared("", "forces, moments and stresses of the sections", role="part", key="loads", optional=True)
     def carried(self) -> Loads | None:
         return None if self.loads is None else replace(at_place(self.loads, 0), stations=self.loads.stations)
 
-    @declared("m", "displacement of the tip relative to the base axes", "axis", name=None)
+    @declared("m", "displacement of the tip relative to the root", "axis", name=None)
     def tip(self) -> Floats:
         return self.displacement[-1]
 
+    @property
+    def bends(self) -> bool:
+        """True of a body that is drawn along its length: it is neither a mesh nor a rigid specimen."""
+        return self.solid is None and self.specimen is None
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Displacement of the tip and stress, or the loads of a rigid specimen, in words."""
+        if self.specimen is not None:
+            return tuple(self.specimen.lines)
+        tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
+        return f"tip ({tip}) mm", *(() if self.solid is None else self.solid.lines)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Rest(DeflectedBody, Placed, Decided, Figured[str]):
+    """Relative equilibrium of a system at a frozen motion of its ground.
+
+    Examples
+    --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], stiffness=10.0)
+    >>> held = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
+    >>> rest = gb.static(held)
+    >>> print(f"{rest.coordinate('hinge.angle'):.4f} rad, {rest.ground_force[2]:.2f} N")
+    0.4431 rad, -9.81 N
+    """
+
+    listed_by, unnamed = "motion", "ground"
+    json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
+
+    motion: str = fact("name of the motion", key=None, note="empty where there is none")
+    time: float = fact("time at which drives and motion are frozen", "s")
+    base: Base | None = part(
+        "motion of the ground at that time", name="ground_", optional=True, note="None where it rests"
+    )
+    points: tuple[str, ...] = labels("name of the point", "point")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
+    units: tuple[str, ...] = quantity(
+        "", "SI unit of the coordinate", "coordinate", name="coordinate_unit", key="unit",
+        note="empty of Euler parameters and of a flexible body's own",
+    )  # fmt: skip
+    place: Floats = quantity("m", "place of the point", "point axis", frame="ground")
+    point_displacement: Floats = quantity(
+        "m", "displacement of the point from the start", "point axis", key="displacement", frame="ground"
+    )
+    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point euler")
+    q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
+    effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
+    stable: bool | None = fact(
+        "whether it comes back after any small disturbance, or stays near",
+        note="not by gyroscopic coupling alone, which any damping would spoil; None where that is not known",
+    )
+    ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
+    ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
+    bodies: Mapping[str, BodyRest] = rows(
+        "bodies that deform, and rigid specimens, by name", "body", optional=True, name="", default_factory=dict
+    )
+    accelerated: tuple[Accelerated, ...] = accelerated()
+    errors: Errors = part(
+        "of deflections, places, root loads and stress, as fractions of the largest", name="error_",
+        default_factory=Errors,
+    )  # fmt: skip
+    assembly: Assembly | None = part(
+        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
+    )
+
     def __repr__(self) -> str:
         motion = f" {self.motion!r}" if self.motion else ""
-        tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
-        stability = "stable" if self.stable else self.message or "NOT stable: no beam would stay there"
+        models = f" ({', '.join(dict.fromkeys(each.model for each in self.bodies.values()))})" if self.bodies else ""
+        named = len(self.bodies) > 1
+        said = [f"{name}: {line}" if named else line for name, each in self.bodies.items() for line in each.lines]
+        if self.several:
+            said.insert(0, most_moved(self, np.linalg.norm(self.point_displacement, axis=-1)))
+        lines = [f"Rest{motion}{models} at {self.time:.4g} s: {said[0]}", *said[1:]]
+        force = ", ".join(f"{each:.4g}" for each in self.ground_force)
+        lines += [f"force on the ground ({force}) N", *evenly(self.accelerated)]
         total = self.errors.displacement.total
-        error = f"; estimated error {percent(total)}" if math.isfinite(total) else ""
-        head = f"Deflection{motion} ({self.model}) at {self.time:.4g} s:"
-        if self.specimen is not None:
-            first, *others = self.specimen.lines
-            return self._with_warnings(f"{head} {first}", *others)
-        lines = () if self.solid is None else self.solid.lines
-        return self._with_warnings(f"{head} tip ({tip}) mm{error}; {stability}", *lines)
+        lines += [f"estimated error {percent(total)}"] if self.errors.beams and math.isfinite(total) else []
+        return self._with_warnings(*lines, *filter(None, [self.message]))
+
+    @property
+    def several(self) -> bool:
+        """True if points are on other bodies than one that deforms."""
+        return len(self.bodies) != 1 or {point.partition(".")[0] for point in self.points} != {*self.bodies}
 
 
 LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_load_factor": ""}

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from gbeam.results.declared import declared, fact, internal, part, quantity, rows
+from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.equilibrium import Critical
 from gbeam.results.errors import (
     FRAME,
     IN_GROUND,
     SEVERAL,
+    Accelerated,
     ErrorEstimate,
     FrequencyErrors,
     Instability,
     Noted,
     Oscillating,
+    accelerated,
+    evenly,
     totals,
 )
-from gbeam.results.parts import Base
+from gbeam.results.one_body import ShapedBody
+from gbeam.results.parts import Base, Outline
 from gbeam.results.result import Complex, Decided, Figured, Floats, Part
 from gbeam.results.solids import SurfaceModes
+from gbeam.results.system import Assembly
 
 SHOWN = 6  # frequencies in a short description
 FAR = 2.0  # times the highest multiple of the speed: a mode above would press the others to the ground
@@ -31,26 +37,100 @@ FEW = 2  # modes drawn in any case
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Modes(Oscillating, Decided, Figured[Literal["modes"]]):
-    """Small vibrations about a relative equilibrium, ascending in frequency."""
+class BodyModes(Part):
+    """One body that deforms in the modes of its system, in axes of its root and in the size of the modes' shapes."""
 
     json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
 
-    motion: str = fact("name of the motion")
     model: str = fact("kind of the model")
-    time: float = fact("time at which the motion is frozen", "s")
-    base: Base = part("motion of the base at that time")
+    base: Base = part("motion of its root at that time")
+    damping_given: bool = fact("whether the body has a damping ratio, be it zero", note="without one it is undamped")
+    direction: tuple[str, ...] = quantity(
+        "", "direction in which the body moves most", "mode", note="x, y, z or twist; empty where it does not"
+    )
+    coordinates: Complex = internal("", "generalised coordinates of the body", "mode coordinate")
+    stations: Floats = quantity("m", "position along the body from the root", "station", role="coordinate")
+    shape: Complex = quantity("", "displacement of the station relative to the root", "mode station axis")
+    equilibrium: Floats = quantity("m", "displacement about which the body vibrates", "station axis", key=None)
+    twist: Complex | None = quantity(
+        "rad/m",
+        "angle of the section about the beam's axis, for shapes in m",
+        "mode station",
+        optional=True,
+        note="None of a model without twist",
+        default=None,
+    )
+    outline: Outline | None = part("shape of a beam at rest, for pictures", key=None, name=INSIDE, default=None)
+    outline_shape: Complex | None = quantity(
+        "", "displacement of the beam's axis relative to the root", "mode point axis", key=None, default=None
+    )
+    outline_twist: Complex | None = quantity(
+        "rad/m", "angle of the beam's section about its axis, for shapes in m", "mode point", key=None, default=None,
+        note="None of a model without twist",
+    )  # fmt: skip
+    surface: SurfaceModes | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
+
+    def moved(self, k: int) -> tuple[Floats, Complex]:
+        """Positions along the body, (p,) m, and how far they move in the direction of the mode k, (p,): of one in the
+        direction twist its sections' outermost fibres.
+        """
+        section, way = self.outline, self.direction[k]
+        if way == "twist" and section is not None and self.outline_twist is not None:
+            fibre = outermost(section.width, section.thickness, is_round=section.round)
+            return section.points, self.outline_twist[k] * fibre
+        if way == "twist":
+            return self.stations, np.full(len(self.stations), np.nan + 0j)
+        if section is None or self.outline_shape is None or len(self.stations) >= len(section.points):
+            return self.stations, self.shape[k, :, "xyz".index(way)]
+        return section.points, self.outline_shape[k, :, "xyz".index(way)]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Modes(ShapedBody, Oscillating, Decided, Figured[Literal["modes"]]):
+    """Small vibrations of a system about a steady state, in which it rests or is accelerated evenly, by frequency.
+
+    Examples
+    --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], initial=1.0)
+    >>> pendulum = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
+    >>> print(gb.modes(pendulum).frequency.round(4))
+    [0.6105]
+    """
+
+    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
+
+    motion: str = fact("name of the motion", note="empty where there is none")
+    time: float = fact("time at which drives and motion are frozen", "s")
+    base: Base | None = part(
+        "motion of the ground at that time", name="ground_", optional=True, note="None where it rests"
+    )
     gyroscopic: bool = fact("whether Coriolis coupling is in")
     eigenvalue: Complex = internal(
         "1/s", "eigenvalues of the oscillating modes", "mode", note="one of each pair, with the positive imaginary part"
     )
-    direction: tuple[str, ...] = quantity("", "direction in which the beam moves most", "mode", note="x, y, z or twist")
-    coordinates: Complex = internal("", "generalised coordinates, of unit mass-weighted length", "mode coordinate")
-    stations: Floats = quantity("m", "position along the beam from the root", "station", role="coordinate")
-    shape: Complex = quantity("", "displacement, largest component 1", "mode station axis")
-    equilibrium: Floats = quantity("m", "displacement about which the beam vibrates", "station axis", key=None)
+    direction: tuple[str, ...] = quantity(
+        "", "what moves most", "mode",
+        note="of a body alone x, y, z or twist; else the body with most kinetic energy, and an axis of its root along "
+        "or, as in arm rx, about which it moves",
+    )  # fmt: skip
+    points: tuple[str, ...] = labels("name of the point", "point", key="point_names")
+    body_names: tuple[str, ...] = labels("name of the body", "body", key="")
+    point_shape: Complex = quantity(
+        "", "displacement of the point; of all points and stations the largest component is 1", "mode point axis",
+        frame="ground",
+    )  # fmt: skip
+    point_turn: Complex = quantity(
+        "rad/m", "rotation of the point's axes, for shapes in m", "mode point axis", key=None, frame="ground"
+    )
+    share: Floats = quantity("", "share of the body in the kinetic energy", "mode body")
+    place: Floats = quantity("m", "place of the point at rest", "point axis", key=None, frame="ground")
+    attitude: Floats = quantity(
+        "", "Euler parameters of the point's axes at rest in those of the ground", "point euler", key=None
+    )
+    bodies: Mapping[str, BodyModes] = rows("bodies that deform, by name", "body", optional=True, name="")
     instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None)
-    rigid: int = fact("number of modes of zero frequency, left out", note="the turning of a free hub")
+    rigid: int = fact("number of motions of zero frequency, left out", note="such as the turning of a free hub")
     overdamped: Floats = quantity(
         "1/s",
         "negative real eigenvalues, of decay without oscillation",
@@ -58,9 +138,7 @@ class Modes(Oscillating, Decided, Figured[Literal["modes"]]):
         name=None,
         note="a divergence comes with one",
     )
-    damping_given: bool = fact(
-        "whether the beam has a damping ratio, be it zero", note="without one it is undamped", default=True
-    )
+    accelerated: tuple[Accelerated, ...] = accelerated()
     errors: FrequencyErrors | None = part(
         "errors of the frequencies",
         "mode",
@@ -68,67 +146,38 @@ class Modes(Oscillating, Decided, Figured[Literal["modes"]]):
         note="None where there is no estimate",
         default=None,
     )
-    width: Floats = quantity(
-        "m",
-        "extent of the section along y",
-        "station",
-        name="section_width",
-        key="section.width",
-        note="for pictures; empty without a beam",
-        empty=True,
-    )
-    thickness: Floats = quantity(
-        "m",
-        "extent of the section along z",
-        "station",
-        name="section_thickness",
-        key="section.thickness",
-        note="empty without a beam",
-        empty=True,
-    )
-    round: bool = quantity("", "whether the section is round", name="section_round", key="section.round", default=False)
-    twist: Complex | None = quantity(
-        "rad/m",
-        "angle of the section about the beam's axis, for shapes in m",
-        "mode station",
-        optional=True,
-        note="of a mode in the direction twist the section's edge has the largest displacement, 1; None of a model "
-        "without twist",
-        default=None,
-    )
-
-    place: Floats | None = quantity(
-        "m",
-        "place of the station at rest, base axes",
-        "station axis",
-        name="section_place",
-        key="section.place",
-        optional=True,
-        note="for pictures; None of a straight beam",
-        default=None,
-    )
-    across: Floats | None = quantity(
-        "", "direction of the section's width at rest", "station axis", name="section_across", key="section.across",
-        optional=True, default=None,
+    reached: float = fact(
+        "frequency to which the modes of meshes and matrices among the bodies reach, at rest: those above are upper "
+        "bounds", "Hz", note="NaN where there are none", default=math.nan,
     )  # fmt: skip
-
-    surface: SurfaceModes | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
+    assembly: Assembly | None = part(
+        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
+    )
     frame: str = fact(FRAME, default="ground")
     ground_frequency: Floats = quantity("Hz", IN_GROUND, "mode", optional=True, note=SEVERAL, empty=True)
 
-    @property
-    def edge(self) -> Complex:
-        """Displacement of the section's outermost fibre by twist, in the size of the shape, (k, s)."""
-        if self.twist is None:
-            return np.zeros(self.shape.shape[:2], dtype=complex)
-        return self.twist * outermost(self.width, self.thickness, is_round=self.round)
+    @declared("", "whether every body has a damping ratio, be it zero", role="fact")
+    def damping_given(self) -> bool:
+        """True if every body that deforms has a damping ratio, be it zero; others are undamped."""
+        return all(each.damping_given for each in self.bodies.values())
+
+    @declared("", "body that moves most", "mode", name=None)
+    def foremost(self) -> tuple[str, ...]:
+        """Name of the body with the most kinetic energy in each mode."""
+        return tuple(self.body_names[k] for k in self.share.argmax(axis=1)) if len(self.share) else ()
 
     def __repr__(self) -> str:
         motion = f" {self.motion!r}" if self.motion else ""
+        models = f" ({', '.join(dict.fromkeys(each.model for each in self.bodies.values()))})" if self.bodies else ""
         listed = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
         others = f" and {len(listed) - SHOWN} more" if len(listed) > SHOWN else ""
-        lines = [f"Modes{motion} ({self.model}) at {self.time:.4g} s: {', '.join(listed[:SHOWN])}{others}"]
-        lines += [*map(str, self.instabilities), *filter(None, [self.message])]
+        lines = [f"Modes{motion}{models} at {self.time:.4g} s: {', '.join(listed[:SHOWN])}{others}"]
+        if self.rigid:
+            count = (
+                f"{self.rigid} motions of zero frequency are" if self.rigid > 1 else "one motion of zero frequency is"
+            )
+            lines.append(f"{count} left out")
+        lines += [*evenly(self.accelerated), *map(str, self.instabilities), *filter(None, [self.message])]
         return self._with_warnings(*lines)
 
 

@@ -212,9 +212,10 @@ class Figured(Result, Generic[FigureName]):
             Which of its figures; the first that the result has by default. Of a response: tip, base, sensors, loads,
             stress, tracking, axes_rate, axes_acceleration, axes_jerk, hub; of a study: tip, sizes, or any other
             followed by a space and a motion's name; of a comparison: parts, parts x, parts y, parts z but for the main
-            axis, shock; of a deflection: shape, loads; of a plan: those of its axes and tracking; of a system: points,
-            coordinates, sensors, loop, energy, and loads or stress followed by a space and a body's name; of sweeps
-            and sensitivities: their measures. Type checkers know the names that are always the same.
+            axis, shock; of rest: static, and loads, followed by the names of a body, where there are several, and of a
+            motion; of a plan: those of its axes and tracking; of a system: points, coordinates, sensors, loop, energy,
+            and loads or stress followed by a space and a body's name; of sweeps and sensitivities: their measures. Type
+            checkers know the names that are always the same.
         title : str
             First line above the figure.
 

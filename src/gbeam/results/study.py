@@ -12,7 +12,7 @@ from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Judged, state_of
 from gbeam.results.declared import declared, fact, internal, quantity, rows
-from gbeam.results.equilibrium import Critical, CriticalMap, Deflection
+from gbeam.results.equilibrium import Critical, CriticalMap, Rest
 from gbeam.results.facts import ANY, Entry, json_of, tree_of
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
@@ -21,7 +21,7 @@ from gbeam.results.result import Figured, Floats, Part, Result
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
-from gbeam.results.system import SystemModes, SystemResponse, SystemRest
+from gbeam.results.system import SystemResponse
 
 
 @dataclass(frozen=True)
@@ -274,7 +274,7 @@ KINDS: dict[str, type[Result]] = {
         Response,
         Comparison,
         ModelStudy,
-        Deflection,
+        Rest,
         Modes,
         Campbell,
         Critical,
@@ -288,8 +288,6 @@ KINDS: dict[str, type[Result]] = {
         Optimum,
         ShapedCommand,
         SystemResponse,
-        SystemRest,
-        SystemModes,
         SolidStress,
         SpecimenLoads,
     )

@@ -1,11 +1,11 @@
-"""The response and the modes of a system: a tree of bodies with named points."""
+"""The response of a system: a tree of bodies with named points."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Literal
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,24 +13,12 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import index_of
 from gbeam.printable import percent
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
-from gbeam.results.errors import (
-    FRAME,
-    IN_GROUND,
-    SEVERAL,
-    Accelerated,
-    Errors,
-    FrequencyErrors,
-    Instability,
-    Oscillating,
-    accelerated,
-    evenly,
-)
-from gbeam.results.facts import at_place
+from gbeam.results.errors import Errors
 from gbeam.results.machine import AxesResult, Driven
 from gbeam.results.parts import Base, LoadPeaks, Loads, Outline, VectorPeaks
 from gbeam.results.response import Readings, Sensor
-from gbeam.results.result import Complex, Decided, Figured, Floats, Part
-from gbeam.results.solids import SolidStress, Surface, SurfaceModes
+from gbeam.results.result import Figured, Floats, Part
+from gbeam.results.solids import SolidStress, Surface
 
 _EULER, _TURNS, _SPINS = ("e0", "e1", "e2", "e3"), ("rx", "ry", "rz"), ("wx", "wy", "wz")  # of balls
 ENERGIES = ("kinetic", "elastic", "gravity")
@@ -105,17 +93,6 @@ class BeamResponse(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class BeamShape(Part):
-    """One beam in the modes of its system: where it rests and how its axis moves from there, in axes of its root."""
-
-    outline: Outline = part("its shape at rest, axes of its root", key=None, name=INSIDE)
-    shape: Complex = quantity(
-        "", "displacement of the beam's axis, in the size of the mode's shape", "mode point axis",
-        name="outline_shape", key=None,
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, repr=False, eq=False)
 class SystemPeaks(Part):
     """Largest values of a system's points, coordinates and ground at all steps and between them.
 
@@ -182,13 +159,15 @@ class Assembly(Part):
     box_rotation: Floats = quantity("", "rotation from principal axes to axes of the root", "body row axis")
 
 
-class _Placed:
+class Placed:
     """Places of points and coordinates, at one time or over time."""
 
     points: tuple[str, ...]
     coordinates: tuple[str, ...]
+    units: tuple[str, ...]
     place: Floats
     q: Floats
+    effort: Floats
 
     def at(self, point: str) -> Floats:
         """Return the place of a named point in axes of the ground, (3,) m, or over time (t, 3).
@@ -222,7 +201,7 @@ class _Placed:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SystemResponse(_Placed, Driven, Figured[str]):
+class SystemResponse(Placed, Driven, Figured[str]):
     """Response of a system over time, at its named points and coordinates.
 
     Examples
@@ -409,7 +388,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         lines = [
             f"SystemResponse{of} ({self.environment}): {self.outcome}",
             *filter(None, (self.message, self.initial)),
-            f"{_most_moved(self, self.largest, 'up to ')} in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
+            f"{most_moved(self, self.largest, 'up to ')} in {self.time[0]:.4g} to {self.time[-1]:.4g} s",
             f"{self.integrator}, {self.steps} steps of {1e3 * self.step:.4g} ms; {error}",
         ]
         if self.invariants is not None:
@@ -418,168 +397,7 @@ class SystemResponse(_Placed, Driven, Figured[str]):
         return self._with_warnings(*lines)
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class SystemRest(_Placed, Decided, Figured[str]):
-    """Static equilibrium of a system.
-
-    Examples
-    --------
-    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
-    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], stiffness=10.0)
-    >>> held = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
-    >>> rest = gb.static(held)
-    >>> print(f"{rest.coordinate('hinge.angle'):.4f} rad, {rest.ground_force[2]:.2f} N")
-    0.4431 rad, -9.81 N
-    """
-
-    listed_by, unnamed = "name", "ground"
-    json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
-
-    name: str = fact("name of the motion of the ground", key=None, note="empty where it rests")
-    time: float = fact("time at which drives and motion are frozen", "s")
-    points: tuple[str, ...] = labels("name of the point", "point")
-    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
-    units: tuple[str, ...] = quantity(
-        "", "SI unit of the coordinate", "coordinate", name="coordinate_unit", key="unit",
-        note="empty of Euler parameters and of a flexible body's own",
-    )  # fmt: skip
-    place: Floats = quantity("m", "place of the point", "point axis", frame="ground")
-    displacement: Floats = quantity("m", "displacement from the start", "point axis", frame="ground")
-    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "point euler")
-    q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "coordinate")
-    effort: Floats = quantity("", "force N or torque N m of the drive on each coordinate", "coordinate")
-    stable: bool | None = fact(
-        "whether it comes back after any small disturbance, or stays near", note="None where that is not known"
-    )
-    ground_force: Floats = quantity("N", "force on the ground", "axis", frame="ground")
-    ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "axis", frame="ground")
-    loads: Mapping[str, Loads] = internal(
-        "",
-        "forces, moments and stresses of the beams' sections, of one time",
-        "body",
-        note="by the name of the body",
-        default_factory=dict,
-    )
-
-    solids: Mapping[str, SolidStress] = rows(
-        "stress of meshes, of one time, by the name of the body", "body", optional=True, name=None, default_factory=dict
-    )
-    surfaces: Mapping[str, Surface] = rows(
-        "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
-        default_factory=dict,
-    )  # fmt: skip
-
-    @declared(
-        "", "forces, moments and stresses of the beams' sections", role="rows", name=None, key="beams", optional=True
-    )
-    def carried(self) -> Mapping[str, Loads]:
-        return {name: replace(at_place(each, 0), stations=each.stations) for name, each in self.loads.items()}
-
-    accelerated: tuple[Accelerated, ...] = accelerated()
-    errors: Errors = part(
-        "of deflections, places, root loads and stress, as fractions of the largest", name=None,
-        default_factory=Errors,
-    )  # fmt: skip
-    assembly: Assembly | None = part(
-        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
-    )
-    outlines: Mapping[str, Outline] = rows(
-        "shapes of the beams at rest, by the name of the body", "body", optional=True, name="", key=None,
-        default_factory=dict,
-    )  # fmt: skip
-
-    def __repr__(self) -> str:
-        moved = _most_moved(self, np.linalg.norm(self.displacement, axis=-1))
-        force = ", ".join(f"{each:.4g}" for each in self.ground_force)
-        lines = [f"SystemRest: {moved}", f"force on the ground ({force}) N"]
-        lines += evenly(self.accelerated)
-        total = self.errors.displacement.total
-        lines += [f"estimated error {percent(total)}"] if self.errors.beams and math.isfinite(total) else []
-        return self._with_warnings(*lines)
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class SystemModes(Oscillating, Decided, Figured[Literal["modes"]]):
-    """Small vibrations of a system about a steady state: a place in which it rests, or is accelerated evenly.
-
-    Examples
-    --------
-    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
-    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], initial=1.0)
-    >>> pendulum = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
-    >>> print(gb.modes(pendulum).frequency.round(4))
-    [0.6105]
-    """
-
-    json_rows: ClassVar[dict[str, str]] = {"mode": "modes"}
-
-    name: str = fact("name of the motion of the ground", note="empty where it rests")
-    time: float = fact("time at which drives and motion are frozen", "s")
-    eigenvalue: Complex = internal(
-        "1/s", "eigenvalues of the oscillating modes", "mode", note="one of each pair, with the positive imaginary part"
-    )
-    points: tuple[str, ...] = labels("name of the point", "point", key="point_names")
-    bodies: tuple[str, ...] = labels("name of the body", "body", key="body_names")
-    shape: Complex = quantity("", "displacement of the point, largest component 1", "mode point axis", frame="ground")
-    share: Floats = quantity("", "share of the body in the kinetic energy", "mode body")
-    place: Floats = quantity("m", "place of the point at rest", "point axis", key=None, frame="ground")
-    rigid: int = fact("number of motions of zero frequency, left out")
-    accelerated: tuple[Accelerated, ...] = accelerated()
-    errors: FrequencyErrors | None = part(
-        "errors of the frequencies",
-        "mode",
-        name="frequency_error_",
-        note="None where there is no estimate",
-        default=None,
-    )
-    instabilities: tuple[Instability, ...] = rows("eigenvalues that grow", "instability", name=None, default=())
-    attitude: Floats = quantity(
-        "", "Euler parameters of the point's axes at rest in those of the ground", "point euler", key=None, empty=True
-    )
-    turn: Complex = quantity(
-        "rad/m", "rotation of the point's axes, for shapes in m", "mode point axis", key=None, frame="ground",
-        empty=True,
-    )  # fmt: skip
-    assembly: Assembly | None = part(
-        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
-    )
-    beams: Mapping[str, BeamShape] = rows(
-        "beams, by the name of the body", "body", optional=True, name="", key=None, default_factory=dict
-    )
-
-    reached: float = fact(
-        "frequency to which the modes of meshes and matrices among the bodies reach, at rest: those above are upper "
-        "bounds", "Hz", note="NaN where there are none", default=math.nan,
-    )  # fmt: skip
-    surfaces: Mapping[str, SurfaceModes] = rows(
-        "surfaces of meshes for pictures, by the name of the body", "body", optional=True, name="surface_", key=None,
-        default_factory=dict,
-    )  # fmt: skip
-
-    frame: str = fact(FRAME, default="ground")
-    ground_frequency: Floats = quantity("Hz", IN_GROUND, "mode", optional=True, note=SEVERAL, empty=True)
-
-    @declared("", "body that moves most", "mode", name=None)
-    def foremost(self) -> tuple[str, ...]:
-        """Name of the body with the most kinetic energy in each mode."""
-        return tuple(self.bodies[k] for k in self.share.argmax(axis=1)) if len(self.share) else ()
-
-    def __repr__(self) -> str:
-        pairs = zip(self.frequency, self.foremost, strict=True)
-        listed = ", ".join(f"{frequency:.4g} Hz {body}" for frequency, body in list(pairs)[:6])
-        more = f" and {len(self.frequency) - 6} more" if len(self.frequency) > 6 else ""
-        lines = [f"SystemModes: {listed}{more}"]
-        if self.rigid:
-            count = (
-                "one motion of zero frequency is" if self.rigid == 1 else f"{self.rigid} motions of zero frequency are"
-            )
-            lines.append(f"{count} left out")
-        lines += evenly(self.accelerated)
-        lines += map(str, self.instabilities)
-        return self._with_warnings(*lines)
-
-
-def named(result: SystemResponse | SystemRest) -> Mapping[str, tuple[Floats, str, Floats]]:
+def named(result: Placed) -> Mapping[str, tuple[Floats, str, Floats]]:
     """Coordinates of joints by name: history, unit and drive's effort; of a ball its rotation vector, ``joint.rx``."""
     histories: dict[str, tuple[Floats, str, Floats]] = {}
     q, effort = np.atleast_2d(result.q), np.atleast_2d(result.effort)
@@ -594,7 +412,7 @@ def named(result: SystemResponse | SystemRest) -> Mapping[str, tuple[Floats, str
     return histories
 
 
-def _most_moved(result: SystemResponse | SystemRest, sizes: Floats, up: str = "") -> str:
+def most_moved(result: Placed, sizes: Floats, up: str = "") -> str:
     """Words for the point with the largest of `sizes` (p,) m; where none moves, for the largest coordinate."""
     most = int(sizes.argmax())
     coordinates = {name: (history, unit) for name, (history, unit, _) in named(result).items()}

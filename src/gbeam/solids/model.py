@@ -13,7 +13,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
-from gbeam.results.equilibrium import Deflection
+from gbeam.results.equilibrium import Rest
 from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
 from gbeam.solids.edges import without_limit
@@ -82,12 +82,12 @@ class SolidModel(Value):
         return nodal
 
     @typed
-    def stress(self, answer: Response | Deflection) -> SolidStress:
+    def stress(self, answer: Response | Rest) -> SolidStress:
         """Stress of the solid in a response, or at rest.
 
         Parameters
         ----------
-        answer : Response or Deflection
+        answer : Response or Rest
             Of this model's structure.
 
         Returns
@@ -110,7 +110,8 @@ class SolidModel(Value):
         >>> print(f"{1e-6 * stress.worst.von_mises:.1f} MPa, margin {stress.nearest_yield.margin:.0f}")
         14.0 MPa, margin 16
         """
-        q = np.atleast_2d(np.asarray(answer.q, dtype=float))
+        bent = answer if isinstance(answer, Response) else answer.body
+        q = np.atleast_2d(np.asarray(bent.q, dtype=float))
         if answer.model != self.structure.kind or q.shape[1] != self.structure.size:
             problem = f"is of {answer.model}, with {q.shape[1]} coordinates"
             raise InputError("answer", problem, f"give one of this {self.structure.kind} with {self.structure.size}")

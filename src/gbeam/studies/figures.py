@@ -100,6 +100,7 @@ def _accepted(accepted: bool | None) -> Facts:
 
 
 OPTION = "--measure"
+BODIES = "bodies"  # key under which facts have bodies by name
 Keys = tuple[str | int, ...]
 _MANY = 12  # figures that a message lists
 
@@ -109,6 +110,8 @@ def find(facts: Facts, name: str) -> Keys:
     keys_of = {path_text(keys): keys for keys, _ in _figures(facts)}
     wanted = f".{name}"
     fits = [path for path in keys_of if f".{path}".endswith(wanted)]
+    # Of the only body that deforms, its name may be left out.
+    fits = fits or [path for path, keys in keys_of.items() if f".{path_text(_without_body(keys))}".endswith(wanted)]
     if not fits:
         ends = {path[at:] for path in keys_of for at in [0, *(dot.end() for dot in re.finditer(r"\.", path))]}
         near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
@@ -136,12 +139,22 @@ def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
 
 
+def _without_body(keys: Sequence[Any]) -> tuple[Any, ...]:
+    """Keys of a figure without those that lead to a body."""
+    at = keys.index(BODIES) if BODIES in keys else len(keys)
+    return (*keys[:at], *keys[at + 2 :])
+
+
 def _segments(path: str) -> list[str]:
     return re.sub(r"\[(?:i|\d+)\]", "[i]", path).split(".")
 
 
 def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
-    """True if a path can end in these keys; its ``*`` are any names, which may contain dots."""
+    """True if a path can end in these keys; its ``*`` are any names, which may contain dots, and a body's may be left
+    out.
+    """
+    if BODIES in path and _fits(ends, _without_body(path)):
+        return True
     name, last = ".".join(ends), len(path) - 1
     words = [re.escape(key) if key != "*" else ".+" if k < last else "[^.]+" for k, key in enumerate(path)]
     return any(re.fullmatch(r"\.".join(words[first:]), name) for first in range(len(words)))

@@ -4,99 +4,125 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, TypeVar, overload
+from typing import Any
 
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import not_known
+from gbeam.analysis.outline import assembly_of, outline_in_modes
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, unknown_errors
-from gbeam.analysis.steady.subject import Subject, drawn, extent, subject_of
-from gbeam.analysis.system.linear import framed, instabilities, largest_component, system_modes
+from gbeam.analysis.steady.subject import Subject, directions_of, edges_of, subject_of
+from gbeam.analysis.system.linear import framed, instabilities, largest_component
 from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.steady import SteadySystem, settled
+from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import System
+from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.steps import parameters_of_all
+from gbeam.mechanics.tree.system import ROOT, System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Vibrations
 from gbeam.progress import Progress, tell
-from gbeam.results.modal import Modes
-from gbeam.results.system import SystemModes
+from gbeam.results.modal import BodyModes, Modes
 
-AnyModes = TypeVar("AnyModes", Modes, SystemModes)
+STILL = 1e-9  # of the largest coordinate of a body in any mode: it does not deform
 
 
-def modes_of_body(
+def modes_of(
     subject: Subject, state: SteadySystem, moving: Vibrations, *, gyroscopic: bool = True, name: str = ""
 ) -> Modes:
-    """Modes, among those `moving`, of one body about a steady state, each scaled to a largest component of one."""
-    structure, columns = subject.structure, subject.columns(state)
-    q, others = state.q[columns], len(state.names) - len(columns)
-    rigid = others if others and not np.abs(state.linear.stiffness[:, 0]).any() else 0
-    # With the mode of a hub that a spring holds, and those of the body that are its own.
-    moving = moving.oscillating(slice(structure.resolved + others - rigid))
-    coordinates, direction = moving.modes[columns], subject.directions(state, moving.modes)
-    shape = np.moveaxis(structure.station_slopes(q) @ coordinates, -1, 0)
-    # Turn each shape so that its largest component is 1.
-    largest, turns = largest_component(shape), structure.station_twist(q)
-    twist = None if turns is None else (turns @ coordinates).T
-    if twist is not None:
-        largest = np.where(np.array(direction) == "twist", largest_component(twist * extent(structure)), largest)
+    """Describe the modes, among those `moving`, of a system about a steady state, each scaled so that the largest
+    component of its points and of its bodies' stations and edges is one.
+    """
+    system = state.system
+    rigid = len(state.local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2
+    # Static shapes of a body bring modes where others hang on it, and beside others those that are not its own.
+    hung = {joint.on.partition(".")[0] for joint in system.joints.values()}
+    (only,) = system.flexible.items() if len(system.flexible) == 1 else ((ROOT, None),)
+    static = 0 if only[1] is None or only[0] in hung else only[1].size - only[1].resolved
+    moving = moving.oscillating(slice(len(state.local.y) - static - rigid))
+    shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
+    bodies = {
+        body: (structure, state.q[columns], moving.modes[columns])
+        for body, structure in system.flexible.items()
+        if (columns := deforming(state.names, body))
+    }
+    moved = [shape, *(each for of_body in bodies.values() for each in _moved(*of_body))]
+    largest = largest_component(
+        np.concatenate([each.reshape(len(each), int(np.prod(each.shape[1:]))) for each in moved], axis=1)
+    )
     scale = np.where(largest == 0, 1, largest)
-    recovery, whirl = structure.recovery, state.whirl
+    of_frame = framed(state.whirl, moving.frequency / (2 * np.pi), moving.modes)
+    warnings, time = subject.warnings(state, name), state.drive.time
+    if state.changing:
+        of_frame.pop("ground_frequency", None)
+        warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
+    reduced = [each for each in system.flexible.values() if each.resolved < each.size]
     return Modes(
         motion=name,
-        model=structure.kind,
-        time=state.drive.time,
-        base=subject.base(state),
+        time=time,
+        base=state.base,
         gyroscopic=gyroscopic,
         eigenvalue=moving.value,
-        direction=direction,
-        **framed(whirl, moving.frequency / (2 * np.pi), moving.modes),
-        coordinates=coordinates.T,
-        stations=np.asarray(structure.stations),
-        shape=shape / scale[:, None, None],
-        twist=None if twist is None else twist / scale[:, None],
-        equilibrium=np.asarray(structure.displacement(q)),
+        direction=subject.directions(state, moving.modes),
+        points=system.points,
+        body_names=system.order,
+        point_shape=shape / scale[:, None, None],
+        point_turn=turn / scale[:, None, None],
+        share=state.shares(moving.modes),
+        place=np.stack([frame.p for frame in state.frames]),
+        attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
+        bodies={body: _in_modes(state, body, *of_body, scale) for body, of_body in bodies.items()},
         instabilities=instabilities(state, moving, subject.directions),
         rigid=rigid,
-        damping_given=structure.damping_ratio is not None,
         overdamped=moving.decaying,
-        surface=None if recovery is None or not len(moving.value) else recovery.in_modes((coordinates / scale).T),
+        accelerated=state.accelerated,
+        reached=min((float(each.rest[0][each.resolved - 1]) / (2 * np.pi) for each in reduced), default=math.nan),
+        assembly=assembly_of(system),
         notes=notes_on({name: subject.motion}),
-        warnings=subject.warnings(state, name),
-        **drawn(structure),
+        warnings=warnings,
+        **of_frame,
     )
 
 
-def decided(computed: AnyModes, bend: float) -> AnyModes:
+def _moved(structure: Structure, q: Floats, modes: Complex) -> list[Any]:
+    """Displacements (k, ...) of the stations of a body and of its edges by modes (n, k)."""
+    edges = edges_of(structure, q, modes)
+    stations = np.moveaxis(structure.station_slopes(q) @ modes, -1, 0)
+    return [stations] if edges is None else [stations, edges.T]
+
+
+def _in_modes(
+    state: SteadySystem, name: str, structure: Structure, q: Floats, modes: Complex, scale: Complex
+) -> BodyModes:
+    """Describe one body in modes (n, k) of a system, each over its `scale`."""
+    scaled, recovery, twist = modes / scale, structure.recovery, structure.twist_slopes(q)
+    shape = np.moveaxis(structure.station_slopes(q) @ scaled, -1, 0)
+    moves = np.abs(scaled).max(axis=0, initial=0.0) > STILL * np.abs(scaled).max(initial=0.0)
+    return BodyModes(
+        model=structure.kind,
+        base=state.base_of(name),
+        damping_given=structure.damping_ratio is not None,
+        direction=tuple(
+            way if each else "" for way, each in zip(directions_of(structure, q, scaled), moves, strict=True)
+        ),
+        coordinates=modes.T,
+        stations=np.asarray(structure.stations),
+        shape=shape,
+        equilibrium=np.asarray(structure.displacement(q)),
+        twist=None if twist is None else (twist @ scaled).T,
+        surface=None if recovery is None or not modes.size else recovery.in_modes(scaled.T),
+        **outline_in_modes(structure, q, scaled),
+    )
+
+
+def decided(computed: Modes, bend: float) -> Modes:
     """Modes about a state, without the instabilities of a stiffness of first order where it bends too far for that."""
     undecided = not_known(bend, str(computed.instabilities[0])) if computed.instabilities else {}
     return replace(computed, instabilities=(), **undecided) if undecided else computed
 
 
-@overload
-def modes(
-    structure: System,
-    motion: Motion | None = None,
-    time: float = 0.0,
-    *,
-    gyroscopic: bool = True,
-    errors: bool = True,
-    name: str = "",
-    progress: Progress = None,
-) -> SystemModes: ...
-@overload
-def modes(
-    structure: Structure,
-    motion: Motion | None = None,
-    time: float = 0.0,
-    *,
-    gyroscopic: bool = True,
-    errors: bool = True,
-    name: str = "",
-    progress: Progress = None,
-) -> Modes: ...
 @typed
 def modes(
     structure: Structure | System,
@@ -107,7 +133,7 @@ def modes(
     errors: bool = True,
     name: str = "",
     progress: Progress = None,
-) -> Modes | SystemModes:
+) -> Modes:
     """Small vibrations of a beam about its relative equilibrium on a base frozen at a time, or of a system of bodies.
 
     Parameters
@@ -131,7 +157,7 @@ def modes(
 
     Returns
     -------
-    Modes or SystemModes
+    Modes
 
     Raises
     ------
@@ -149,15 +175,9 @@ def modes(
     tell(progress, "equilibrium", 0.0)
     subject = subject_of(structure, motion)
     subject.require_coordinates()
-    if not subject.body:
-        subject.system.require_damping("that of its modes")
     state = settled(subject.system, subject.drive(time))
     moving = state.vibrations(gyroscopic=gyroscopic)
-    computed: Any = (
-        modes_of_body(subject, state, moving, gyroscopic=gyroscopic, name=name)
-        if subject.body
-        else system_modes(state, moving, time, name)
-    )
+    computed = modes_of(subject, state, moving, gyroscopic=gyroscopic, name=name)
     computed = decided(computed, state.bend)
     if not errors:
         return computed
@@ -167,6 +187,6 @@ def modes(
         moving = moving.oscillating(slice(len(computed.eigenvalue)))
         stated = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
         # Modes above those that are known have their own warning.
-        reached = math.inf if subject.body else computed.reached
-        computed = replace(computed, warnings=computed.warnings + doubtful(stated[~(computed.frequency > reached)]))
+        known = stated[~(computed.frequency > computed.reached)]
+        computed = replace(computed, warnings=computed.warnings + doubtful(known))
     return replace(computed, errors=stated)

@@ -1,55 +1,59 @@
-"""Static deflection: the relative equilibrium at a frozen base motion, along the beam."""
+"""Relative equilibrium of a system at a frozen motion of its ground."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, overload
+from operator import itemgetter
+from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, cause_and_cure, not_known, percent
+from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity
+from gbeam.analysis.accuracy.estimate import LIMIT, not_known
+from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.steady.subject import Subject, subject_of
-from gbeam.analysis.system.accuracy import FAR, system_errors
-from gbeam.analysis.system.linear import stepless, system_rest
+from gbeam.analysis.system.accuracy import FAR, doubts, system_errors
+from gbeam.analysis.system.histories import ROUNDING, carried, histories, loads_of
 from gbeam.analysis.system.richer import theories_of, with_beams
 from gbeam.analysis.system.steady import Drive, SteadySystem, settled
 from gbeam.arrays.tree import each_leaf
-from gbeam.arrays.types import Numbers
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.section_forces import section_forces
+from gbeam.mechanics.section_forces import about_the_hub
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.signals import units_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
-from gbeam.results.equilibrium import Deflection
+from gbeam.results.equilibrium import BodyRest, Rest
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base
-from gbeam.results.system import SystemRest
 
 LOST = "shapes and model are not judged: the exact model with more shapes comes to no equilibrium there"
 
 
-def deflection_errors(subject: Subject, state: SteadySystem) -> tuple[Errors, tuple[str, ...]]:
-    """Estimated errors of an equilibrium of one body, over its displacement, root loads and stress, and warnings."""
-    solution, structure = state.standing(subject.system), subject.structure
-    steps, start = stepless(subject.system), subject.system.undeformed
-    errors, off_axis = system_errors(lambda _: solution, state.standing, steps, start=start, tolerance=LIMIT)
+def stepless(system: System) -> dict[Quantity, float]:
+    """Errors of the time steps of a state of rest, which takes none: zero of every quantity."""
+    kinds = (DEFLECTION, *LOADS, "sheared")
+    return {PLACE: 0.0} | {(name, kind): 0.0 for name in system.flexible for kind in kinds}
+
+
+def rest_errors(state: SteadySystem, start: Floats, *, stable: bool) -> tuple[Errors, tuple[str, ...]]:
+    """Estimated errors of an equilibrium, stable or not, whose points (p, 3) begin at a `start`, and warnings."""
+    system, solution = state.system, state.standing(state.system)
+    errors, off_axis = system_errors(lambda _: solution, state.standing, stepless(system), start=start, tolerance=LIMIT)
     errors = replace(errors, note=LOST) if FAR in errors.note else errors
-    if not structure.judged:
-        return errors, ()
-    if errors.note == LOST:
-        return errors, (LOST,)
-    return errors, (*_doubtful(errors), *off_axis, *_sideways(subject, state))
+    return errors, (*doubts(errors, LIMIT), *off_axis, *(_sideways(state) if stable and errors.note != LOST else ()))
 
 
-def _sideways(subject: Subject, state: SteadySystem) -> tuple[str, ...]:
+def _sideways(state: SteadySystem) -> tuple[str, ...]:
     """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
-    theories = theories_of(subject.system)
-    if not theories or not state.stable:
+    theories = theories_of(state.system)
+    if not theories:
         return ()
-    thick = with_beams(subject.system, {name: theory.thick for name, theory in theories.items()})
+    thick = with_beams(state.system, {name: theory.thick for name, theory in theories.items()})
     try:
         if state.richer(thick).stable:
             return ()
@@ -58,36 +62,6 @@ def _sideways(subject: Subject, state: SteadySystem) -> tuple[str, ...]:
     return (f"a beam that twists would not stay there, but buckle sideways: {TORSION}",)
 
 
-def _doubtful(errors: Errors) -> tuple[str, ...]:
-    """Warn of an equilibrium that is wrong by more than one in a hundred."""
-    if not (above := errors.above(LIMIT)):
-        return ()
-    worst = max(above.values(), key=lambda error: error.total)
-    cause, cure = cause_and_cure(worst, errors.causes)
-    sizes = ", ".join(f"the {name} by {percent(error.total)}" for name, error in above.items())
-    return (f"estimated to be wrong: {sizes}, mostly from {cause}; {cure}",)
-
-
-@overload
-def static(
-    structure: System,
-    motion: Motion | None = None,
-    time: float = 0.0,
-    *,
-    acceleration: Numbers | None = None,
-    name: str = "",
-    progress: Progress = None,
-) -> SystemRest: ...
-@overload
-def static(
-    structure: Structure,
-    motion: Motion | None = None,
-    time: float = 0.0,
-    *,
-    acceleration: Numbers | None = None,
-    name: str = "",
-    progress: Progress = None,
-) -> Deflection: ...
 @typed
 def static(
     structure: Structure | System,
@@ -97,8 +71,8 @@ def static(
     acceleration: Numbers | None = None,
     name: str = "",
     progress: Progress = None,
-) -> Deflection | SystemRest:
-    """Equilibrium relative to a base whose motion is frozen at a time, and what its sections carry.
+) -> Rest:
+    """Equilibrium relative to a base whose motion is frozen at a time, and what bodies and ground carry.
 
     Parameters
     ----------
@@ -120,7 +94,7 @@ def static(
 
     Returns
     -------
-    Deflection or SystemRest
+    Rest
 
     Raises
     ------
@@ -144,7 +118,7 @@ def static(
         subject.system, subject.drive(time) if acceleration is None else _pushed(motion, time, acceleration)
     )
     tell(progress, "loads, and errors by richer models", 0.5)
-    return deflection(subject, state, name) if subject.body else system_rest(state, name)
+    return rest_of(subject, state, name)
 
 
 def _pushed(motion: Motion | None, time: float, acceleration: Numbers) -> Drive:
@@ -157,31 +131,93 @@ def _pushed(motion: Motion | None, time: float, acceleration: Numbers) -> Drive:
     return Drive(None, time, base=Base(a, np.zeros(3), np.zeros(3)))
 
 
-def deflection(subject: Subject, state: SteadySystem, name: str = "") -> Deflection:
-    """Describe the deflection of one body in a steady state, with loads, errors and warnings."""
-    structure, base, time, motion = subject.structure, subject.base(state), state.drive.time, subject.motion
-    q = state.q[subject.columns(state)]
-    over_time, still, times = each_leaf(lambda x: x[None], base), np.zeros((1, structure.size)), np.array([time])
-    errors, doubts = deflection_errors(subject, state)
-    undecided = {} if state.stable else not_known(state.bend, "its stiffness is not positive definite")
-    names: dict[str, Any] = {"motion": name, "model": structure.kind}
-    environment, recovery = "" if motion is None else motion.kind, structure.recovery
-    parts: dict[str, Any] = (
-        {} if recovery is None else recovery.parts(times, over_time, q[None], environment=environment, **names)
+def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
+    """Describe a system at rest in a steady state: places, efforts and loads, with errors and warnings."""
+    system, point, solution = state.system, state.point, state.standing(state.system)
+    inputs = solution.inputs(system, None)
+    (begun, _), (resting, _) = (
+        histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
+        for y in (system.start[0][system.tree.free], point.y)
     )
-    return Deflection(
-        **names,
-        time=time,
-        base=base,
-        stations=np.asarray(structure.stations),
-        displacement=np.asarray(structure.displacement(q)),
-        q=q,
-        strain_energy=float(structure.strain_energy(q)),
-        stable=None if undecided else state.stable,
-        warnings=subject.warnings(state, name) + doubts,
-        notes=notes_on({name: motion}),
-        loads=section_forces(structure, over_time, q[None], still, still, times, motion=motion),
+    values = {key: history[0] for key, history in resting.items()}
+    # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
+    moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
+    links = zip(point.tree.links, moving.q, moving.roots, strict=True)
+    inertia = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in links)
+    for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
+        values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
+    stable, unstable, undecided = _stability(state)
+    errors, doubted = rest_errors(state, begun["place"][0], stable=bool(stable))
+    return Rest(
+        motion=name,
+        time=state.drive.time,
+        base=state.base,
+        points=system.points,
+        coordinates=system.coordinates,
+        units=units_of(system),
+        point_displacement=values["place"] - begun["place"][0],
         errors=errors,
-        **{key: parts[key] for key in ("solid", "surface", "specimen") if key in parts},
+        accelerated=state.accelerated,
+        stable=stable,
+        warnings=(*unstable, *doubted, *subject.warnings(state, name, resting=True)),
+        notes=notes_on({name: subject.motion}),
+        assembly=assembly_of(system),
+        bodies=_bodies_at_rest(subject, state, name),
+        **{key: values[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
         **undecided,
     )
+
+
+def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[str, BodyRest]:
+    """Describe the bodies that deform, and rigid specimens, in a steady state, by name."""
+    system, point, time = state.system, state.point, np.array([state.drive.time])
+    inputs = state.standing(system).inputs(system, None)
+    moving = system.tree.motion(point.y[None], point.yd[None], point.ydd[None], inputs)
+    acting = system.tree.demanded(moving, inputs)[2]
+    environment = "rest" if subject.motion is None else subject.motion.kind
+    bodies = {}
+    for body, structure in system.flexible.items():
+        state_of = carried(system, moving, body, acting)
+        base, q = Base(state_of.a, state_of.w, state_of.alpha), np.asarray(state_of.q)
+        loads = loads_of(structure, [state_of], time)
+        if body == subject.body:
+            loads = about_the_hub(loads, subject.motion, base.alpha_WB_B)
+        names = {"motion": name, "model": structure.kind, "environment": environment}
+        recovery = structure.recovery
+        parts = {} if recovery is None else recovery.parts(time, base, q, **names)
+        bodies[body] = BodyRest(
+            model=structure.kind,
+            base=each_leaf(itemgetter(0), base),
+            stations=np.asarray(structure.stations),
+            displacement=np.asarray(structure.displacement(q[0])),
+            q=q[0],
+            strain_energy=float(structure.strain_energy(q[0])),
+            loads=loads,
+            outline=outline_of(structure, None, time, q),
+            **{key: parts[key] for key in ("solid", "surface", "specimen") if key in parts},
+        )
+    return bodies
+
+
+def _stability(state: SteadySystem) -> tuple[bool | None, tuple[str, ...], dict[str, Any]]:
+    """Stability of a steady state, None where it is not known; warnings if it is lost; and why it is not known."""
+    try:
+        growing = state.moving.growing
+    except ComputationError as error:
+        return False, (f"whether it would stay there is not known, {error}",), {}
+    if len(growing):
+        lost = f"what deviates grows by {growing[0].real:.4g} per second"
+    elif state.stable or not _coupled_alone(state):
+        return True, (), {}
+    else:
+        lost = "its stiffness is not positive definite, and any damping would spoil what gyroscopic coupling holds"
+    if undecided := not_known(state.bend, lost):
+        return None, (), undecided
+    return False, (f"unstable, it would not stay there: {lost}",), {}
+
+
+def _coupled_alone(state: SteadySystem) -> bool:
+    """True if gyroscopic coupling, and no damping, acts on small departures."""
+    velocity = state.linear.velocity
+    damping, coupling = (np.abs(velocity + sign * velocity.T).max(initial=0.0) for sign in (1, -1))
+    return bool(coupling > 0 and damping <= ROUNDING * coupling)

@@ -92,31 +92,23 @@ class Subject:
         """
         if not self.body:
             return state.directions(modes)
-        structure, columns = state.system.flexible[self.body], self.columns(state)
-        q, coordinates = state.q[columns], modes[columns]
-        particles, stations = structure.particles.slopes(q), structure.station_slopes(q)
-        moved = np.abs(np.concatenate([particles, stations]) @ coordinates).max(axis=0)
-        ways = ["xyz"[i] for i in moved.argmax(axis=0)]
-        twist = structure.station_twist(q)
-        if twist is not None:
-            edges, moved = (np.abs(slope @ coordinates) for slope in (extent(structure)[:, None] * twist, stations))
-            twisted = edges.max(axis=0) > moved.max(axis=(0, 1))
-            ways = ["twist" if flag else way for way, flag in zip(ways, twisted, strict=True)]
-        return tuple(ways)
+        columns = self.columns(state)
+        return directions_of(state.system.flexible[self.body], state.q[columns], modes[columns])
 
     def base(self, state: SteadySystem) -> Base:
         """Motion of the root of the body that is alone, (3,)."""
-        root = state.local.tree.motion(state.local.y, state.local.yd, state.local.ydd, state.local.inputs).roots[-1]
-        return Base(root.a, root.w, root.alpha)
+        return state.base_of(self.body)
 
     def doubts(self, name: str = "", base: Base | None = None) -> tuple[str, ...]:
         """Doubts about one body and its motion, called `name`, or a motion of its `base`; none of a system."""
         return input_warnings(self.structure, self.motion, name=name, base=base) if self.body else ()
 
-    def warnings(self, state: SteadySystem, name: str) -> tuple[str, ...]:
-        """Doubts about the models of the bodies in a state, and what it leaves out; `name` is the motion's."""
+    def warnings(self, state: SteadySystem, name: str, *, resting: bool = False) -> tuple[str, ...]:
+        """Doubts about the models of the bodies in a state that is `resting`, or departed from, and what it leaves out;
+        `name` is the motion's.
+        """
         if not self.body:
-            return state.warnings + open_loops(self.system) + state.point.sticking(self.system)
+            return state.warnings + state.point.sticking(state.system, resting=resting) + open_loops(self.system)
         structure, time = self.structure, state.drive.time
         doubts = input_warnings(structure, self.motion, name=name, span=(time, time), base=self.base(state))
         return doubts + tuple(bent_far(structure, bend(structure, state.q[self.columns(state)])))
@@ -141,21 +133,25 @@ def subject_of(structure: Structure | System, motion: Motion | None) -> Subject:
     return Subject(system, ground, BEAM, motion)
 
 
-def extent(structure: Structure) -> Floats:
-    """Distance of the outermost fibres from the axis at the stations, m."""
-    outline = drawn(structure)
-    return outermost(outline["width"], outline["thickness"], is_round=outline["round"])
+def directions_of(structure: Structure, q: Floats, modes: Complex | Floats) -> tuple[str, ...]:
+    """Axes of the root along which a body at coordinates (n,) moves most in modes (n, k) of these, or twist where the
+    sections' edges move more.
+    """
+    particles, stations = structure.particles.slopes(q), structure.station_slopes(q)
+    moved = np.abs(np.concatenate([particles, stations]) @ modes).max(axis=0)
+    ways = ["xyz"[i] for i in moved.argmax(axis=0)]
+    edges = edges_of(structure, q, modes)
+    if edges is None:
+        return tuple(ways)
+    twisted = np.abs(edges).max(axis=0) > np.abs(stations @ modes).max(axis=(0, 1))
+    return tuple("twist" if flag else way for way, flag in zip(ways, twisted, strict=True))
 
 
-def drawn(structure: Structure) -> dict[str, Any]:
-    """Outline of a beam for pictures of its modes, by name: width, thickness, round, place, across; else empty."""
-    if structure.source is None or structure.traced:
-        return {}
-    beam = structure.source.beam
-    section = beam.section.at(structure.stations)
-    width, thickness = section.extents()
-    known = {"width": width, "thickness": thickness, "round": section.round}
-    if beam.line is None:
-        return known
-    place, axes = beam.at_rest(structure.stations)
-    return known | {"place": place, "across": axes[:, :, 1]}
+def edges_of(structure: Structure, q: Floats, modes: Complex | Floats) -> Complex | Floats | None:
+    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k); None of a model without it."""
+    twist = structure.twist_slopes(q)
+    if twist is None or structure.source is None:
+        return None
+    section = structure.source.beam.section.at(structure.stations)
+    fibre = outermost(*section.extents(), is_round=section.round)
+    return fibre[:, None] * (twist @ modes)

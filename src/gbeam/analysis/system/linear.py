@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,21 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity
-from gbeam.analysis.accuracy.estimate import LIMIT, not_known
-from gbeam.analysis.outline import assembly_of, outline_of
-from gbeam.analysis.system.accuracy import doubts, system_errors
 from gbeam.analysis.system.gauges import Strained, read_signals
-from gbeam.analysis.system.histories import ROUNDING, beams_of, histories, loads_of, meshes_of
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, open_loops, settled
-from gbeam.arrays.namespace import Array
+from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, settled
 from gbeam.arrays.types import Complex, Floats
-from gbeam.errors import ComputationError
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.signals import Driven, deforming, drives_of, local_names, measurable, signals_of, units_of
-from gbeam.mechanics.tree.steps import parameters_of_all
+from gbeam.mechanics.tree.signals import Driven, drives_of, local_names, measurable, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Steady, Vibrations
@@ -33,107 +24,6 @@ from gbeam.numerics.series import STEP
 from gbeam.numerics.whirl import Whirl
 from gbeam.results.errors import Instability
 from gbeam.results.state_space import Signal, StateSpace
-from gbeam.results.system import BeamShape, SystemModes, SystemRest
-
-
-def stepless(system: System) -> dict[Quantity, float]:
-    """Errors of the time steps of a state of rest, which takes none: zero of every quantity."""
-    kinds = (DEFLECTION, *LOADS, "sheared")
-    return {PLACE: 0.0} | {(name, kind): 0.0 for name in system.flexible for kind in kinds}
-
-
-def system_rest(state: SteadySystem, name: str) -> SystemRest:
-    """Describe the equilibrium of a system: places, efforts and loads, with errors and warnings."""
-    system, point, time, solution = state.system, state.point, state.drive.time, state.standing(state.system)
-    inputs = solution.inputs(system, None)
-    (begun, _), (resting, beams) = (
-        histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
-        for y in (system.start[0][system.tree.free], point.y)
-    )
-    values = {key: history[0] for key, history in resting.items()}
-    unstable, undecided = tuple[str, ...](), dict[str, Any]()
-    try:
-        if len(growing := state.moving.growing):
-            grows = f"grows by {growing[0].real:.4g} per second"
-            undecided = not_known(state.bend, f"what deviates {grows}")
-            unstable = () if undecided else (f"unstable, no system would stay there: {grows}",)
-    except ComputationError as error:
-        unstable = (f"whether it would stay there is not known, {error}",)
-
-    # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
-    moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
-    links = zip(point.tree.links, moving.q, moving.roots, strict=True)
-    inertia = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in links)
-    for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
-        values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
-    start, sticking = begun["place"][0], point.sticking(system, resting=True)
-    solids, surfaces = meshes_of(system, np.array([time]), resting["q"], name, "rest")
-    everywhere = stepless(system)
-    errors, off_axis = system_errors(lambda _: solution, state.standing, everywhere, start=start, tolerance=LIMIT)
-    return SystemRest(
-        name=name,
-        time=time,
-        points=system.points,
-        coordinates=system.coordinates,
-        units=units_of(system),
-        displacement=values["place"] - start,
-        errors=errors,
-        accelerated=state.accelerated,
-        stable=None if undecided else not unstable,
-        warnings=unstable + doubts(errors, LIMIT) + off_axis + state.warnings + sticking + open_loops(system),
-        notes=notes_on({name: state.drive.motion}),
-        assembly=assembly_of(system),
-        outlines={
-            body: outline
-            for body, beam in beams.items()
-            if (outline := outline_of(beams_of(system)[body], None, np.array([time]), beam.q)) is not None
-        },
-        loads={body: loads_of(beams_of(system)[body], [beam], np.array([time])) for body, beam in beams.items()},
-        solids=solids,
-        surfaces=surfaces,
-        **{key: values[key] for key in ("place", "attitude", "q", "effort", "ground_force", "ground_moment")},
-        **undecided,
-    )
-
-
-def system_modes(state: SteadySystem, moving: Vibrations, time: float, name: str) -> SystemModes:
-    """Describe the modes, `moving`, of a system about a steady state, each scaled to a largest displacement of one."""
-    system, local = state.system, state.local
-    shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
-    largest = largest_component(shape)
-    scale = np.where(largest == 0, 1, largest)
-    warnings = state.warnings + open_loops(system) + state.point.sticking(system)
-    reduced = [each for each in system.flexible.values() if each.resolved < each.size]
-    of_frame = framed(state.whirl, moving.frequency / (2 * np.pi), moving.modes)
-    if state.changing:
-        of_frame.pop("ground_frequency", None)
-        warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
-    return SystemModes(
-        name=name,
-        time=time,
-        eigenvalue=moving.value,
-        points=system.points,
-        bodies=system.order,
-        shape=shape / scale[:, None, None],
-        turn=turn / scale[:, None, None],
-        share=state.shares(moving.modes),
-        **of_frame,
-        place=np.stack([frame.p for frame in state.frames]),
-        attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
-        assembly=assembly_of(system),
-        beams=_shapes(state, moving.modes / scale),
-        reached=min((float(each.rest[0][each.resolved - 1]) / (2 * np.pi) for each in reduced), default=math.nan),
-        surfaces={
-            body: each.recovery.in_modes((moving.modes / scale)[deforming(state.names, body)].T)
-            for body, each in system.flexible.items()
-            if each.recovery is not None and len(moving.value)
-        },
-        accelerated=state.accelerated,
-        rigid=len(local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2,
-        instabilities=instabilities(state, moving),
-        warnings=warnings,
-        notes=notes_on({name: state.drive.motion}),
-    )
 
 
 def framed(whirl: Whirl | None, frequency: Floats, modes: Complex) -> dict[str, Any]:
@@ -163,20 +53,6 @@ def instabilities(
         *(Instability("divergence", float(v.real), 0.0, way) for v, way in diverging),
         *(Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), way) for v, way in fluttering),
     )
-
-
-def _shapes(state: SteadySystem, modes: Array) -> dict[str, BeamShape]:
-    """Outlines of the beams by name: bent in the steady state, and their displacements by modes (n, k)."""
-    beams = dict[str, BeamShape]()
-    for name, beam in beams_of(state.system).items() if modes.size else ():
-        columns = deforming(state.names, name)
-        q, time = state.local.y[columns], np.arange(modes.shape[1])
-        outline = outline_of(beam, None, np.zeros(1), q[None])
-        if outline is not None:
-            moved = [outline_of(beam, None, time, q + 1j * STEP * part[columns].T) for part in (modes.real, modes.imag)]
-            real, imaginary = (bent.displacement.imag / STEP for bent in moved if bent is not None)
-            beams[name] = BeamShape(outline, real + 1j * imaginary)
-    return beams
 
 
 def frozen(system: System, motion: Motion | None, time: float, at: str) -> SteadySystem:

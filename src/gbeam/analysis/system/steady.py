@@ -157,6 +157,20 @@ class SteadySystem(Steady):
         return 0.0 if len(self.point.tree.free) == size else RIGID
 
     @property
+    def base(self) -> Base | None:
+        """Motion of the ground; None where it rests."""
+        if self.drive.motion is None and self.drive.base is None:
+            return None
+        ground = self.local.inputs.ground
+        return Base(*(np.asarray(each, dtype=float) for each in (ground.a, ground.w, ground.alpha)))
+
+    def base_of(self, body: str) -> Base:
+        """Motion of the root of a body, (3,)."""
+        local = self.local
+        root = local.tree.motion(local.y, local.yd, local.ydd, local.inputs).roots[self.system.order.index(body)]
+        return Base(root.a, root.w, root.alpha)
+
+    @property
     def solution(self) -> Solution:
         """The state, as a solution of one time, what turns free as in the system."""
         point = _released(self, held=False).point

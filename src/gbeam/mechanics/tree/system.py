@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, namespace
+from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, is_traced, namespace
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, naming

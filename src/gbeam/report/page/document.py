@@ -18,10 +18,9 @@ from gbeam.report import blocks_of, remarks_of
 from gbeam.report.blocks import Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
 from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped, heading
-from gbeam.report.page.records import figures_in, read
-from gbeam.report.page.scene import scene, shapes, shapes_of_system
+from gbeam.report.page.records import figures_in
+from gbeam.report.page.scene import scene, shapes
 from gbeam.report.words import as_json
-from gbeam.results.modal import Modes
 from gbeam.results.result import Result
 
 
@@ -38,7 +37,7 @@ PAGES = {
     "Comparison": Page("run", ("verdict", "flight", "centrifuge")),
     "ModelStudy": Page("models", ("reference", "rows")),
     "StateSpace": Page("linearize", ("states", "inputs", "outputs")),
-    "Deflection": Page("static", ("motions",), ("displacement", "tip", "stable")),
+    "Rest": Page("static", ("motions",), ("points", "coordinates", "ground_force")),
     "MachinePlan": Page("plan", ("motions",), ("limits", "tracks")),
     "Modes": Page("modes", ("modes", "instabilities")),
     "Campbell": Page("campbell", ("tracks", "crossings")),
@@ -48,8 +47,6 @@ PAGES = {
     "SystemResponse": Page("run", ("points", "coordinates", "steps")),
     "SolidStress": Page("run", ("worst", "singular_depth")),
     "SpecimenLoads": Page("run", ("corners", "bolts", "largest_load")),
-    "SystemRest": Page("static", ("motions",), ("points", "coordinates", "ground_force")),
-    "SystemModes": Page("modes", ("modes", "body_names")),
     "Sweep": Page("sweep", ("parameters", "measures")),
     "Fit": Page("fit", ("covariance", "columns")),
     "Optimum": Page("optimize", ("minimise", "subject_to")),
@@ -103,12 +100,10 @@ def viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
     """Return what the viewer shows, as ``modes`` or ``scene``, from JSON and variables; empty where nothing moves."""
-    if kind == "Modes" and facts["modes"]:
-        return {"modes": shapes(read(Modes, facts), variables, numbers)}
-    if kind == "SystemModes" and facts["modes"] and "hangs_on" in variables:
-        return {"modes": shapes_of_system(facts, variables, numbers)}
+    if kind == "Modes" and facts["modes"] and "hangs_on" in variables:
+        return {"modes": shapes(facts, variables, numbers)}
     motions = facts["motions"] if kind == "Study" else {}
-    if kind in ("Deflection", "SystemRest"):
+    if kind == "Rest":
         motions = {name: {"environment": "rest"} for name in facts["motions"]}
     if kind == "SystemResponse":  # of one motion, alone
         motions = {facts["name"] or facts["environment"]: facts}

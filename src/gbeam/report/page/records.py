@@ -14,7 +14,7 @@ from gbeam.report.page.parts import under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, records_in
-from gbeam.results.equilibrium import Critical, Deflection
+from gbeam.results.equilibrium import BodyRest, Critical
 from gbeam.results.machine import AxesResult
 from gbeam.results.measures import Mismatch, Shock
 from gbeam.results.modal import Campbell, Modes
@@ -22,7 +22,6 @@ from gbeam.results.parts import Loads
 from gbeam.results.result import Figured, Floats, Result
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, ShapedCommand
 from gbeam.results.study import KINDS, Study
-from gbeam.results.system import SystemModes, SystemRest
 
 Facts = Mapping[str, Any]
 _NONE = np.empty(0)
@@ -99,6 +98,8 @@ def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Fa
             return read(inner, inner_facts or {}, v, within)
         if declaration.role == "rows" and isinstance(inner_facts, dict):
             return {row: read(inner, row_facts, {**v, **under(f"{row}_", v)}) for row, row_facts in inner_facts.items()}
+    elif f"{variable}_real" in v:
+        return v[f"{variable}_real"] + 1j * v[f"{variable}_imag"]
     elif declaration.role == "coordinate" or (declaration.role == "variable" and variable in v):
         value = v.get(declaration.dims[-1] if declaration.role == "coordinate" else variable)
         if value is None or isinstance(value, str):
@@ -125,7 +126,15 @@ def _has(kind: type, v: Facts, pattern: str) -> bool:
 
 def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any:
     """Value of a field in JSON, in the rows of a dimension or at its key; None where it is not there."""
-    key, hint = declaration.key or name, annotation(kind, name)
+    value = _at_key(kind, name, declaration, facts, declaration.key or name)
+    if value is None or "Complex" not in annotation(kind, name):
+        return value
+    return value + 1j * _at_key(kind, name, declaration, facts, f"{declaration.key or name}_imaginary")
+
+
+def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: str) -> Any:
+    """Value of a field in JSON at a key, of a complex one the real or the imaginary part."""
+    hint = annotation(kind, name)
     row_keys: dict[str, str] = {} if key.startswith("/") else getattr(kind, "json_rows", {})
     row_dim = next((dim for dim in declaration.dims if dim in row_keys), None)
     rows: Any = [] if row_dim is None else facts.get(row_keys[row_dim], [])
@@ -147,12 +156,14 @@ def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any
             return None
         arrays = [_bare(np.nan if cell is None else cell, hint, declaration) for cell in cells]
         return np.stack(arrays, declaration.dims.index(row_dim)) if arrays else None
-    value = facts if key == INSIDE else _at(facts, key)
+    value: Any = facts if key == INSIDE else _at(facts, key)
     if inner is None or value is None:
         return _bare(value, hint, declaration)
     if declaration.role == "part":
         return read(inner, value)
-    return tuple(read(inner, row) for row in value) if isinstance(value, list) else None
+    if isinstance(value, dict):
+        return {str(row): read(inner, known) for row, known in value.items()}
+    return tuple(read(inner, row) for row in value)
 
 
 def _at(facts: Any, key: str) -> Any:
@@ -226,18 +237,6 @@ def _eigenvalues(facts: Facts, _: Facts) -> Facts:
     """Eigenvalues of modes, by their frequencies and damping ratios."""
     ratio, size = (_column(facts["modes"], key) for key in ("damping_ratio", "frequency"))
     return {"eigenvalue": 2 * np.pi * size * (-ratio + 1j * np.sqrt(1 - ratio**2))}
-
-
-def _modes(facts: Facts, _: Facts) -> Facts:
-    """Fields of Modes that JSON has in real and imaginary parts: eigenvalues, shapes and twist."""
-    rows = facts["modes"]
-    real, imaginary = (
-        np.array([_vectors(each[key]) for each in rows]).reshape(len(rows), -1, 3)
-        for key in ("shape", "shape_imaginary")
-    )
-    twisted = rows and "twist" in rows[0]
-    twist = _column(rows, "twist") + 1j * _column(rows, "twist_imaginary") if twisted else None
-    return {**_eigenvalues(facts, _), "shape": real + 1j * imaginary, "twist": twist}
 
 
 def _campbell(facts: Facts, _: Facts) -> Facts:
@@ -319,15 +318,13 @@ _APART: dict[type, Callable[[Facts, Facts], Facts]] = {
     AxesResult: _axes,
     Campbell: _campbell,
     Critical: lambda facts, _: {"value": next((facts[key] for key in facts if key.startswith("critical_")), None)},
-    Deflection: lambda facts, _: {"loads": _at_rest(facts["loads"])} if facts.get("loads") else {},
+    BodyRest: lambda facts, _: {"loads": _at_rest(facts["loads"])} if facts.get("loads") else {},
     Fit: _fit,
     MachinePlan: lambda facts, v: {"axes": read(AxesResult, facts, v)},
     Mismatch: lambda _, v: {"length": float(v["station"][-1]) if "station" in v else np.nan},
-    Modes: _modes,
+    Modes: _eigenvalues,
     Sensitivity: _sensitivity,
     ShapedCommand: _shaped,
     Shock: lambda facts, _: {key: _array(facts[key]) for key in ("flight", "centrifuge")},
     Sweep: _sweep,
-    SystemModes: _eigenvalues,
-    SystemRest: lambda facts, _: {"loads": {name: _at_rest(each) for name, each in facts.get("beams", {}).items()}},
 }

@@ -18,16 +18,16 @@ from gbeam.io.netcdf import FACTS, groups_of, read_stored
 from gbeam.report.facts import facts, origin_json, whole
 from gbeam.report.page.document import html, viewer
 from gbeam.report.page.parts import Numbers
-from gbeam.results.equilibrium import Deflection
+from gbeam.results.equilibrium import Rest
 from gbeam.results.modal import Modes
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
-from gbeam.results.system import SystemModes, SystemResponse, SystemRest
+from gbeam.results.system import SystemResponse
 
 # In motion, or in three dimensions.
-SHOWN = Study, Response, SystemResponse, Deflection, Modes, SystemModes, SystemRest
+SHOWN = Study, Response, SystemResponse, Rest, Modes
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 

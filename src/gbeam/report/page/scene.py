@@ -10,25 +10,24 @@ from scipy.spatial.transform import Rotation
 
 from gbeam.report.page.parts import Numbers, Ref, under
 from gbeam.report.words import number
-from gbeam.results.modal import Modes
 from gbeam.results.result import Floats
 from gbeam.results.solids import von_mises
 
 Variables = Mapping[str, Any]
-SHOWN = 33  # points of a mode shape
 TIMES = 1500  # of bodies that have no outline of their own
 SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T  # of a box's corners
 CORNERS = (SIGNS + 1) / 2
 SURFACE = ("vertices", "triangles", "shapes", "stress", "sizes")
 BEYOND = 1e-3  # of the largest stress that is judged: more is said
 MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
-_PLACED = ("place", "attitude")  # of the points of a system
+GROUND = "ground_root_acceleration"
+_PLACED = ("place", "attitude", GROUND)  # of the points of a system, and of its ground
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
 PERIOD = 2.0  # s, in which a mode is shown
 PHASES = np.linspace(0.0, PERIOD, 25)
-WIDE, THICK = 0.03, 0.012  # of the length: of a beam whose section a result does not hold
+WIDE, THICK = 0.03, 0.012  # of the length: of a body whose section is not known
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
@@ -39,13 +38,12 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
         if "outline" in v:
             shown.append((motion(name, environment, v, numbers), v["outline_time"], v["outline"]))
         elif "surface_vertices" in v:
-            at_rest = np.ndim(v["root_acceleration"]) == 1
-            shown.append(_solid(name, environment, _at_once(v, "root_acceleration") if at_rest else v, numbers))
+            shown.append(_solid(name, environment, v, numbers))
         elif "specimen_corner_place" in v:
             shown.append(_rigid(name, environment, v, numbers))
         elif "hangs_on" in v:
             at_rest = v["place"].ndim == 2
-            shown.append(_system(name, environment, _at_once(v, *_PLACED) if at_rest else v, numbers))
+            shown.append(_system(name, environment, _at_once(v) if at_rest else v, numbers))
     if not shown:
         return None
     _, time, displacement = shown[0]
@@ -130,7 +128,7 @@ def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tup
 def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
     """Header of the load of the base, and of the machine, if any, about a specimen over `places` (p, 3)."""
     actual = v.get("load_actual")
-    load = v.get("root_acceleration") if actual is None else actual
+    load = v.get("root_acceleration", v.get(GROUND)) if actual is None else actual
     header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
     if actual is None:
         return header
@@ -157,6 +155,8 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
         else np.column_stack([get("body_position"), get("body_mass")]).tolist(),
         "displacement": numbers.add(get("outline")),
     }
+    if get("outline_twist") is not None:
+        header["twist"] = numbers.add(get("outline_twist"))
     stress = get("stress")
     if stress is not None and np.isfinite(stress).all():
         largest = float(np.max(stress))
@@ -192,8 +192,10 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
             part["beam"] = _beam(inner, index, numbers)
             tip = inner["outline"][:, -1:]
             deflected = tip if _largest(tip) > _largest(deflected) else deflected
-        elif f"surface_{body}_vertices" in v:
-            inner = under(f"surface_{body}_", v)
+            line = inner.get("outline_place", np.zeros((0, 3)))  # of a straight one its points say where it is
+            corners += [origin[:, None] + turn.apply(each)[:, None] for each in line]
+        elif f"{body}_surface_vertices" in v:
+            inner = under(f"{body}_surface_", v)
             stored_times = v[f"{body}_surface_time"]
             inner["sizes"] = np.stack([np.interp(times, stored_times, each) for each in inner["sizes"].T], axis=1)
             part["surface"], moved = _surface(inner, v.get(f"{body}_von_mises"), numbers)
@@ -249,52 +251,9 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
     }
 
 
-def _at_once(v: Variables, *names: str) -> Variables:
-    """Return the variables of a body at rest as those of one time: `names` get an axis of times."""
-    return {**v, "time": np.zeros(1), **{name: v[name][None] for name in names}}
-
-
-def shapes(modes: Modes, variables: Variables, numbers: Numbers) -> dict[str, Any]:
-    """Return every mode of a beam, at some of the stations, or of a solid's surface, as a motion of one period."""
-    pairs = zip(modes.frequency, modes.direction, strict=True)
-    labels = [f"{i}: {number(frequency)} Hz, {direction}" for i, (frequency, direction) in enumerate(pairs, 1)]
-    if "surface_vertices" in variables:
-        surface = under("surface_", variables)
-        return {"labels": labels, "motions": [_of_surface(k, each, surface, numbers) for k, each in enumerate(labels)]}
-    x = modes.stations
-    chosen = np.unique(np.linspace(0, len(x) - 1, SHOWN).round().astype(int))
-    sizes = [
-        (each if each.size else x[-1] * share * np.ones(len(x)))[chosen]
-        for each, share in ((modes.width, WIDE), (modes.thickness, THICK))
-    ]
-    motions = []
-    line: dict[str, Any] = {}
-    view: dict[str, Any] = {"length": float(x[-1])}
-    if modes.place is not None and modes.across is not None:
-        line = {"rest": modes.place[chosen].tolist(), "across": modes.across[chosen].tolist()}
-        view = _extent(modes.place, numbers)
-    for k, label in enumerate(labels):
-        twist = np.zeros(1) if modes.twist is None else modes.twist[k, chosen]
-        amplitude = _amplitude(x[-1], 1.0, float(np.abs(twist).max()))
-        beam = {
-            **shape(x[chosen], sizes[0], sizes[1], modes.round),
-            **line,
-            "displacement": numbers.add(amplitude * _swung(modes.shape[k, chosen])),
-        }
-        if modes.twist is not None:
-            beam["twist"] = numbers.add(amplitude * _swung(twist))
-        motion = {"parts": [{"beam": beam}], **view, "time": numbers.add(PHASES), "largest": amplitude}
-        motions.append(_mode(label, motion))
-    return {"labels": labels, "motions": motions}
-
-
-def _of_surface(k: int, label: str, surface: dict[str, Any], numbers: Numbers) -> dict[str, Any]:
-    """Mode k of a solid's surface as a motion of one period."""
-    view = _around(surface["vertices"], numbers)
-    moved = _in_mode(surface, k)
-    amplitude = _amplitude(view["length"], moved, 0.0)
-    drawn, tip = _surface({**surface, "sizes": amplitude * _swung(_complex(surface, "sizes")[k])}, None, numbers)
-    return _mode(label, {"parts": [{"surface": drawn}], **view, "time": numbers.add(PHASES), "largest": _largest(tip)})
+def _at_once(v: Variables) -> Variables:
+    """Return the variables of a system at rest as those of one time."""
+    return {**v, "time": np.zeros(1), **{name: v[name][None] for name in _PLACED if name in v}}
 
 
 def _in_mode(surface: Mapping[str, Any], k: int) -> float:
@@ -306,40 +265,75 @@ def _complex(v: Mapping[str, Any], name: str) -> Any:
     return v[f"{name}_real"] + 1j * v[f"{name}_imag"]
 
 
-def shapes_of_system(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str, Any]:
+def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str, Any]:
     """Return every mode of a system as a motion of one period."""
-    rows = enumerate(zip(facts["modes"], v["share"], strict=True), 1)
-    labels = [f"{i}: {number(each['frequency'])} Hz, {v['body'][share.argmax()]}" for i, (each, share) in rows]
+    v = {name: each for name, each in v.items() if name != GROUND}
+    v |= {key: each for body in v["body"] for key, each in _line(v, body).items()}
+    pairs = enumerate(((each["frequency"], each["direction"]) for each in facts["modes"]), 1)
+    labels = [f"{i}: {number(frequency)} Hz, {direction}" for i, (frequency, direction) in pairs]
     motions = []
     beams = [body for body in v["body"] if f"{body}_outline" in v]
+    roots = [list(v["point"]).index(f"{body}.root") for body in v["body"]]
     rest = Rotation.from_quat(np.roll(v["attitude"], -1, axis=-1))
-    _, radius = _view(v["place"][None])
+    meshes = {
+        body: {key: v[f"{body}_surface_{key}"] for key in MESH} for body in v["body"] if f"{body}_surface_vertices" in v
+    }
+    _, radius = _view(np.concatenate([v["place"], *(_about(v, body) for body in v["body"])])[None])
 
     def of_mode(name: str, k: int) -> Any:
         return _complex(v, name)[k]
 
-    meshes = {
-        body: {key: v[f"surface_{body}_{key}"] for key in MESH} for body in v["body"] if f"surface_{body}_vertices" in v
-    }
     for k, label in enumerate(labels):
-        largest = [np.abs(of_mode(each, k)).max() for each in ("shape", *(f"{body}_outline_shape" for body in beams))]
+        largest = [np.abs(of_mode(each, k)).max() for each in ("point_shape", *(f"{b}_outline_shape" for b in beams))]
         largest += [_in_mode(each, k) for each in meshes.values()]
-        amplitude = _amplitude(2 * radius, float(max(largest)), float(np.abs(of_mode("turn", k)).max()))
-        attitudes = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of_mode("turn", k))]
+        twists = {body: of_mode(f"{body}_outline_twist", k) for body in beams if f"{body}_outline_twist_real" in v}
+        turn = max(np.abs(each).max() for each in (of_mode("point_turn", k)[roots], *twists.values()))
+        amplitude = _amplitude(2 * radius, float(max(largest)), float(turn))
+        attitudes = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of_mode("point_turn", k))]
         moving = {
             **v,
             "time": PHASES,
-            "place": v["place"] + amplitude * _swung(of_mode("shape", k)),
+            "place": v["place"] + amplitude * _swung(of_mode("point_shape", k)),
             "attitude": np.stack([np.roll(each.as_quat(), 1, axis=-1) for each in attitudes]),
         }
         for body in beams:
             moving[f"{body}_outline_time"] = PHASES
             moving[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of_mode(f"{body}_outline_shape", k))
+        for body, twist in twists.items():
+            moving[f"{body}_outline_twist"] = amplitude * _swung(twist)
         for body, mesh in meshes.items():
             moving[f"{body}_surface_time"] = PHASES
-            moving[f"surface_{body}_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
+            moving[f"{body}_surface_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
         motions.append(_mode(label, _system(label, label, moving, numbers)[0]))
     return {"labels": labels, "motions": motions}
+
+
+def _line(v: Variables, body: str) -> Variables:
+    """Variables of the outline of a body that has none, nor a surface, such as one by matrices: a strip through its
+    stations.
+    """
+    x = v.get(f"{body}_station", np.zeros(0))
+    if f"{body}_outline" in v or f"{body}_surface_vertices" in v or not len(x) or np.any(np.diff(x, prepend=0.0) <= 0):
+        return {}
+    wide = np.full(len(x) + 1, WIDE * x[-1])
+    known = {"outline_width": wide, "outline_thickness": THICK / WIDE * wide, "outline_round": False}
+    for part in ("shape_real", "shape_imag"):
+        known[f"outline_{part}"] = np.pad(v[f"{body}_{part}"], ((0, 0), (1, 0), (0, 0)))
+    known |= {"point": np.append(0.0, x), "outline": np.zeros((1, len(x) + 1, 3))}
+    return {f"{body}_{name}": each for name, each in known.items()}
+
+
+def _about(v: Variables, body: str) -> Floats:
+    """Places (p, 3) of a body at rest in axes of the ground, about all of it, beside its points."""
+    if f"{body}_surface_vertices" in v:
+        low, size = v[f"{body}_surface_vertices"].min(axis=0), np.ptp(v[f"{body}_surface_vertices"], axis=0)
+        places = low + CORNERS * size
+    elif f"{body}_outline_place" in v:
+        places = v[f"{body}_outline_place"]
+    else:
+        return np.zeros((0, 3))
+    root = list(v["point"]).index(f"{body}.root")
+    return v["place"][root] + Rotation.from_quat(np.roll(v["attitude"][root], -1)).apply(places)
 
 
 def _amplitude(length: float, largest: float, turn: float) -> float:
