@@ -6,13 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.system.point import solve_start
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.linear import frozen_equations, is_linear
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import positive_definite
 from gbeam.results.parts import Base
@@ -61,22 +59,21 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     >>> print(f"{1e6 * structure.tip(equilibrium.q)[0]:.3f} µm")
     0.495 µm
     """
-    system, still = System.of(structure if time is None else structure.at_time(time), "beam"), np.zeros(structure.size)
-    drive = Drive(base=base)
-    loads = system.flexible["beam"].load_values
-    if not holds_jax(system.tree, base, loads):
-        state = steady(system, drive)
+    structure = structure if time is None else structure.at_time(time)
+    loads = structure.load_values
+    if not (structure.traced or holds_jax(base, loads)):
+        state = steady(System.of(structure, "beam"), Drive(base=base))
         # Loads that follow the beam may shake it, which inertia decides.
         stable = positive_definite(state.point.slopes()[1]) if loads is None else state.stable
         return Equilibrium(state.point.y, stable)
-    if is_linear(system.tree):
-        import jax.numpy as jnp
+    import jax.numpy as jnp
 
-        _, _, stiffness, force = frozen_equations(system.tree, drive.inputs(system))
-        return Equilibrium(jnp.linalg.solve(stiffness, force), True)
-    bent = np.ones(structure.size, dtype=bool)
-    inputs = drive.inputs(system)
-    return Equilibrium(solve_start(system.tree, still, still, inputs, bent=bent, accelerated=~bent).q, True)
+    from gbeam.mechanics.equations.compiled import resting
+
+    if structure.linear:
+        frozen = base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads
+        return Equilibrium(jnp.linalg.solve(*structure.coefficients.at(*frozen)[1:]), True)
+    return Equilibrium(resting(structure.residual(), base, loads), True)
 
 
 def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:

@@ -10,9 +10,23 @@ import jax.numpy as jnp
 
 from gbeam.arrays.jax_setup import linear_root, with_slope
 from gbeam.arrays.namespace import Array
+from gbeam.results.parts import Base
 
 STRIDES, ITERATIONS = 8, 8  # of the load, and of Newton's method in each
 CLOSE, NOTHING = 1e-9, 1e-13  # of the coordinates, and m or rad: a last correction that is smaller has converged
+
+
+@jax.jit
+def resting(residual: Any, base: Base, loads: Array | None) -> Array:
+    """Coordinates (n,) at which a residual on a base vanishes at rest; NaN where Newton's method does not converge."""
+    still = jnp.zeros(residual.equations.size)
+
+    def force(q: Array, share: Any) -> Array:
+        spin_share: Any = jnp.sqrt(share)  # centrifugal forces grow with the square of the spin
+        part = Base(share * base.a_WO_B, spin_share * base.w_WB_B, share * base.alpha_WB_B)
+        return residual(q, still, still, (part, None if loads is None else share * loads))
+
+    return root(force, still)
 
 
 @partial(jax.jit, static_argnames=("stations", "axes"))

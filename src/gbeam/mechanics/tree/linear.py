@@ -111,7 +111,7 @@ def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, A
     parts = [c.at(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(of_bodies, roots, strict=True)]
     damping, stiffness, force = zip(*parts, strict=True)
     mass = _diagonal([c.mass for c in of_bodies])
-    return mass, _diagonal([*damping]), _diagonal([*stiffness]), np.concatenate(force)
+    return mass, _diagonal([*damping]), _diagonal([*stiffness]), concatenated(force)
 
 
 def _features(c: Coefficients, count: int, root: Frame, loads: Array | None) -> Array:
