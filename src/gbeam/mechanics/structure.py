@@ -401,13 +401,13 @@ class Structure:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         return self.output.slopes(q)
 
-    def twist_slopes(self, q: Array, at: Any = None) -> Array | None:
+    def twist_slopes(self, q: Array, chosen: Any = None) -> Array | None:
         """Derivatives of the angles of sections about the beam's axis at coordinates `q` (n,), (s, n): of the stations,
-        or of those `at` some points of the field; None of a model without twist.
+        or of those at the `chosen` points of the field; None of a model without twist.
         """
         if self.field is None or not (self.counts[3] or (self.source and self.source.beam.line)):
             return None
-        field = self.field.sections(slice(self.first_station, None) if at is None else at)
+        field = self.field.sections(slice(self.first_station, None) if chosen is None else chosen)
         along, (_, angles) = field.rotation(q)[..., 0], field.jacobians(q)
         return namespace(angles).einsum("sa,san->sn", along, angles)
 
