@@ -184,17 +184,17 @@ def test_a_force_moves_it_too_and_an_inertia_that_changes_is_said() -> None:
 
 def test_a_refinement_that_cannot_be_run_keeps_the_command_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A free body under a constant thrust had a refined command so large that its run broke off: an IndexError."""
-    from gbeam.analysis.control.plants import OnJoint
+    from gbeam.analysis.control.plants import Plant
 
-    about, rounds = OnJoint.about, []
+    about, rounds = Plant.about, []
 
-    def breaking(self: OnJoint, *of: Any) -> Any:
+    def breaking(self: Plant, *of: Any) -> Any:
         rounds.append(of)
         if len(rounds) > 1:
             raise gb.ComputationError("diverged", "the run of a command ends at 0.01 s, before its time")
         return about(self, *of)
 
-    monkeypatch.setattr(OnJoint, "about", breaking)
+    monkeypatch.setattr(Plant, "about", breaking)
     options: dict[str, Any] = {"distance": 5.0, "duration": 8.0, "point": "load.hook"}
     shaped = gb.shape_command(crane(effort=0.0), "rail.displacement", **options)
     assert len(rounds) == 2 and shaped.outcome == "done"

@@ -1,4 +1,4 @@
-"""What stands under a body's name is there without the name where one body deforms, and else refused by name."""
+"""Quantities of the only body that deforms are there without its name; of several they are refused."""
 
 from __future__ import annotations
 

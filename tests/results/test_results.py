@@ -38,7 +38,7 @@ def test_notebooks_show_it_as_html(every: dict[str, Any], kind: str) -> None:
 
 
 def test_what_does_not_move_is_not_viewed(every: dict[str, Any]) -> None:
-    with pytest.raises(gb.InputError, match="no motion to show"):
+    with pytest.raises(gb.InputError, match="has no motion"):
         every["campbell"].view()
 
 

@@ -11,9 +11,10 @@ from typing import Any, Literal
 import numpy as np
 
 from gbeam.analysis.case import Case
-from gbeam.analysis.control.plants import DRIVES, driven, movable
+from gbeam.analysis.control.plants import DRIVES, movable
 from gbeam.analysis.control.shaping import profile_of, shape_command
 from gbeam.analysis.model_study import of_kind
+from gbeam.arrays.tree import altered
 from gbeam.constants import ModelKind
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -163,7 +164,8 @@ def driven_of(case: Case, motion: str | None, joint: str | None) -> Driven:
         fix = "name it by --motion"
         raise InputError("--joint", f"is {joint!r}, and {case.system.order[0]} is on a hub, without joints", fix)
     name, hub = hub_of(case, motion)
-    turned = driven(hub, constant(0.0))  # mounted as it is: free, or at rate zero
+    # Mounted as it is: free, or at rate zero.
+    turned: Hub = altered(hub, **{"torque" if hub.free else "rate": constant(0.0)})
     return Driven(name, hub, turned, f"motion.{name}", f"motion.{name}.gravity", case, notes)
 
 

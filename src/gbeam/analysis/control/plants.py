@@ -1,4 +1,4 @@
-"""Plants of shaped commands: a hub with its beam, or a joint of a system."""
+"""Plants of shaped commands: joints of systems, the hinge of a hub with its beam among them."""
 
 from __future__ import annotations
 
@@ -9,17 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.control.linearization import linearize
-from gbeam.analysis.response.differentiated import Differentiated, Grid
+from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.response.peaks import half_ranges
 from gbeam.analysis.response.posed import pose, prepared
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
-from gbeam.analysis.steady.hinged import inertia_along
 from gbeam.analysis.system.histories import deflection
-from gbeam.analysis.system.steady import Drive, SteadySystem, steady, undeformed
-from gbeam.arrays.tree import altered
+from gbeam.analysis.system.steady import Drive, SteadySystem, steady
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
@@ -28,14 +25,13 @@ from gbeam.integrate.equations import accelerations, slopes
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
-from gbeam.mechanics.tree.one_body import on_motion
+from gbeam.mechanics.tree.one_body import HINGE, on_hub
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes
 from gbeam.numerics.series import STEP
 from gbeam.progress import Progress
-from gbeam.results.response import Response
 
 Pair = tuple[Profile, Profile]
 Share = Callable[[float], None]  # told the share of a computation that is done
@@ -86,84 +82,6 @@ class SmallMotions(NamedTuple):
     tip: Floats
 
 
-def driven(hub: Hub, profile: Profile) -> Hub:
-    """The hub with a command as its torque, if it is free, else as its rate."""
-    commanded: Hub = altered(hub, **{"torque" if hub.free else "rate": profile})
-    return commanded
-
-
-@dataclass(frozen=True)
-class OnHub:
-    """A beam on a hub, driven by its torque if it is free, else by its rate."""
-
-    structure: Structure
-    hub: Hub
-    slides = False
-
-    @property
-    def kind(self) -> str:
-        """Kind of the model."""
-        return self.structure.kind
-
-    @property
-    def free(self) -> bool:
-        """True if the drive is a torque."""
-        return self.hub.free
-
-    @property
-    def inertia(self) -> float:
-        """Moment of inertia of all that turns, kg m²."""
-        system, _ = on_motion(self.structure, self.hub)
-        return inertia_along(undeformed(system).point, 0)
-
-    def refuse_moving(self, goal: Goal) -> None:
-        """Raise InputError unless the hub rests without a command, and gravity bends the beam alike at all angles."""
-        if self.hub.mount.gravity is not None and np.any(np.asarray(self.hub.mount.gravity)[:2]):
-            raise InputError("gravity", *_BENT)
-        if not self.hub.free and float(np.abs(self.hub.base(np.zeros(1)).w_WB_B).max()) > 0:
-            raise InputError("rate", "is not zero: the hub turns already", "leave it out")
-
-    @property
-    def small(self) -> SmallMotions:
-        """Linear model of beam and hub about rest, with the column of a unit torque or angular acceleration."""
-        linear = linearize(self.structure, self.hub)
-        if self.hub.free:
-            return SmallMotions(linear.a, linear.b[:, 0], linear.c[:3])
-        base = self.hub.mount.base(np.zeros(1), np.zeros(1), np.ones(1))
-        column = linear.b[:, :3] @ base.a_WO_B[0] + linear.b[:, 3:6] @ base.alpha_WB_B[0]
-        return SmallMotions(linear.a, column, linear.c[:3])
-
-    def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:
-        """Run a command."""
-        return _ran(simulate(self.structure, driven(self.hub, profile), settings, name=name, progress=progress))
-
-    def about(
-        self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
-    ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
-        """The run of a command by given steps, and an iterator of pairs of runs of commands that differ by a `width`,
-        made by exact derivatives.
-        """
-        assert settings.step is not None
-        hub = driven(self.hub, profile)
-        nominal = Differentiated(self.structure, hub, settings, Grid(settings.step, 1), "", loads=False)
-        posed = [nominal.pair(*((None, driven(self.hub, command)) for command in pair)) for pair in pairs]
-        responses = nominal.responses(posed, np.full(len(posed), width))
-
-        def varied() -> Iterator[tuple[Ran, Ran]]:
-            for k, (less, more) in enumerate(responses, start=1):
-                share(k / len(pairs))
-                yield _ran(less), _ran(more)
-
-        return _ran(nominal.unvaried()), varied()
-
-
-def _ran(response: Response) -> Ran:
-    """Parts of a response that shaping a command needs."""
-    left, hub = float(np.linalg.norm(response.peaks.residual_amplitude)), response.hub
-    moved = None if hub is None else (hub.angle - hub.angle[0], hub.rate)
-    return Ran(response.time, np.asarray(response.tip), response.outcome, response.message, left, response.step, moved)
-
-
 def movable(system: System) -> list[str]:
     """Names of the coordinates of joints that a command may drive: all but Euler parameters."""
     names = (f"{name}.{kind}" for name, joint in system.joints.items() for kind in joint.coordinates)
@@ -171,7 +89,7 @@ def movable(system: System) -> list[str]:
 
 
 @dataclass(frozen=True)
-class OnJoint:
+class Plant:
     """A system on the ground, driven by the rate of a joint's coordinate if it has one, else by the effort on it."""
 
     system: System
@@ -179,7 +97,14 @@ class OnJoint:
     point: str  # whose vibration is made least
 
     @staticmethod
-    def of(system: System, coordinate: str, point: str | None) -> OnJoint:
+    def on_hub(structure: Structure, hub: Hub) -> Plant:
+        """The drive of a hub that carries a beam, whose tip is to rest; InputError where it turns already."""
+        if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
+            raise InputError("rate", "is not zero: the hub turns already", "leave it out")
+        return Plant(on_hub(structure, hub), f"{HINGE}.angle", f"{BEAM}.tip")
+
+    @staticmethod
+    def of(system: System, coordinate: str, point: str | None) -> Plant:
         """The drive of a system's coordinate, with the tip of the only flexible body as point if none is named."""
         choice("joint", coordinate, movable(system))
         tips = [f"{name}.tip" for name in system.flexible]
@@ -188,7 +113,7 @@ class OnJoint:
             raise InputError("point", "is missing: it says whose vibration is made least", fix)
         chosen = tips[0] if point is None else point
         system.point("point", chosen)
-        return OnJoint(system, coordinate, chosen)
+        return Plant(system, coordinate, chosen)
 
     @property
     def kind(self) -> str:
@@ -371,6 +296,3 @@ class OnJoint:
                 yield moved(-change), moved(change)
 
         return moved(0.0), varied()
-
-
-Plant = OnHub | OnJoint

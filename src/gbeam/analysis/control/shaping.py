@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.control.commands import Commands, Vibration, check_goal, usual
-from gbeam.analysis.control.plants import DRIVES, Goal, OnHub, OnJoint, Plant, Ran
+from gbeam.analysis.control.plants import DRIVES, Goal, Plant, Ran
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
@@ -44,7 +44,7 @@ def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
     structure, hub = (arguments.get(name) for name in ("structure", "hub"))
     if isinstance(hub, Hub) or not isinstance(structure, System):
         return isinstance(hub, Hub) and hub.free, False
-    driven = OnJoint(structure, str(hub), "")
+    driven = Plant(structure, str(hub), "")
     return driven.free, driven.slides
 
 
@@ -248,12 +248,12 @@ def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> 
     if isinstance(structure, System):
         if not isinstance(hub, str):
             raise InputError("hub", "is a hub, and carries a system", 'name what moves, such as "joint.angle"')
-        return OnJoint.of(structure, hub, point)
+        return Plant.of(structure, hub, point)
     if not isinstance(hub, Hub):
         raise InputError("hub", f"is {hub!r}, and the structure is one beam", "give a Hub")
     if point is not None:
         raise InputError("point", f"is {point!r}, and the structure is one beam", "leave it out: its tip is to rest")
-    return OnHub(structure, hub)
+    return Plant.on_hub(structure, hub)
 
 
 def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -> Floats:

@@ -29,7 +29,7 @@ NOTICED = math.log(2)  # growth below this is not warned of
 
 @dataclass(frozen=True)
 class Ending:
-    """How a run ended: outcome and message, and warnings of what is doubtful where it is done."""
+    """Outcome and message of a run, and warnings of what is doubtful where it is done."""
 
     outcome: str = "done"
     message: str = ""
@@ -49,7 +49,7 @@ class Ending:
 
 
 def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats) -> Ending:
-    """How a run ended. Of the bodies on which nothing hangs or acts but their loads, `bodies` have the motion of the
+    """Outcome of a run. Of the bodies on which nothing hangs or acts but their loads, `bodies` have the motion of the
     root (t, 3) and the coordinates (t, n) at times (t,) s: what makes these lose their stability.
     """
     trajectory, system = run.trajectory, run.posed.system
@@ -78,7 +78,7 @@ def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats)
 
 
 def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Floats] | None, time: Floats) -> Ending:
-    """How a run ended for one body, by its states at times (t,) s, if what they would tell is all that it feels."""
+    """Outcome of a run for one body, by its states at times (t,) s, if what they would tell is all that it feels."""
     end, q_end = run.trajectory.time[-1], run.trajectory.q[-1:, run.posed.columns(name)]
     stopped = run.trajectory.stopped and run.posed.far(structure, structure.displacement(q_end)).any()
     loss, lost, bent = None, "", ""

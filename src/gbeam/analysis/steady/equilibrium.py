@@ -73,7 +73,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     if structure.linear:
         frozen = base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads
         return Equilibrium(jnp.linalg.solve(*structure.coefficients.at(*frozen)[1:]), True)
-    return Equilibrium(resting(structure.residual(), base, loads), True)
+    return Equilibrium(resting(structure.equations, base, loads), True)
 
 
 def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:

@@ -17,14 +17,14 @@ CLOSE, NOTHING = 1e-9, 1e-13  # of the coordinates, and m or rad: a last correct
 
 
 @jax.jit
-def resting(residual: Any, base: Base, loads: Array | None) -> Array:
-    """Coordinates (n,) at which a residual on a base vanishes at rest; NaN where Newton's method does not converge."""
-    still = jnp.zeros(residual.equations.size)
+def resting(equations: Any, base: Base, loads: Array | None) -> Array:
+    """Coordinates (n,) at which equations on a base hold at rest; NaN where Newton's method does not converge."""
+    still = jnp.zeros(equations.size)
 
     def force(q: Array, share: Any) -> Array:
         spin_share: Any = jnp.sqrt(share)  # centrifugal forces grow with the square of the spin
-        part = Base(share * base.a_WO_B, spin_share * base.w_WB_B, share * base.alpha_WB_B)
-        return residual(q, still, still, (part, None if loads is None else share * loads))
+        part = share * base.a_WO_B, spin_share * base.w_WB_B, share * base.alpha_WB_B
+        return equations.residual(q, still, still, *part, None if loads is None else share * loads)
 
     return root(force, still)
 

@@ -20,15 +20,17 @@ def on_motion(structure: Structure, motion: Motion | None, name: str = "beam") -
     """System of a structure alone in a motion, and the motion of the system's ground: none under a free hub."""
     if motion is None or not motion.free:
         return System.of(structure, name), motion
-    return on_free_hub(structure, motion, name), None
+    return on_hub(structure, motion, name), None
 
 
-def on_free_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
-    """System of a structure on the rim of a hub that turns freely under its torque, spring and damper."""
+def on_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
+    """System of a structure on the rim of a hub that turns at its rate, or freely under torque, spring and damper."""
     rim = Place(at=(hub.radius, 0.0, 0.0), turn=_turn_of_root(hub))
     # Only the moment about the hinge's axis takes part; equal ones are those of a possible body.
-    body = RigidBody(0.0, namespace(hub.inertia).stack([hub.inertia] * 3), points={RIM: rim})
-    hinge = Joint("revolute", HUB, axes=[(0, 0, 1)], stiffness=hub.stiffness, damping=hub.damping, effort=hub.torque)
+    inertia = 0.0 if hub.inertia is None else hub.inertia
+    body = RigidBody(0.0, namespace(inertia).stack([inertia] * 3), points={RIM: rim})
+    driven = {"stiffness": hub.stiffness, "damping": hub.damping, "effort": hub.torque}
+    hinge = Joint("revolute", HUB, axes=[(0, 0, 1)], **(driven if hub.free else {"rate": hub.rate}))
     clamp = Joint("fixed", name, on=f"{HUB}.{RIM}")
     return System({HUB: body, name: structure}, {HINGE: hinge, CLAMP: clamp}, gravity=hub.gravity)
 
