@@ -198,7 +198,7 @@ def swept(sweep: float, rpm: float) -> np.ndarray:
         "weld": Joint("fixed", "outer", "inner.tip", turn=(0, 0, -np.radians(sweep))),
     }
     computed = modes(System({"hub": RigidBody(0.0), **parts}, joints))
-    size = np.square(np.abs(computed.shape)).sum(axis=1)
+    size = np.square(np.abs(computed.point_shape)).sum(axis=1)
     return np.asarray(computed.frequency[size[:, 2] > size[:, 1]])
 
 

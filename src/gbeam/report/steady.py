@@ -138,7 +138,8 @@ def modes(facts: Facts) -> Blocks:
 def where(facts: Facts, *words: str) -> Sentence:
     """Sentence on the motion, if it has a name, the models, and other words."""
     motion = f"motion {facts['motion']}" if facts["motion"] else ""
-    models = dict.fromkeys(each["model"] for each in facts.get("bodies", {"": facts}).values())
+    modelled = [facts, *facts.get("bodies", {}).values()]  # a rigid body has no model
+    models = dict.fromkeys(each["model"] for each in modelled if "model" in each)
     return Sentence(", ".join(filter(None, (motion, *(f"model {each}" for each in models), *words))))
 
 

@@ -299,8 +299,8 @@ def refuse_long(system: System, settings: ResponseSettings, step: float) -> None
 
 def first_step(subject: Subject, start: Begun, settings: ResponseSettings) -> float:
     """Step of the results, s: that of the settings, rounded to a whole number of steps. If automatic, 500 steps or more
-    and twenty to the period of the slowest vibration (of those that the most steps would resolve) on a ground that
-    rests, none longer than from corner to corner; LOADS_STEPS at most.
+    and twenty to the period of the slowest vibration on a ground that rests, none longer than from corner to corner; of
+    equations that are not linear LOADS_STEPS at most, and of those vibrations that these would resolve.
     """
     if settings.step is not None:
         return settings.duration / max(1, round(settings.duration / settings.step))
@@ -311,11 +311,12 @@ def first_step(subject: Subject, start: Begun, settings: ResponseSettings) -> fl
         return settings.duration / even_steps(largest, bends(largest), settings)
     _, k, _, m = Point(system.tree, start.y, start.yd, 0 * start.y, _resting(subject, settings.start)).local.slopes()
     square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k)))
+    most = math.inf if is_linear(system.tree) else LOADS_STEPS
     oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
-    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * LOADS_STEPS]
+    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * most]
     if oscillating.size:
         largest = min(largest, 2 * math.pi / float(oscillating.min()) / PER_PERIOD)
-    return settings.duration / min(even_steps(largest, bends(largest), settings), LOADS_STEPS)
+    return settings.duration / min(even_steps(largest, bends(largest), settings), most)
 
 
 def _resting(subject: Subject, time: float) -> Inputs:

@@ -355,8 +355,8 @@ def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
         cause, cure = cause_and_cure(error, errors.theory[worst_beam])
         if error.shapes == np.nanmax(parts):
             cure = MORE_SHAPES
-        most_of = errors.beams[worst_beam]
-        warnings.append(f"{what} wrong by an estimated {share} of {size}: {cause}, most of {most_of}; {cure}")
+        most_of = f", most of {errors.beams[worst_beam]}" if len(errors.beams) > 1 else ""
+        warnings.append(f"{what} wrong by an estimated {share} of {size}: {cause}{most_of}; {cure}")
     return tuple(warnings)
 
 

@@ -141,7 +141,10 @@ def refuse_massless(system: System, point: Point, mass: Floats) -> None:
         return
     local = point.local  # whose names are those of degrees of freedom
     names, motion = local_names(system.coordinates), np.abs(_least_moving(local.slopes()[3])[1])
-    together = ", ".join(names[local.tree.free[k]] for k in np.flatnonzero(motion > motion.max() / 2))
+    foremost = [names[local.tree.free[k]] for k in np.flatnonzero(motion > motion.max() / 2)]
+    if all(name.rpartition(".")[0] in system.flexible for name in foremost):
+        return  # shapes of a body that are nearly dependent, and have mass nevertheless
+    together = ", ".join(foremost)
     fix = "give the body that it moves a mass, and a moment of inertia about every axis that is free"
     fix += "; of two springs one behind the other, as a joint's and a beam's root, give one"
     raise InputError("bodies", f"leave {together} without inertia", fix)
@@ -169,7 +172,12 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
     those on `accelerated` ones are answered by their accelerations; the others are held. NaN where JAX traces it and
     there is none.
     """
-    held, begun = ~(bent | accelerated), np.zeros(len(bent))
+    held, traced = ~(bent | accelerated), holds_jax(residual, q, qd, inputs)
+    begun: Array = np.zeros(len(bent))
+    if traced:
+        import jax.numpy as jnp
+
+        q, qd, begun = map(jnp.asarray, (q, qd, begun))  # beside inputs that are traced, NumPy would read them
 
     def forces(z: Array) -> Array:
         """Forces left over (..., n); z (..., n) are displacements and accelerations."""
@@ -181,7 +189,7 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
     def left(z: Array, share: Any) -> Array:
         return forces(z) - (1.0 - share) * first
 
-    if holds_jax(residual, q, qd, inputs):
+    if traced:
         from gbeam.mechanics.equations.compiled import root
 
         z = root(left, begun)
