@@ -156,7 +156,7 @@ def test_bytes_that_are_no_text_are_refused_or_written_out(fast: Path) -> None:
 
 
 @LINUX
-@pytest.mark.parametrize("megabytes", [200, 250, 300, 400])
+@pytest.mark.parametrize("megabytes", [250, 300, 400])  # less, and libraries crash as they are loaded
 def test_too_little_memory_is_no_defect(megabytes: int, fast: Path) -> None:
     ends = []
     sweep = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.response.stepping import first_steps
+from gbeam.analysis.response.posed import poses, prepared
 
 
 def box() -> gb.Structure:
@@ -34,4 +34,4 @@ def test_few_steps_pass_no_pulse_unseen() -> None:
     settings = gb.ResponseSettings(duration=3600.0)
     pulse = gb.Sine(500.0, duration=0.003, start=50.0)
     for load, tries in ((gb.constant(10.0), 4), (gb.Sum((gb.constant(10.0), pulse)), 1)):
-        assert len(first_steps(box(), gb.Flight(z=load), settings)) == tries
+        assert len([*poses(prepared(box(), gb.Flight(z=load), settings), settings)]) == tries
