@@ -10,7 +10,7 @@ from typing import Any, TypeVar, Unpack
 import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
-from gbeam.analysis.response.posed import Posed, poses, prepared
+from gbeam.analysis.response.posed import Posed, begun, pose, prepared, tries
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.simulation import described, settings_of, simulate
@@ -182,9 +182,10 @@ def _responses(
         subject = prepared(structure, motion, settings)
         if traced or holds_jax(subject.motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
-        *longer, posed = poses(subject, settings)
-        alone = posed.before or posed.after or posed.controllers is not None or not len(posed.start.y)
-        if longer or alone:
+        start = begun(subject, settings, settings.start)
+        *longer, (kept, most) = tries(subject, settings, start)
+        posed = None if longer else pose(subject, settings, kept, most, start)
+        if posed is None or posed.before or posed.after or posed.controllers is not None or not len(start.y):
             yield index, simulate(structure, subject.motion, settings)
             continue
         common = [body.equations for body in posed.system.flexible.values()] if one_structure else None

@@ -231,10 +231,15 @@ def prepared(structure: Structure | System, motion: Motion | None, settings: Res
 
 def poses(subject: Subject, settings: ResponseSettings) -> Iterator[Posed]:
     """Yield the problem with each of the steps of results to try, the longest first."""
-    start, bends = begun(subject, settings, settings.start), partial(corners, subject)
-    limit = MAX_STEPS if is_linear(subject.system.tree) else LOADS_STEPS
-    for kept, most in steps_to_try(first_step(subject, start, settings), limit, bends, settings):
+    start = begun(subject, settings, settings.start)
+    for kept, most in tries(subject, settings, start):
         yield pose(subject, settings, kept, most, start)
+
+
+def tries(subject: Subject, settings: ResponseSettings, start: Begun) -> list[tuple[float, int]]:
+    """Steps of the results to try, s, the longest first, each with the most steps of a run."""
+    limit = MAX_STEPS if is_linear(subject.system.tree) else LOADS_STEPS
+    return steps_to_try(first_step(subject, start, settings), limit, partial(corners, subject), settings)
 
 
 def pose(
