@@ -89,9 +89,7 @@ def test_points_of_a_scenario_are_measured_and_drawn_over_time(tmp_path: Path) -
     )
     small, large = swept.measures["points.camera.z.max_abs"]
     assert 0 < small < large and swept.histories["camera.z"].shape == (2, 5)
-    with pytest.raises(
-        gb.InputError, match=r"of camera\.x, camera\.y, camera\.z, tip\.x"
-    ):
+    with pytest.raises(gb.InputError, match=r"of camera\.x, camera\.y, camera\.z, tip\.x"):
         gb.sweep(file, ["beam.points[0].at=100 mm, 150 mm"], histories=["lens.z"], times=5)
     file.write_text(SCENARIO.replace(" } ]", ' }, { name = "camera", at = "9 mm" } ]', 1), encoding="utf-8")
     with pytest.raises(ScenarioError, match="'camera' a second time"):
