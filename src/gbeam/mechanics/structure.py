@@ -401,7 +401,7 @@ class Structure:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         return self.output.slopes(q)
 
-    def twist_slopes(self, q: Array, chosen: Any = None) -> Array | None:
+    def twist_slopes(self, q: Array, chosen: Array | None = None) -> Array | None:
         """Derivatives of the angles of sections about the beam's axis at coordinates `q` (n,), (s, n): of the stations,
         or of those at the `chosen` points of the field; None of a model without twist.
         """
