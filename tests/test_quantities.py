@@ -235,8 +235,9 @@ def test_a_quantity_is_read_as_scenarios_read_it(samples: Samples, name: str, ho
 
 # Of methods, by their names, or those of the method where they differ.
 ARGUMENTS: dict[str, Any] = {
-    "acceleration": np.ones((5, 3)), "ahead": True, "chosen": np.array([0]), "duration": 0.1, "end": 0.1, "measured": np.array([0.1]),
-    "name": "flight", "order": 1, "poissons_ratio": 0.3, "q": np.full(2, 1e-4), "rate": "angle", "sample": 0.01,
+    "acceleration": np.ones((5, 3)), "ahead": True, "chosen": np.array([0]), "duration": 0.1, "end": 0.1,
+    "measured": np.array([0.1]), "name": "flight", "order": 1, "poissons_ratio": 0.3, "q": np.full(2, 1e-4),
+    "rate": "angle", "sample": 0.01,
     "samples": 100, "start": 0.0, "state": np.zeros(0), "stations": [0.1], "step": 0.01, "stride": 2, "t": 0.05,
     "time": 0.05, "tolerance": 0.05, "width": 0.05, "x": [0.1, 0.2],
 }  # fmt: skip
