@@ -98,7 +98,8 @@ class Plant:
 
     @staticmethod
     def on_hub(structure: Structure, hub: Hub) -> Plant:
-        """The drive of a hub that carries a beam, whose tip is to rest; InputError where it turns already."""
+        """The drive of a hub that carries a beam, whose tip is to rest; InputError if it is rigid or turns already."""
+        structure.require_coordinates()
         if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
             raise InputError("rate", "is not zero: the hub turns already", "leave it out")
         return Plant(on_hub(structure, hub), f"{HINGE}.angle", f"{BEAM}.tip")
