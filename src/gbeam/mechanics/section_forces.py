@@ -22,7 +22,6 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.structure import Sections, Structure
-from gbeam.mechanics.tree.bodies import Body
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.system import terms_of
 from gbeam.motion.protocol import Motion
@@ -105,24 +104,15 @@ def section_forces(
     return about_the_hub(loads, motion, base.alpha_WB_B)
 
 
-def root_loads(
-    structure: Structure, terms: Body, base: Base, q: Array, qd: Array, qdd: Array, time: Array
-) -> tuple[Array, Array]:
-    """Force and moment that the root carries, (t, 3), base axes, by a structure's `terms` in the equations; those of a
-    linear model are exact to second order in its coordinates.
-    """
-    applied = None if structure.history is None else structure.history(time)
-    root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
-    _, wrench = terms.demanded(q, qd, qdd, root, applied)
-    return -wrench.force, -wrench.moment
-
-
 def _of_ends(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
 ) -> Loads:
     """Loads, without stress, at the root of a structure without sections and at its tip, which carries nothing."""
     xp = namespace(q, base.a_WO_B)
-    demanded = [-each for each in root_loads(structure, terms_of(structure), base, q, qd, qdd, time)]
+    applied = None if structure.history is None else structure.history(time)
+    root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+    wrench = terms_of(structure).demanded(q, qd, qdd, root, applied)[1]
+    demanded = [wrench.force, wrench.moment]
     if hung is not None:
         hanging = hung.force.sum(axis=1), hung.moment.sum(axis=1)
         demanded = [each + more for each, more in zip(demanded, hanging, strict=True)]

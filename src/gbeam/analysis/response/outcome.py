@@ -41,7 +41,7 @@ class Ending:
         return self.outcome == "done"
 
     def of(self, body: str) -> Ending:
-        """The same, said of a body by its name; as it is of no name."""
+        """Name a body in the message and the warnings; leave them as they are where the name is empty."""
         if not body:
             return self
         message = f"{body}: {self.message}" if self.message else ""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from itertools import pairwise
 from types import MappingProxyType
 from typing import Any
 
@@ -329,8 +328,3 @@ def _resting(subject: Subject, time: float) -> Inputs:
     inputs, zero = subject.system.inputs(np.asarray(time), subject.ground), np.zeros(3)
     a = inputs.ground.a if subject.ground is None else zero
     return replace(inputs, ground=Frame(np.eye(3), zero, zero, zero, a, zero), loads=(None,) * len(inputs.loads))
-
-
-def split(count: Any) -> list[slice]:
-    """Slices of the steps of a run's parts, from their numbers of steps; each begins where the last one ends."""
-    return [slice(a, b + 1) for a, b in pairwise([0, *np.cumsum(count)])]

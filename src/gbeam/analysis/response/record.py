@@ -1,4 +1,4 @@
-"""Runs of a structure, and the response that is made of one, with its errors."""
+"""Response of a structure that a run leaves, with its errors."""
 
 from __future__ import annotations
 
@@ -13,10 +13,7 @@ from gbeam.analysis.outline import outline_of
 from gbeam.analysis.response.outcome import effort, ending_of, far_bent, inaccuracies, yielding
 from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
 from gbeam.analysis.response.run import Run
-from gbeam.analysis.response.stepping import (
-    LOADS_STEPS,
-    scheme_of,
-)
+from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory

@@ -14,7 +14,7 @@ from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantit
 from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
 from gbeam.analysis.response.contacts import creeping, missed_stop, turned_over
 from gbeam.analysis.response.peaks import peaks_of_coordinates
-from gbeam.analysis.response.posed import Posed, begun, split
+from gbeam.analysis.response.posed import Posed, begun
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
@@ -72,8 +72,8 @@ class Run:
     @property
     def in_flight(self) -> slice:
         """The steps of the flight; all where a machine's spin-up failed before it."""
-        _, flight, _ = split(self.posed.counts(self.step))
-        return flight if len(self.trajectory.time) > flight.start + 1 else slice(0, None)
+        before, count, _ = self.posed.counts(self.step)
+        return slice(before, before + count + 1) if len(self.trajectory.time) > before + 1 else slice(0, None)
 
     @cached_property
     def flight(self) -> Trajectory:
@@ -90,6 +90,10 @@ class Run:
     def flown(self, stride: int) -> slice:
         """The flight among the steps that are :meth:`sampled`."""
         return slice(self.in_flight.start, self.in_flight.start + len(self.flight.time[::stride]))
+
+    def _flown(self, stride: int) -> Indices:
+        """Indices of every `stride`-th step of the flight."""
+        return np.arange(len(self.trajectory.time))[self.in_flight][::stride]
 
     @property
     def deforming(self) -> dict[str, Structure]:
@@ -141,11 +145,9 @@ class Run:
         """
         flight, peaks = self.flight, list[Floats]()
         for name, body in self.deforming.items():
-            tip, moment = (
-                partial(_tip, body, self.posed.columns(name)),
-                partial(_moment, body, self.posed.columns(name)),
-            )
-            peaks += [peaks_of_coordinates(flight, of(flight.q), of) for of in (tip, moment)]
+            for vector in (_tip, _moment):
+                of = partial(vector, body, self.posed.columns(name))
+                peaks.append(peaks_of_coordinates(flight, of(flight.q), of))
         return peaks
 
     def loads(self, stride: int) -> list[Floats]:
@@ -153,7 +155,7 @@ class Run:
         of the flight, and its stress: at every section (t, s, 1), or a solid's (t, c).
         """
         system, out = self.posed.system, list[Floats]()
-        chosen = np.arange(len(self.trajectory.time))[self.in_flight][::stride]
+        chosen = self._flown(stride)
         states = {name: list[Carried]() for name in self.deforming}
         for part in pieces(len(chosen), system.tree.size):
             at, inputs = self.trajectory.at(chosen[part]), self.inputs(system, chosen[part])
@@ -313,15 +315,14 @@ class Run:
 
     def solution(self, stride: int) -> Solution:
         """Solution at every `stride`-th step of the flight."""
-        steps = np.arange(len(self.trajectory.time))[self.in_flight][::stride]
+        steps = self._flown(stride)
         return Solution(self.posed.system, self.trajectory.at(steps), lambda of, times: self.inputs(of, steps[times]))
 
     def alone(self) -> dict[str, tuple[Base, Floats]]:
         """Motion of the root (t, 3) and coordinates (t, n), at all steps, of each flexible body, by its name, on which
         nothing hangs and no force acts.
         """
-        tree, names = self.posed.system.tree, self.posed.system.order
-        laden = {names[link.parent] for link in tree.links if link.parent >= 0} | {names[f.body] for f in tree.forces}
+        tree, names, laden = self.posed.system.tree, self.posed.system.order, self.posed.system.laden
         chosen, run = [name for name in self.deforming if name not in laden], self.trajectory
         roots = {name: list[Frame]() for name in chosen}
         for part in pieces(len(run.time), tree.size) if chosen else ():

@@ -78,7 +78,7 @@ class Solution:
             state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, inputs)
             places.append(np.stack([frame.p for frame in state.every_point], axis=1))
             if along:
-                acting = tree.demanded(state, inputs)[2] if self._acted & {*along} else [[] for _ in tree.links]
+                acting = tree.demanded(state, inputs)[2] if self.system.laden & {*along} else [[] for _ in tree.links]
                 for name, carried_pieces in along.items():
                     carried_pieces.append(carried(self.system, state, name, acting))
         out: dict[Quantity, Floats] = {PLACE: np.concatenate(places)}
@@ -93,12 +93,6 @@ class Solution:
             out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
             out |= {(name, "stress"): stress, (name, "sheared"): sheared.max(axis=1)}
         return out
-
-    @property
-    def _acted(self) -> set[str]:
-        """Names of the bodies on whose points others hang or forces act."""
-        tree, order = self.system.tree, self.system.order
-        return {order[link.parent] for link in tree.links if link.parent >= 0} | {order[f.body] for f in tree.forces}
 
     def turning(self) -> Floats:
         """Places (t, 3 k, 3) m from the root, in the ground's axes, of three points on the axes of each of the k rigid
@@ -130,7 +124,7 @@ class Solution:
         """Flags of x, y and z by the names of bodies: True if a body has shapes along the axis, or would move new ones.
         Bodies on which others hang, or forces act, may move along all.
         """
-        tree, count, acted = self.system.tree, len(self.of.time), self._acted
+        tree, count, acted = self.system.tree, len(self.of.time), self.system.laden
         every, wanted = dict[str, Directions](), list[tuple[int, str]]()
         for k, name in enumerate(self.system.order):
             if name in bodies:

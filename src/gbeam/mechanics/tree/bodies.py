@@ -101,7 +101,7 @@ class Rigid:
         return q, Wrench(force, root.alpha @ self.inertia + cross(root.w, spin) + cross(self.centre, force))
 
     def contracted(self, carrier: Roots, root: Roots) -> Rigid:
-        """The same body by the motion of its `carrier`, which tells that of its root; itself where that is in doubt."""
+        """Contract it by the motion of its `carrier`, which tells that of its root; itself where that is in doubt."""
         reach = carrier.reach(root)
         if reach is None:
             return self
@@ -290,7 +290,7 @@ class LinearBody:
         return along, Wrench(wrench[..., :3], wrench[..., 3:])
 
     def contracted(self, carrier: Roots, root: Roots) -> LinearBody:
-        """The same body by the motion of its `carrier`, which tells that of its root; itself where that is in doubt, or
+        """Contract it by the motion of its `carrier`, which tells that of its root; itself where that is in doubt, or
         would not be faster.
         """
         reach = None if self.carried is not None or not self.size else carrier.reach(root)

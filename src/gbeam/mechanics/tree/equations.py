@@ -276,7 +276,7 @@ class Tree:
         return [each for each in flags if each.any()]
 
     def parted(self, *coordinates: Array) -> list[list[list[Array]]]:
-        """Of each array of coordinates those of each link: of each step of its joint, then of its body."""
+        """Part each array of coordinates by links, and within a link by the steps of its joint and its body."""
         sizes, spans, end = [link.sizes for link in self.links], list[list[slice]](), 0
         for of_link in sizes:
             ends = list(accumulate(of_link, initial=end))

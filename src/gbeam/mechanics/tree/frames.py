@@ -88,7 +88,7 @@ class Frame:
         return Frame(R, p, v, w, a, alpha)
 
     def filled(self, shape: tuple[int, ...]) -> Frame:
-        """The same motion of a shape of states, with zeros in place of what is None because it is zero."""
+        """Fill in zeros, of a shape of states, for the vectors that are None because they are zero."""
         if self.w is not None and self.a is not None:
             return self
         zero = np.zeros((*shape, 3))

@@ -394,6 +394,12 @@ class System(Value):
         return tuple(f"{name}: {each}" for name, body in bodies for each in getattr(body, "warnings", ()))
 
     @property
+    def laden(self) -> set[str]:
+        """Names of the bodies on whose points others hang or forces act."""
+        hung = {self.order[link.parent] for link in self.tree.links if link.parent >= 0}
+        return hung | {self.order[force.body] for force in self.tree.forces}
+
+    @property
     def rubbing(self) -> tuple[str, ...]:
         """Names of the coordinates with friction and no prescribed rate, ``joint.angle``; of balls ``joint.rx``."""
         return tuple(
