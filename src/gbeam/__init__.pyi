@@ -64,14 +64,13 @@ from gbeam.results.comparison import Comparison as Comparison
 from gbeam.results.equilibrium import Rest as Rest
 from gbeam.results.modal import Modes as Modes
 from gbeam.results.response import Response as Response
-from gbeam.results.response import Sensor as Sensor
 from gbeam.results.searches import Fit as Fit
 from gbeam.results.searches import Optimum as Optimum
 from gbeam.results.searches import ShapedCommand as ShapedCommand
+from gbeam.results.sensors import Sensor as Sensor
 from gbeam.results.state_space import Gauge as Gauge
 from gbeam.results.state_space import StateSpace as StateSpace
 from gbeam.results.study import Study as Study
-from gbeam.results.system import SystemResponse as SystemResponse
 from gbeam.scenario.build import read_scenario as read_scenario
 from gbeam.scenario.rerun import rerun as rerun
 from gbeam.solids.imported import ImportedModel as ImportedModel

@@ -32,7 +32,7 @@ from gbeam.results.provenance import Provenance, ScenarioText
 from gbeam.structure.beam import Beam
 
 if TYPE_CHECKING:
-    from gbeam.results.response import Sensor
+    from gbeam.results.sensors import Sensor
 
 
 @kinds(accept={"*": KINDS_OF_LIMITS})

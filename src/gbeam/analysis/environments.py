@@ -22,10 +22,10 @@ from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import judging
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Extremes, VectorPeaks
-from gbeam.results.response import Readings, Response, Sensor
+from gbeam.results.response import Response
 from gbeam.results.result import each_once
+from gbeam.results.sensors import Readings, Sensor
 from gbeam.results.study import Failure, Study
-from gbeam.results.system import SystemResponse
 
 ENOUGH = 1e-3  # error from too few shapes, at most, where their numbers are automatic
 
@@ -98,7 +98,7 @@ def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Fa
     return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance, **said)
 
 
-def _readings(response: Response | SystemResponse, sensors: Mapping[str, Sensor]) -> Readings | None:
+def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | None:
     """Readings of accelerometers; None in a response that is not done or has no accelerations."""
     if response.outcome != "done" or getattr(response, "accelerations", ()) is None:
         return None
@@ -124,7 +124,7 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, 
     """Responses by environment, and the failures of those that have no start to run from."""
     structure: Any = case.subject
 
-    def answer(name: str) -> Response | SystemResponse:
+    def answer(name: str) -> Response:
         motion = case.environments[name]
 
         def report(what: str, share: float) -> None:

@@ -30,7 +30,6 @@ from gbeam.numerics.peaks import vector_peaks
 from gbeam.progress import Progress, tell
 from gbeam.results.response import Response
 from gbeam.results.study import Failure, ModelRow, ModelStudy
-from gbeam.results.system import SystemResponse
 
 REFERENCE: ModelKind = "exact"
 CONVERGED = (3, 6)  # strain and rotation shapes at least of the reference five digits with them
@@ -127,7 +126,7 @@ def compare_models(
 class _Tip(NamedTuple):
     """Displacement `moved` (t, 3) m of the tip, or of the point compared, in a response, with its peaks (3,)."""
 
-    of: Response | SystemResponse
+    of: Response
     point: str
     moved: Floats
     peak: Floats

@@ -25,7 +25,7 @@ from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
-from gbeam.results.system import SystemResponse, named
+from gbeam.results.system import named
 
 Describe = Callable[[], Figure]
 # Of kinds that always have the same.

@@ -35,10 +35,10 @@ from gbeam.printable import raised
 from gbeam.results.comparison import Comparison
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Base, Loads
-from gbeam.results.response import HubResult, PlotHeading, Readings, Response
+from gbeam.results.response import HubResult, PlotHeading, Response
 from gbeam.results.result import Floats
+from gbeam.results.sensors import Readings
 from gbeam.results.study import ModelStudy, Study
-from gbeam.results.system import SystemResponse
 
 Names = tuple[tuple[str, ...], tuple[str, ...]]
 AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
@@ -231,7 +231,7 @@ def base(response: Response, title: str = "") -> Figure:
     return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
-def sensors(response: Response | SystemResponse, readings: Readings, title: str = "") -> Figure:
+def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
     """Describe what accelerometers read, a panel for each."""
     scale, unit = scale_of(declared(Readings, "acceleration")[1], readings.acceleration)
     panels = [

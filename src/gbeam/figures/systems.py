@@ -24,7 +24,7 @@ from gbeam.figures.response import carried_at_root
 from gbeam.printable import raised
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
-from gbeam.results.system import ENERGIES, SystemResponse, named
+from gbeam.results.system import ENERGIES, named
 
 COLOURS = 6
 DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")

@@ -54,7 +54,6 @@ from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
-from gbeam.results.system import SystemResponse
 
 
 def response_group(response: Response) -> Group:

@@ -17,7 +17,6 @@ from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import KINDS, Reproduction, Study, by_motion, tree_of_answers
-from gbeam.results.system import SystemResponse
 
 VERSION = 1  # of the keys: raised where one changes or goes
 

@@ -43,7 +43,6 @@ from gbeam.results.criteria import RULES
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.facts import facts_of
 from gbeam.results.response import Response
-from gbeam.results.system import SystemResponse
 from gbeam.results.system import named as named_histories
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
@@ -106,7 +105,7 @@ def _damping(response: Response) -> str:
     return f"damping {size} % of critical, of the modes of the beam on a hub at rest; those with the free hub have more"
 
 
-def of_machine(response: Response | SystemResponse) -> Iterator[str]:
+def of_machine(response: Response) -> Iterator[str]:
     """Sentences on how a centrifuge begins and ends, follows the load, and where it does not."""
     axes = response.axes
     if axes is None:

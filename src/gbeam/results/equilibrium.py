@@ -27,7 +27,7 @@ from gbeam.results.errors import (
     evenly,
 )
 from gbeam.results.facts import at_place
-from gbeam.results.one_body import DeflectedBody
+from gbeam.results.one_body import RestingBody
 from gbeam.results.parts import Base, Loads, Outline
 from gbeam.results.result import Decided, Figured, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
@@ -83,7 +83,7 @@ class BodyRest(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Rest(DeflectedBody, Placed, Decided, Figured[str]):
+class Rest(RestingBody, Placed, Decided, Figured[str]):
     """Relative equilibrium of a system at a frozen motion of its ground.
 
     Examples
@@ -148,11 +148,6 @@ class Rest(DeflectedBody, Placed, Decided, Figured[str]):
         total = self.errors.displacement.total
         lines += [f"estimated error {percent(total)}"] if self.errors.beams and math.isfinite(total) else []
         return self._with_warnings(*lines, *filter(None, [self.message]))
-
-    @property
-    def several(self) -> bool:
-        """True if points are on other bodies than one that deforms."""
-        return len(self.bodies) != 1 or {point.partition(".")[0] for point in self.points} != {*self.bodies}
 
 
 LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_load_factor": ""}

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
-from gbeam.results.parts import Loads
+from gbeam.results.parts import Loads, Peaks
 from gbeam.results.result import Complex, Floats
 from gbeam.results.solids import SolidStress, SpecimenLoads
 
@@ -52,11 +53,6 @@ class DeflectedBody(OneBody):
         return self.body.tip
 
     @property
-    def strain_energy(self) -> Any:
-        """Strain energy of the body, J."""
-        return self.body.strain_energy
-
-    @property
     def loads(self) -> Loads | None:
         """Forces, moments and stresses of the body's sections; None where they are not computed."""
         return self.body.loads
@@ -70,6 +66,28 @@ class DeflectedBody(OneBody):
     def specimen(self) -> SpecimenLoads | None:
         """Loads of the body, where it is a rigid specimen; else None."""
         return self.body.specimen
+
+
+class RestingBody(DeflectedBody):
+    """A result at rest, likewise."""
+
+    @property
+    def strain_energy(self) -> float:
+        """Strain energy of the body, J."""
+        return self.body.strain_energy
+
+
+class MovedBody(DeflectedBody):
+    """A result over time, likewise."""
+
+    @property
+    def peaks(self) -> Peaks:
+        """Largest values of the body's displacement and loads, between all steps."""
+        return self.body.peaks
+
+    def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
+        """Return what a strain gauge at a named point of the body reads, (t,); see :meth:`BodyResponse.strain_at`."""
+        return self.body.strain_at(point, along)
 
 
 class ShapedBody(OneBody):

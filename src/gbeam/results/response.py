@@ -1,127 +1,42 @@
-"""The response of a beam in one environment: what moved, how well it is known, and what the base did meanwhile."""
+"""The response of a system over time: what moved, how well it is known, and what the base did meanwhile."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
-from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Numbers
-from gbeam.constants import BY_STRAINS
-from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, index_of, positive
-from gbeam.numerics.samples import displacement
+from gbeam.guards.checks import index_of
 from gbeam.printable import percent
 from gbeam.results.accounting import seconds
-from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity
+from gbeam.results.body_response import BodyResponse
+from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import Errors
-from gbeam.results.machine import AxesFigure, AxesResult, Driven
-from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks
+from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.one_body import MovedBody
+from gbeam.results.parts import Base
 from gbeam.results.result import Figured, Floats, Part, brief
-from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
+from gbeam.results.sensors import Readings, Sensor
+from gbeam.results.system import (
+    EULER,
+    SPINS,
+    TURNS,
+    Assembly,
+    Invariants,
+    Loop,
+    Maxima,
+    Placed,
+    most_moved,
+    spun,
+    turned,
+)
 
-ResponseFigure = Literal["tip", "specimen", "base", "sensors", "loads", AxesFigure, "hub", "stress"]
-RESOLVED = 4.0  # samples to a period of the sensor
-
-
-@typed
-@dataclass(frozen=True, eq=False)
-class Sensor(Value):
-    """An accelerometer of three axes: a mass on a spring along each, of which the deflection is read.
-
-    Parameters
-    ----------
-    turn : (3,)
-        Rotation vector of its axes in the base axes, rad.
-    frequency : float, optional
-        Natural frequency of the spring, or the cut-off of a filter of second order, Hz; without one it reads the
-        acceleration itself.
-    damping_ratio : float
-        Of the spring; 0.7 gives the widest flat range.
-    sensitivity : (3, 3), optional
-        Reading of each axis for a unit along each: one on the diagonal, and beside it what leaks from the others.
-
-    Raises
-    ------
-    InputError
-        If a value is impossible.
-
-    Examples
-    --------
-    >>> gb.Sensor(turn=(0, 0, 1.5708), frequency=200.0).damping_ratio
-    0.7
-    """
-
-    turn: Numbers = (0.0, 0.0, 0.0)
-    frequency: float | None = None
-    damping_ratio: float = 0.7
-    sensitivity: Any = None
-
-    def __post_init__(self) -> None:
-        turn = np.asarray(array("turn", self.turn), dtype=float)
-        if turn.shape != (3,) or not np.isfinite(turn).all():
-            raise InputError("turn", f"is {self.turn!r}", "give three components in rad")
-        if self.frequency is not None:
-            positive("frequency", self.frequency, "Hz")
-        positive("damping_ratio", self.damping_ratio, "(a share)")
-        if self.sensitivity is not None:
-            matrix = np.asarray(array("sensitivity", self.sensitivity), dtype=float)
-            if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
-                raise InputError("sensitivity", f"has the shape {matrix.shape}", "give 3 × 3 numbers")
-
-    @typed
-    def reads(self, acceleration: Any, step: float) -> Floats:
-        """Return what it reads of an acceleration over time, after having settled in the first.
-
-        Parameters
-        ----------
-        acceleration : (t, 3)
-            Base axes, m/s²; specific force where gravity acts, as sensors feel it.
-        step : float
-            Between the samples, s.
-
-        Raises
-        ------
-        InputError
-            If the samples do not resolve its frequency.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> still = np.tile([0.0, 0.0, 9.81], (50, 1))
-        >>> print(gb.Sensor(frequency=50.0).reads(still, step=1e-3)[-1])
-        [0.   0.   9.81]
-        """
-        from scipy.spatial.transform import Rotation
-
-        felt = np.asarray(array("acceleration", acceleration), dtype=float)
-        if felt.ndim != 2 or felt.shape[1] != 3:
-            raise InputError("acceleration", f"has the shape {felt.shape}", "give three components at each time")
-        felt = felt @ Rotation.from_rotvec(self.turn).as_matrix()
-        if self.frequency is not None:
-            omega = 2 * np.pi * self.frequency
-            if RESOLVED * self.frequency * positive("step", step, "s") > 1:
-                problem = f"is {self.frequency:g} Hz, with samples {step:g} s apart"
-                raise InputError("frequency", problem, f"simulate in steps of {1 / (RESOLVED * self.frequency):.2g} s")
-            felt = omega**2 * displacement(felt, omega, self.damping_ratio, step)
-        return felt if self.sensitivity is None else felt @ np.asarray(self.sensitivity, dtype=float).T
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class Readings(Part):
-    """Readings of accelerometers at points over time, along their own axes."""
-
-    json_rows: ClassVar[dict[str, str]] = {"sensor": ""}
-
-    points: tuple[str, ...] = labels("name of the point at which the sensor is", "sensor")
-    acceleration: Floats = quantity("m/s^2", "reading of the sensor", "time sensor axis", frame="axes of the sensor")
-    peaks: VectorPeaks = part("largest readings", "sensor", unit="m/s^2", name="max_", key=INSIDE)
+_OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -166,129 +81,117 @@ class PlotHeading(Protocol):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Response(Driven, Figured[ResponseFigure]):
-    """Response of the beam in one environment.
+class Response(MovedBody, Placed, Driven, Figured[str]):
+    """Response of a system over time, at its named points and coordinates, and of its bodies.
+
+    Of a structure alone in a motion, the system is that structure on the ground, which moves as the motion says, or on
+    a hub that turns freely.
 
     Examples
     --------
+    >>> rod = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
+    >>> hinge = gb.Joint("revolute", "rod", axes=[(0, 1, 0)], initial=0.1)
+    >>> pendulum = gb.System({"rod": rod}, {"hinge": hinge}, gravity=(0, 0, -9.81))
+    >>> response = gb.simulate(pendulum, duration=2.0)
+    >>> response.outcome, response.points
+    ('done', ('rod.end', 'rod.root'))
+    >>> response.at("rod.end").shape[1:]
+    (3,)
     >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
     >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
     >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
     >>> response = gb.simulate(structure, turn, duration=6.0)
-    >>> response.outcome, response.displacement.shape[1:]
-    ('done', (1, 3))
     >>> print(f"{1e3 * response.peaks.max_abs[2]:.3f} mm at {response.peaks.time_of_max[2]:.1f} s")
     2.302 mm at 2.5 s
     """
 
-    json_rows: ClassVar[dict[str, str]] = {"station": "stations"}
+    json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
 
-    name: str = internal("", "name of the motion")
-    environment: str = fact("flight, centrifuge or hub")
-    model: str = fact("kind of the model")
+    name: str = fact("name of the motion", note="empty where the ground rests")
+    environment: str = fact("flight, centrifuge or hub; ground where it rests")
     outcome: str = fact(
         "how it ended",
-        note="done, diverged (the displacement left what the model can mean, or the beam lost its stability for so "
-        "long that whatever deviates grows a thousandfold) or not converged",
+        note="done, diverged (the displacement left what the model can mean, or a body lost its stability for so long "
+        "that whatever deviates grows a thousandfold), not converged, or law failed: a controller's",
     )
     message: str = fact("what happened and what to try, where the outcome is not done")
     time: Floats = quantity("s", "time", "time", role="coordinate")
-    stations: Floats = quantity(
-        "m", "position along the beam from the root", "station", role="coordinate", key="at", note="the last is the tip"
+    points: tuple[str, ...] = labels("name of the point", "point")
+    coordinates: tuple[str, ...] = labels("name of the coordinate", "coordinate")
+    units: tuple[str, ...] = quantity(
+        "", "SI unit of the coordinate", "coordinate", name="coordinate_unit", key="unit",
+        note="empty of Euler parameters and of a flexible body's own",
+    )  # fmt: skip
+    place: Floats = quantity("m", "place of the point", "time point axis", frame="ground")
+    velocity: Floats = quantity("m/s", "velocity of the point", "time point axis", frame="ground")
+    acceleration: Floats = quantity(
+        "m/s^2",
+        "acceleration of the point; specific force where gravity acts",
+        "time point axis",
+        frame="axes of the point",
     )
-    displacement: Floats = quantity("m", "displacement relative to the base axes", "time station axis")
-    q: Floats = quantity(
-        lambda self: "" if self.model in BY_STRAINS else "m",
-        "generalised coordinates of the beam",
+    attitude: Floats = quantity("", "Euler parameters of the point's axes in those of the ground", "time point euler")
+    angular_velocity: Floats = quantity(
+        "rad/s", "angular velocity of the point", "time point axis", frame="axes of the point"
+    )
+    q: Floats = quantity("", "coordinates: m and rad of joints, their own of flexible bodies", "time coordinate")
+    qd: Floats = quantity("", "rates of the coordinates", "time coordinate", name="rates")
+    effort: Floats = quantity(
+        "",
+        "force N or torque N m of the drive on each coordinate",
         "time coordinate",
-        name="coordinates",
-        note="of the exact model and that of fourth order angles and strains",
+        note="of prescribed coordinates what the motion needs; e1, e2 and e3 have torques in axes of the body",
     )
-    qd: Floats = quantity(
-        lambda self: "1/s" if self.model in BY_STRAINS else "m/s",
-        "rates of the generalised coordinates",
-        "time coordinate",
-        name="coordinate_rates",
+    ground_force: Floats = quantity("N", "force on the ground", "time axis", frame="ground")
+    ground_moment: Floats = quantity("N m", "moment on the ground about its origin", "time axis", frame="ground")
+    bodies: Mapping[str, BodyResponse] = rows(
+        "bodies that deform, and rigid specimens, by name", "body", optional=True, name="", default_factory=dict
     )
-    base: Base = part("motion of the base", "time")
-    peaks: Peaks = part("largest values between all steps", key=INSIDE)
-    integrator: str = fact("integrator")
-    step: float = fact("time step", "s")
-    steps: int = fact("number of steps")
-    error_estimate: float = fact(
-        "total error of the tip's displacement, as a fraction of its largest size",
-        note="that of `errors`; NaN where there is no estimate",
+    base: Base | None = part("motion of the ground", "time", name="ground_", note="None where it rests", default=None)
+    invariants: Invariants | None = part(
+        "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
     )
-    residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given")
-    qdd: Floats = internal("", "accelerations of the coordinates", "time coordinate", empty=True)
-    frequencies: Floats = internal("rad/s", "natural frequencies at rest", "mode", note="ascending", empty=True)
-    loads: Loads | None = part("internal loads at the root and the stations", key=None, default=None)
+    loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
     hub: HubResult | None = part("motion of a hub", optional=True, default=None)
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
-    influence: Influence | None = internal("", "static answer of the beam to acceleration fields", default=None)
-    errors: Errors = part(
-        "of displacement, loads and stress, with what they are made of", name=None, default_factory=Errors
-    )
-    damping_ratio: float | tuple[float, ...] = fact(
-        "modal damping ratio", note="of the modes of the beam on a base at rest", default=math.nan
-    )
-    initial: str = fact("how it begins, in words", default="")
-    outline: Outline | None = part(
-        "the beam's shape at some of the times, and what carries it",
-        key=None,
-        note="None where there is no beam",
-        default=None,
-    )
-    bodies: Floats = internal(
-        "m", "centres of mass of the bodies on the undeformed beam, from the root", "body axis", empty=True
-    )
-    whole: tuple[float, float] | None = quantity(
-        "s",
-        "time of the whole flight",
-        "ends",
-        optional=True,
-        note="of which this is a part; None where it is all of it",
-        default=None,
-    )
-    points: tuple[str, ...] = quantity(
-        "",
-        "name of the station",
-        "station",
-        name="station_name",
-        key="name",
-        optional=True,
-        note="tip, that of a point of the beam, or its position",
-        default=(),
-    )
-    point_acceleration: Floats | None = quantity(
-        "m/s^2",
-        "absolute acceleration of the stations",
-        "time station axis",
-        note="specific force where gravity acts; None of a beam, whose loads have it",
-        default=None,
-    )
-    kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
-    felt_at_steps: tuple[Floats, Floats] | None = internal(
-        "", "times (t,) s of all steps of the flight, and accelerations (t, s, 3) m/s² of the stations there; None "
-        "where these are the samples", default=None,
-    )  # fmt: skip
-    envelope: Floats = internal(
-        "m",
-        "corners of the convex hull of a solid, rigid or curved specimen, undeformed, from the root",
-        "corner axis",
-        empty=True,
-    )
-    solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)
-    surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
-    specimen: SpecimenLoads | None = part(
-        "loads of a rigid specimen", name="specimen_", key="specimen", optional=True, default=None
+    assembly: Assembly | None = part(
+        "how the bodies hang together", key=None, name=INSIDE, note="None where nothing is to be drawn", default=None
     )
     readings: Readings | None = part("of accelerometers", name="sensor_", key="sensors", optional=True, default=None)
-    scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
-    shapes: Mapping[str, int] | None = fact(
-        "numbers of shapes of a beam's model, by strain", optional=True, note="None of other bodies", default=None
+    initial: str = fact("how it begins, in words", default="")
+    integrator: str = fact("integrator", default="gauss")
+    step: float = fact("time step", "s", default=math.nan)
+    steps: int = fact("number of steps", default=0)
+    error_estimate: float = fact(
+        "total error of a body's displacement relative to its root, as a fraction of its largest size",
+        note="the largest of all bodies, of places where no body deforms; that of the steps alone where a body cannot "
+        "be judged, NaN where there is no estimate",
+        default=math.nan,
     )
+    errors: Errors = part(
+        "of deflections, places, root loads and stress, as fractions of the largest", name="error_",
+        default_factory=Errors,
+    )  # fmt: skip
+    residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given", default=math.nan)
+    residual_amplitude: Floats | None = quantity(
+        "m", "half peak-to-peak after residual_from, of a flexible body's points relative to its root, else of places",
+        "point axis", frame="axes of the body's root, else of the ground", optional=True, default=None,
+    )  # fmt: skip
+    maxima: Maxima | None = part(
+        "largest values between all steps", key=INSIDE, name=INSIDE, optional=True, note="None where a run is traced",
+        default=None,
+    )  # fmt: skip
+    whole: tuple[float, float] | None = quantity(
+        "s", "time of the whole flight", "ends", optional=True,
+        note="of which this is a part; None where it is all of it", default=None,
+    )  # fmt: skip
+    scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
+    kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
+    felt_at_steps: tuple[Floats, Floats] | None = internal(
+        "", "times (t,) s of all steps of the flight, and accelerations (t, p, 3) m/s² of the points there; None "
+        "where these are the samples", default=None,
+    )  # fmt: skip
 
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:
@@ -299,106 +202,21 @@ class Response(Driven, Figured[ResponseFigure]):
     def histories(self) -> dict[str, int]:
         return {"samples": len(self.time), "written": len(self.time[:: self.kept_every])}
 
-    @declared(
-        "m", "largest displacement of every named point", "point", role="rows", name=None, key="points", optional=True
-    )
-    def point_peaks(self) -> Mapping[str, VectorPeaks]:
-        peaks = self.peaks.displacement
-        if peaks is None:
-            return {}
-        named = [(k, name) for k, name in enumerate(self.points) if name.isidentifier() and name != "tip"]
-        return {name: peaks[k] for k, name in named}
+    @declared("m", "length of the vector of half peak-to-peak from residual_from on", "point", optional=True, name=None)
+    def residual_size(self) -> Floats | None:
+        """Length of the vector of half peak-to-peak of every point, (p,) m; None where there is no residual."""
+        return None if self.residual_amplitude is None else np.linalg.norm(self.residual_amplitude, axis=-1)
 
-    def at(self, point: str) -> Floats:
-        """Return the displacement of a named point relative to the base axes, (t, 3) m.
-
-        Parameters
-        ----------
-        point : str
-            tip, or the name of another point of the beam.
-
-        Raises
-        ------
-        InputError
-            If there is no such point.
-        """
-        return self.displacement[:, index_of("point", point, self.points)]
+    @declared("", "coordinate at the end", "coordinate", name="last", key="end")
+    def last(self) -> Floats:
+        return self.q[-1]
 
     @property
-    def accelerations(self) -> Floats | None:
-        """Absolute accelerations of the stations, (t, s, 3) m/s²; None where the run has none."""
-        if self.point_acceleration is not None or self.loads is None:
-            return self.point_acceleration
-        return self.loads.acceleration[:, 1:]
-
-    def reading_at(self, point: str, sensor: Sensor | None = None) -> Floats:
-        """Return what an accelerometer at a named point reads, (t, 3) m/s².
-
-        Parameters
-        ----------
-        point : str
-            tip, or the name of another point.
-        sensor : Sensor, optional
-            Its axes, which do not turn with the deformation, frequency and sensitivity; the absolute acceleration along
-            the base axes (specific force where gravity acts) without one.
-
-        Raises
-        ------
-        InputError
-            If there is no such point, the run has no accelerations, or its samples do not resolve the sensor.
-        """
-        station, accelerations = index_of("point", point, self.points), self.accelerations
-        if accelerations is None:
-            raise InputError("response", "has no accelerations", "leave loads = true in its settings")
-        felt = accelerations[:, station]
-        return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
-
-    @typed
-    def signal(self, name: str) -> Floats:
-        """Return a component over time by its name, (t,) SI.
-
-        Parameters
-        ----------
-        name : str
-            ``tip.x`` or that of another named point, of its displacement relative to the base axes;
-            ``root_force.x``, ``root_moment.x``, NaN where the run has no loads; ``hub.angle``, ``hub.rate``.
-
-        Raises
-        ------
-        InputError
-            If there is no such signal.
-        """
-        owner, _, component = name.rpartition(".")
-        if self.hub is not None and name in ("hub.angle", "hub.rate"):
-            return np.asarray(getattr(self.hub, component))
-        axis = index_of("name", component, ("x", "y", "z"))
-        if owner not in ("root_force", "root_moment"):
-            return self.at(owner)[:, axis]
-        return np.full(len(self.time), np.nan) if self.loads is None else getattr(self.loads, owner)[:, axis]
-
-    def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
-        """Return what a strain gauge at a named point of a solid reads, (t,).
-
-        Parameters
-        ----------
-        point : str
-            A node with a name, or an interface, whose strain is the mean of its nodes'.
-        along : (3,)
-            Direction of its grid, in axes of the point.
-
-        Raises
-        ------
-        InputError
-            If it is no solid with loads, or has no such point.
-        """
-        if self.solid is None:
-            raise InputError("response", "has no stress of a solid", "simulate a mesh, with loads = true")
-        return self.solid.strain_at(point, along)
-
-    @property
-    def tip(self) -> Floats:
-        """Displacement of the tip relative to the base axes, (t, 3) m."""
-        return self.displacement[:, -1]
+    def largest(self) -> Floats:
+        """Largest displacement of every point from its place at the start, (p,) m."""
+        if self.maxima is not None:
+            return self.maxima.displacement
+        return np.linalg.norm(self.place - self.place[0], axis=-1).max(axis=0)
 
     @property
     def flight_span(self) -> tuple[float, float]:
@@ -417,21 +235,90 @@ class Response(Driven, Figured[ResponseFigure]):
         way = f"{between.size} of {seconds(float(between.max()))} from and to standstill"
         return f"{self.steps - between.size} steps of {seconds(self.step)}, {way}"
 
+    def reading_at(self, point: str, sensor: Sensor | None = None) -> Floats:
+        """Return what an accelerometer at a point reads, (t, 3) m/s².
+
+        Parameters
+        ----------
+        point : str
+            ``body.point``.
+        sensor : Sensor, optional
+            Its axes in those of the point, with which they turn, frequency and sensitivity; the acceleration along
+            the axes of the point (specific force where gravity acts) without one.
+
+        Raises
+        ------
+        InputError
+            If there is no such point, or the samples do not resolve the sensor.
+        """
+        felt = self.acceleration[:, self.point("point", point)]
+        return felt if sensor is None else sensor.reads(felt, float(self.time[1] - self.time[0]))
+
+    @typed
+    def signal(self, name: str) -> Floats:
+        """Return a quantity over time by its name, (t,) SI: an output of :func:`gbeam.linearize`, or of a body.
+
+        Parameters
+        ----------
+        name : str
+            ``joint.angle``, ``joint.angle_rate``, of a ball ``joint.rx`` and ``joint.wx``; ``body.point.place_x``,
+            ``velocity_x``, ``attitude_x`` (axes of the ground), ``acceleration_x`` or ``spin_x`` (axes of the point);
+            of a body that deforms ``body.point.x``, a displacement relative to its root, ``body.root_force.x`` and
+            ``body.root_moment.x``, NaN without loads; ``hub.angle`` and ``hub.rate`` of a hub. The name of the only
+            body that deforms may be left out: ``tip.x``.
+
+        Raises
+        ------
+        InputError
+            If there is no such signal.
+        """
+        if self.hub is not None and name in ("hub.angle", "hub.rate"):
+            return np.asarray(getattr(self.hub, name.removeprefix("hub.")))
+        only = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
+        for each in (name, *only):
+            if (found := self._signal(each)) is not None:
+                return found
+        return self.q[:, index_of("name", name, self.coordinates)]
+
+    def _signal(self, name: str) -> Floats | None:
+        """Quantity over time by its whole name; None if there is none."""
+        owner, _, kind = name.rpartition(".")
+        of_point, _, axis = kind.rpartition("_")
+        if owner in self.points and of_point in _OF_POINTS and axis in tuple("xyz"):
+            values = getattr(self, _OF_POINTS[of_point])[:, self.points.index(owner)]
+            return np.asarray((turned(values) if of_point == "attitude" else values)[:, "xyz".index(axis)])
+        body, _, of_body = owner.partition(".")
+        if body in self.bodies and of_body in self.bodies[body].signals and kind in tuple("xyz"):
+            return self.bodies[body].signal(f"{of_body}.{kind}")
+        if f"{owner}.{EULER[0]}" in self.coordinates and kind in (*TURNS, *SPINS):
+            start = self.coordinates.index(f"{owner}.{EULER[0]}")
+            e, rate = (each[:, start : start + 4] for each in (self.q, self.qd))
+            return turned(e)[:, TURNS.index(kind)] if kind in TURNS else spun(e, rate)[:, SPINS.index(kind)]
+        if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
+            return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
+        return self.q[:, self.coordinates.index(name)] if name in self.coordinates else None
+
     def __repr__(self) -> str:
-        if is_traced(self.peaks.max_abs):
+        if is_traced(self.q):
             return brief(self)
-        name = f" {self.name!r}" if self.name else ""
-        axis = int(np.argmax(self.peaks.max_abs))
+        of, models = f" {self.name!r}" if self.name else "", dict.fromkeys(each.model for each in self.bodies.values())
         unknown = math.isnan(self.error_estimate)
         error = "no error estimate" if unknown else f"estimated error {percent(self.error_estimate)} of the peak"
-        moved = [
-            f"tip up to {1e3 * self.peaks.max_abs[axis]:.4g} mm along {'xyz'[axis]}, "
-            f"at {self.peaks.time_of_max[axis]:.4g} s of {self.time[0]:.4g} to {self.time[-1]:.4g} s",
+        said = [
+            f"{name}: {line}" if len(self.bodies) > 1 else line
+            for name, each in self.bodies.items()
+            for line in each.lines(self.time)
+        ]
+        if self.several:
+            moved = most_moved(self, self.largest, "up to ")
+            said.insert(0, f"{moved} in {self.time[0]:.4g} to {self.time[-1]:.4g} s")
+        lines = [
+            f"Response{of} ({', '.join([self.environment, *models])}): {self.outcome}",
+            *filter(None, (self.message, self.initial)),
+            *said,
             f"{self.integrator}, {self.steps_in_words}; {error}",
         ]
-        lines = [
-            f"Response{name} ({self.environment}, {self.model}): {self.outcome}",
-            *filter(None, (self.message, self.initial)),
-            *(moved if self.specimen is None else self.specimen.lines),
-        ]
+        if self.invariants is not None:
+            first, last = self.invariants.energy[[0, -1]].sum(axis=1)
+            lines.append(f"energy {first:.4g} J at the start, {last:.4g} J at the end")
         return self._with_warnings(*lines)

@@ -21,7 +21,6 @@ from gbeam.results.result import Figured, Floats, Part, Result
 from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
-from gbeam.results.system import SystemResponse
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class Study(Figured[str]):
     """
 
     title: str = fact("title of the scenario")
-    responses: Mapping[str, Response | SystemResponse] = rows(
+    responses: Mapping[str, Response] = rows(
         "responses by the name of the base's motion", "motion", key="motions", note="ground where it rests"
     )
     comparisons: tuple[Comparison, ...] = rows("comparisons of centrifuges with flight", "comparison", default=())
@@ -287,7 +286,6 @@ KINDS: dict[str, type[Result]] = {
         Fit,
         Optimum,
         ShapedCommand,
-        SystemResponse,
         SolidStress,
         SpecimenLoads,
     )

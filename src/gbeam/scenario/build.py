@@ -170,7 +170,7 @@ def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor]) -> dict[str,
     """Accelerometers by the names of their points."""
     if not tables:
         return {}
-    from gbeam.results.response import Sensor
+    from gbeam.results.sensors import Sensor
 
     return {each: parts.attempt(f"sensors.{each}", Sensor, **dict(table)) for each, table in tables.items()}
 

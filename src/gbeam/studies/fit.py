@@ -56,7 +56,7 @@ def fit(
     data : path
         A text file with a header. Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``,
         ``hub.angle``, ``hub.rate``, ``strain.z@10 mm``, with a unit in brackets or SI, after the motion's name where
-        the scenario has several; of a system what :meth:`SystemResponse.signal` reads, ``strip.tip.place_z``; or
+        the scenario has several; of a system what :meth:`Response.signal` reads, ``strip.tip.place_z``; or
         columns ``mode``, ``frequency`` and ``damping_ratio``.
     free : sequence of str
         Paths of the values to find, such as ``beam.material.youngs_modulus``; ``*`` stands for part of one step, and

@@ -29,8 +29,8 @@ from gbeam.results.measures import (
     Statistics,
 )
 from gbeam.results.parts import Influence
-from gbeam.results.response import Response, Sensor
-from gbeam.results.system import SystemResponse
+from gbeam.results.response import Response
+from gbeam.results.sensors import Sensor
 
 
 def peak_pairs(flight: Response, centrifuge: Response, during: slice, tips: tuple[int, int]) -> dict[str, PeakPair]:
@@ -98,7 +98,7 @@ def _between_steps(time: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def _stresses_at(
-    at: str, flight: Response | SystemResponse, centrifuge: Response | SystemResponse, during: slice
+    at: str, flight: Response, centrifuge: Response, during: slice
 ) -> PeakPair:
     """Largest stress at a named point over the flight's times in each response; NaN if either has none there."""
     last, largest = centrifuge.time[during][-1], []
@@ -123,8 +123,8 @@ _ROUNDING = 1e-12  # of the last time
 @kinds(accept=KINDS_OF_LIMITS)
 @typed
 def compare(
-    flight: Response | SystemResponse,
-    centrifuge: Response | SystemResponse,
+    flight: Response,
+    centrifuge: Response,
     *,
     point: str | None = None,
     tolerance: float = TOLERANCE,
@@ -139,7 +139,7 @@ def compare(
 
     Parameters
     ----------
-    flight, centrifuge : Response or SystemResponse
+    flight, centrifuge : Response
         Sampled at any times; the flight's are interpolated where they differ. A response without a name goes by its
         environment.
     point : str, optional
@@ -163,7 +163,7 @@ def compare(
         Named point whose stress the limit ``stress`` is on, of a solid von Mises'; by default the largest anywhere.
     sensors : mapping of str to Sensor, optional
         Accelerometers by the names of points: the shock response spectra there are of what they read, see
-        :meth:`Response.reading_at`, of systems :meth:`SystemResponse.reading_at`.
+        :meth:`Response.reading_at`.
 
     Returns
     -------
@@ -389,7 +389,7 @@ def _weights(control: Mapping[str, float] | None, *responses: Response) -> dict[
     return {} if control is None else {name: weight / total for name, weight in control.items()}
 
 
-def _felt(run: Response | SystemResponse, response: Response, sensors: Mapping[str, Sensor]) -> Floats | None:
+def _felt(run: Response, response: Response, sensors: Mapping[str, Sensor]) -> Floats | None:
     """Accelerations (t, s, 3) of all points, or readings at points with sensors; None if not known."""
     felt = response.accelerations
     if felt is None or not sensors:

@@ -14,7 +14,6 @@ from gbeam.results.measures import Fatigue, StressCycles
 from gbeam.results.parts import Loads
 from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
-from gbeam.results.system import SystemResponse
 
 _NOTHING = 1e-9  # of the largest stress: a smaller cycle is rounding
 
@@ -27,7 +26,7 @@ class Cyclic(NamedTuple):
 
 
 def fatigue(
-    flight: Response | SystemResponse, machine: Response | SystemResponse, at: str | None = None
+    flight: Response, machine: Response, at: str | None = None
 ) -> Fatigue | None:
     """Rainflow cycles of the stress in both runs at a named point, or where the stress ranges most in flight; None if
     either run has no stress there, or another material.
@@ -48,7 +47,7 @@ def fatigue(
     return Fatigue(in_flight.exponent, *cycles, place)
 
 
-def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
+def places_of(response: Response) -> dict[str, Cyclic]:
     """Stresses at the roots of beams, and where each material of a mesh is stressed most, by the place in words."""
     if isinstance(response, SystemResponse):
         roots = ((f"of the root of {body}", _of_section(beam.loads, 0)) for body, beam in response.beams.items())
@@ -62,7 +61,7 @@ def places_of(response: Response | SystemResponse) -> dict[str, Cyclic]:
     return {} if root is None else {"of the root": root}
 
 
-def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
+def cyclic_at(response: Response, at: str) -> Cyclic | None:
     """Normal stress and exponent at a named point; None if the point is of no beam or mesh."""
     solid, loads, k = stressed_at("damage_at", response, at)
     if solid is not None:
@@ -70,7 +69,7 @@ def cyclic_at(response: Response | SystemResponse, at: str) -> Cyclic | None:
     return None if loads is None else _of_section(loads, k)
 
 
-def stress_at_point(response: Response | SystemResponse, at: str) -> Floats | None:
+def stress_at_point(response: Response, at: str) -> Floats | None:
     """Stress (t,) Pa at a named point, von Mises of a mesh, normal of a beam; None if the point is of neither."""
     solid, loads, k = stressed_at("stress_at", response, at)
     if solid is not None:
@@ -79,7 +78,7 @@ def stress_at_point(response: Response | SystemResponse, at: str) -> Floats | No
 
 
 def stressed_at(
-    where: str, response: Response | SystemResponse, at: str
+    where: str, response: Response, at: str
 ) -> tuple[SolidStress | None, Loads | None, int]:
     """The mesh, or the loads of the beam, that a named point belongs to, else None, and its number there; InputError,
     at the keyword `where`, if there is no such point.

@@ -38,7 +38,6 @@ from gbeam.progress import Progress, tell
 from gbeam.results.criteria import BROKEN
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
-from gbeam.results.system import SystemResponse
 
 
 @record

@@ -26,7 +26,6 @@ from gbeam.numerics.eigen import RIGID, symmetric
 from gbeam.results.parts import Loads, Peaks
 from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
-from gbeam.results.system import SystemResponse
 
 
 def specimen_of(response: SystemResponse) -> Response:

@@ -11,9 +11,10 @@ import numpy as np
 
 from gbeam.analysis.response.peaks import displacement_peaks
 from gbeam.analysis.response.posed import Posed, begun, pose, prepared, tries
+from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.simulation import described, settings_of, simulate
+from gbeam.analysis.response.simulation import settings_of, simulate
 from gbeam.analysis.response.stepping import Plan, scheme_of
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
@@ -24,7 +25,6 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.progress import Bar, Progress, tell
 from gbeam.results.errors import StepErrors
-from gbeam.results.parts import Base
 
 Item = TypeVar("Item")
 TOGETHER = 32  # cases: their states stay in a processor's cache, and its vectors are full
@@ -52,7 +52,9 @@ class _Case:
 
 @dataclass(frozen=True, eq=False)
 class _Ended:
-    """A case whose runs are done: the run that counts, its errors, and parts of its response that are `known`."""
+    """A case whose runs are done: the run that counts, its errors, and displacements of its bodies, at every step, that
+    are `known`.
+    """
 
     index: int
     posed: Posed
@@ -97,7 +99,7 @@ def simulate_batch(
 
     Yields
     ------
-    int, Response or SystemResponse
+    int, Response
         Place among the cases, and response, in the order in which they are computed.
 
     Raises
@@ -248,11 +250,7 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
             run = Run.by_steps(posed, case.step)  # which stops where its model ceases to hold
         else:
             run = Run(trajectory, case.step, posed)
-            if posed.subject.body:
-                known["moved"] = moved[posed.subject.body]
-                if run.stride == 1 and case.run.linear and (roots := case.run.at_times) is not None:
-                    ((root, _),) = roots
-                    known["base"] = Base(root.a, root.w, root.alpha)
+            known = dict(moved)
         after = _going_on(case.index, posed, case.run.common, case.plan, run, known)
         if isinstance(after, _Case):
             yield after
@@ -281,19 +279,27 @@ def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> lis
 def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Any]]:
     """Indices and responses of cases that have ended; peaks are computed together for each structure and grid."""
 
-    def key(case: _Ended) -> Hashable:
-        return id(case.posed.subject.structure), case.run.trajectory.time.tobytes()
+    completed = [
+        (k, name, body, case.posed.columns(name))
+        for k, case in enumerate(ended)
+        for name, body in case.posed.system.flexible.items()
+        if case.known
+    ]
 
-    for group in _alike([case for case in ended if case.known], key):
-        posed, moved = group[0].posed, np.stack([case.known["moved"] for case in group])
-        trajectories, late = [case.run.trajectory for case in group], posed.settings.residual_from
-        subject = posed.subject
-        first = posed.columns(subject.body).start
-        peaks = displacement_peaks(subject.structure, trajectories, first, moved, late)
-        for case, displacement, case_peaks in zip(group, moved, peaks, strict=True):
-            case.known.update(moved=displacement.copy(), peaks=case_peaks)
-    for case in ended:
-        yield case.index, described(case.run, case.errors, "", **case.known)
+    def key(item: tuple[int, str, Structure, slice]) -> Hashable:
+        k, _, body, columns = item
+        return id(body), columns.start, ended[k].run.flight.time.tobytes()
+
+    known: list[dict[str, Any]] = [{} for _ in ended]
+    for group in _alike(completed, key):
+        first, name, body, columns = group[0]
+        moved = np.stack([ended[k].known[name] for k, *_ in group])
+        trajectories, late = [ended[k].run.flight for k, *_ in group], ended[first].posed.settings.residual_from
+        peaks = displacement_peaks(body, trajectories, columns, moved, late)
+        for (k, of, *_), displacement, of_case in zip(group, moved, peaks, strict=True):
+            known[k][of] = displacement.copy(), of_case
+    for case, of_bodies in zip(ended, known, strict=True):
+        yield case.index, response_of(case.run, case.errors, "", known=of_bodies)
 
 
 def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:

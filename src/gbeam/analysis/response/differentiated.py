@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.response.posed import Posed, begun, first_step, pose, prepared
+from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.simulation import described
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.arrays.types import Floats
 from gbeam.integrate.driver import through
@@ -196,7 +196,7 @@ class Differentiated:
         if by is not None:
             histories = [x + dx for x, dx in zip(histories, by, strict=True)]
         moved = Trajectory(self.run.time[kept], *histories)
-        return described(Run(moved, self.grid.step, posed), StepErrors(), self.name, axes_of=self._axes)
+        return response_of(Run(moved, self.grid.step, posed), StepErrors(), self.name, axes_of=self._axes)
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:
         """The machine's axes if wanted; those of the nominal motion are computed once."""

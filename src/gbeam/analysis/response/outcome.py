@@ -12,12 +12,14 @@ from gbeam.analysis.accuracy.estimate import BENT_FAR, FEW_MODES, ROUGH_MESH, cu
 from gbeam.analysis.response.loss import holds, worst_loss
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.system.accuracy import doubts
 from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.mechanics.plausibility import bent_far, elastic_bend, of_first_order
 from gbeam.mechanics.structure import Structure
+from gbeam.results.body_response import BodyResponse
 from gbeam.results.errors import Errors
 from gbeam.results.parts import Base, LoadPeaks
 from gbeam.results.result import NOT_KNOWN
@@ -142,8 +144,22 @@ def far_bent(structure: Structure, size: float) -> tuple[str, ...]:
     )
 
 
-def inaccuracies(structure: Structure, errors: Errors, settings: ResponseSettings) -> tuple[str, ...]:
+def stressed_and_bent(run: Run, bodies: Mapping[str, BodyResponse]) -> tuple[str, ...]:
+    """Warn of bodies that yield, bend too far for their models, or lack a stiffness by what loads them."""
+    subject, warnings = run.posed.subject, list[str]()
+    for body, each in bodies.items():
+        warnings += yielding(each.peaks.loads, "" if subject.body else f" of {body}")
+        if body == subject.body:
+            warnings += far_bent(subject.structure, each.peaks.max_size)
+    return (*warnings, *(() if subject.body else run.solution(1).left_out))
+
+
+def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
     """Warn of estimated errors above the tolerance, with causes and cures, or that no error could be estimated."""
+    subject, settings = run.posed.subject, run.posed.settings
+    if not subject.body:
+        return doubts(errors, settings.tolerance)
+    structure = subject.structure
     if not settings.estimate:
         return ()
     if math.isnan(errors.displacement.step):

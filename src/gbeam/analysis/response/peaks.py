@@ -23,13 +23,13 @@ from gbeam.numerics.peaks import (
     vector_peaks,
 )
 from gbeam.results.parts import Extremes, LoadPeaks, Loads, Peaks, VectorPeaks
-from gbeam.results.system import SystemPeaks
+from gbeam.results.system import Maxima
 
 _ROUNDING = 1e-16  # of the places: a displacement that is less is none
 
 
 def displacement_peaks(
-    structure: Structure, trajectories: Sequence[Trajectory], first: int, moved: Any, residual_from: float | None
+    structure: Structure, trajectories: Sequence[Trajectory], columns: slice, moved: Any, residual_from: float | None
 ) -> list[Peaks]:
     """Peaks of the displacement in each trajectory, from samples `moved` (b, t, s, 3) m and, between steps, the model
     at quintic Hermite polynomials of q; where JAX traces it, the tip's largest samples.
@@ -47,7 +47,7 @@ def displacement_peaks(
         chosen = near_maxima(time[begin:], values)
         run, sample = np.divmod(chosen, len(time) - begin)
         qdd = np.stack([_beside(each, begin + sample[run == k]) for k, each in enumerate(trajectories)])
-        part = np.s_[:, begin:, first:]
+        part = np.s_[:, begin:, columns]
         t, y = quintic_hermite(time[begin:], q[part], qd[part], qdd[part], chosen)
         return maxima(time[begin:], values, t, measure(np.asarray(structure.displacement(y))), chosen)
 
@@ -130,7 +130,7 @@ def load_peaks(
     )
 
 
-def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) -> SystemPeaks:
+def maxima_of(system: System, time: Floats, over_time: Mapping[str, Floats]) -> Maxima:
     """Peaks of a system between steps, by the histories of its points, coordinates, efforts and the ground's loads."""
 
     def of_points(vectors: Floats) -> tuple[Floats, Floats]:
@@ -145,7 +145,7 @@ def system_peaks(system: System, time: Floats, over_time: Mapping[str, Floats]) 
     place, q = over_time["place"], over_time["q"]
     distance, when = of_points(place - place[0])
     lowest, lowest_time = column_peaks(time, -q)
-    return SystemPeaks(
+    return Maxima(
         system.points,
         system.coordinates,
         np.where(distance <= _ROUNDING * np.abs(place).max(initial=0.0), 0.0, distance),

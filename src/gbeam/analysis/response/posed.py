@@ -273,6 +273,8 @@ def begun_in_words(system: System, initial: Initial) -> str:
     """Sentence on the state in which a system begins."""
     floating = [name for name in system.flexible if name in system.floating]
     held = [name for name in system.flexible if name not in floating]
+    if not any(link.steps for link in system.tree.links):
+        return str(initial)
     if initial.displaces:
         return f"{initial}, joints at their initial values"
     how = STATE_WORDS[initial.state]

@@ -1,36 +1,44 @@
-"""Response of a structure that a run leaves, with its errors."""
+"""Response of a system that a run leaves, with its errors."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.outline import outline_of
-from gbeam.analysis.response.outcome import effort, ending_of, far_bent, inaccuracies, yielding
-from gbeam.analysis.response.peaks import displacement_peaks, load_peaks
+from gbeam.analysis.outline import assembly_of, outline_of
+from gbeam.analysis.response.outcome import effort, ending_of, inaccuracies, stressed_and_bent
+from gbeam.analysis.response.peaks import displacement_peaks, half_ranges, load_peaks, maxima_of
+from gbeam.analysis.response.posed import begun_in_words
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of
-from gbeam.arrays.namespace import Array
-from gbeam.arrays.types import Floats
-from gbeam.integrate.equations import Trajectory
+from gbeam.analysis.system.histories import Carried, deflection, loads_of
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.types import Floats, Indices
 from gbeam.mechanics.fields.basis import FAMILIES
-from gbeam.mechanics.plausibility import input_warnings
-from gbeam.mechanics.section_forces import accelerations, section_forces
+from gbeam.mechanics.section_forces import about_the_hub, accelerations
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.signals import units_of
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
-from gbeam.motion.protocol import Motion, level_factor, notes_on
+from gbeam.motion.protocol import level_factor, notes_on
 from gbeam.progress import Progress
+from gbeam.results.body_response import BodyResponse
+from gbeam.results.declared import along_time
 from gbeam.results.errors import Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Base, Influence, Loads, Peaks
+from gbeam.results.parts import Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
+from gbeam.results.system import Invariants, Loop
 from gbeam.structure.beam import names_at
+
+Known = Mapping[str, tuple[Floats, Peaks]]  # displacements (t, s, 3) m at all steps, and their peaks, by the body
+AxesOf = Callable[[Any, Floats], AxesResult | None]
 
 
 def influence(structure: Structure) -> Influence:
@@ -56,166 +64,244 @@ def influence(structure: Structure) -> Influence:
     )
 
 
+@dataclass(frozen=True)
+class Histories:
+    """Quantities of a run at steps that are looked at, `over_time` by key and `bodies` in their states by name, of
+    which those at the indices `kept` are the response's. Every `every`-th step of the flight is among them.
+    """
+
+    run: Run
+    name: str
+    every: int
+    steps: Indices
+    kept: Any  # indices of the response's times among these, or a slice
+    over_time: Mapping[str, Any]
+    bodies: Mapping[str, Carried]
+    known: Known
+
+    @classmethod
+    def of(cls, run: Run, name: str, known: Known = MappingProxyType({})) -> Histories:
+        """Histories of a run at every step, of 50,000 at most: among more those near peaks are looked at again."""
+        fewest = min(run.stride, -(-len(run.flight.time) // LOADS_STEPS))
+        every = next(each for each in range(fewest, run.stride + 1) if run.stride % each == 0)
+        steps = run.sampled(every)
+        kept = slice(None) if every == run.stride else np.searchsorted(steps, run.sampled(run.stride))
+        return cls(run, name, every, steps, kept, *run.histories(steps), known)
+
+    @property
+    def time(self) -> Floats:
+        """Times of the steps that are looked at, s."""
+        return self.run.trajectory.time[self.steps]
+
+    @property
+    def flown(self) -> slice:
+        """The flight among the steps that are looked at."""
+        return self.run.flown(self.every)
+
+    def body(self, name: str) -> BodyResponse:
+        """Describe a body that deforms, or a rigid specimen."""
+        run, posed, traced = self.run, self.run.posed, self.run.traced
+        structure, state, settings = posed.system.flexible[name], self.bodies[name], posed.settings
+        motion, alone = posed.subject.motion, posed.system.alone is structure
+        kept, columns = state.at(self.kept), posed.columns(name)
+        if name in self.known:
+            moved, peaks = self.known[name]
+        else:
+            moved = structure.displacement(run.flight.q[:, columns])
+            (peaks,) = displacement_peaks(structure, [run.flight], columns, moved[None], settings.residual_from)
+        loads = self._loads(name) if settings.loads else None
+        if loads is not None and not traced:
+            at = self._loads_between(name)
+            peaks = replace(peaks, loads=load_peaks(loads.during(self.flown), run.flight.time, at, self.every))
+        beyond = len(run.trajectory.time) > len(run.flight.time)
+        source, acceleration = structure.source, None
+        if loads is not None:
+            acceleration = loads.acceleration[:, 1:] if structure.sections is not None else accelerations(
+                structure, state.base, *state[:3]
+            )  # fmt: skip
+        straight = source is None or source.beam.line is None
+        drawn = settings.loads and not traced
+        time = self.time[self.kept]
+        return BodyResponse(
+            model=structure.kind,
+            base=kept.base,
+            stations=np.asarray(structure.stations),
+            points=structure.points if traced or source is None else names_at(source.beam, structure.stations),
+            displacement=structure.displacement(kept.q) if beyond else moved[:: run.stride],
+            q=kept.q,
+            qd=kept.qd,
+            qdd=kept.qdd,
+            peaks=peaks,
+            acceleration=None if acceleration is None else acceleration[self.kept],
+            loads=None if loads is None else loads.during(self.kept),
+            frequencies=structure.rest[0],
+            damping_ratio=structure.damping_ratio,
+            shapes=None if source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
+            influence=influence(structure)
+            if isinstance(motion, Centrifuge) and alone and straight and not traced
+            else None,
+            outline=outline_of(structure, motion if alone else None, time, kept.q) if drawn else None,
+            masses=np.empty((0, 3)) if traced or source is None else source.beam.body_centres,
+            **(self._recovered(name, state, peaks) if drawn else {}),
+        )
+
+    def _loads(self, name: str) -> Loads:
+        """Loads along a body at the steps that are looked at, of a beam on a hub with the torque on it."""
+        return self._loads_in(name, self.bodies[name], self.time)
+
+    def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
+        """Loads along a body in a state at times (t,) s, of a beam on a hub with the torque on it."""
+        subject = self.run.posed.subject
+        loads = loads_of(subject.system.flexible[name], state, time)
+        return about_the_hub(loads, subject.motion, state.base.alpha_WB_B) if name == subject.body else loads
+
+    def _loads_between(self, name: str) -> Callable[[Indices], Loads]:
+        """Function that returns the loads along a body at indices of all steps of the flight."""
+        first = self.run.in_flight.start or 0
+
+        def loads(steps: Indices) -> Loads:
+            _, bodies = self.run.histories(first + steps)
+            return self._loads_in(name, bodies[name], self.run.flight.time[steps])
+
+        return loads
+
+    def _recovered(self, name: str, state: Carried, peaks: Peaks) -> dict[str, Any]:
+        """Fields that only the responses of curved beams, solids and rigid specimens have, by name."""
+        structure, motion = self.run.posed.system.flexible[name], self.run.posed.subject.motion
+        if structure.recovery is None:
+            return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
+        names = {"motion": self.name, "model": structure.kind, "environment": kind_of(motion)}
+        parts = structure.recovery.parts(self.time, state.base, state.q, **names)
+        if "specimen" in parts:
+            parts["specimen"] = replace(parts["specimen"], root=peaks.loads)
+        if "solid" in parts and self.every < self.run.stride:
+            parts["solid"] = parts["solid"].sampled(self.kept)
+        return {"envelope": structure.recovery.envelope, **parts}
+
+    def hub(self, bodies: Mapping[str, BodyResponse]) -> HubResult | None:
+        """Motion of the hub that carries the body; None without one."""
+        subject, over_time = self.run.posed.subject, self.over_time
+        motion: Any = subject.motion
+        if motion is None or motion.kind != "hub":
+            return None
+        body, time = bodies[subject.body], self.time[self.kept]
+        if motion.free:
+            angle, rate = (over_time[key][self.kept][:, 0] for key in ("q", "qd"))
+            acceleration = self.run.trajectory.at(self.steps[self.kept]).qdd[:, 0]
+            fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
+            return HubResult(angle, rate, acceleration, motion.torque(time), free=True, fastest=fastest)
+        axis, base = motion.mount.R_HB[2], body.base
+        torque = None if body.loads is None else body.loads.drive_torque
+        return HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque)
+
+    @property
+    def residual(self) -> Floats | None:
+        """Half ranges (p, 3) m after the residual's start, of flexible bodies' points relative to their roots, of
+        others about the ground; None without one.
+        """
+        system, settings = self.run.posed.system, self.run.posed.settings
+        if settings.residual_from is None:
+            return None
+        flown, over_time = self.flown, self.over_time
+        relative = (deflection(system, point, over_time["q"]) for point in system.points)
+        moved = [over_time["place"][:, k] if bent is None else bent for k, bent in enumerate(relative)]
+        histories = namespace(*moved).concatenate(moved, axis=1)[flown]
+        return half_ranges(self.time[flown], histories, settings.residual_from).reshape(-1, 3)
+
+    def sampled(self) -> dict[str, Any]:
+        """Histories of points, coordinates, efforts and the ground's load at the response's times, by field."""
+        every = {key: values[self.kept] for key, values in self.over_time.items()}
+        constant = [every.pop(key) for key in ("momentum", "angular_momentum", "energy") if key in every]
+        return every | ({"invariants": Invariants(*constant)} if constant else {})
+
+
+def kind_of(motion: Any) -> str:
+    """Word for a motion's kind; ground where there is none."""
+    return "ground" if motion is None else motion.kind
+
+
 def response_of(
     run: Run,
     step_errors: StepErrors,
     name: str,
     progress: Progress = None,
     *,
-    axes_of: Callable[[Any, Floats], AxesResult | None] = axes_result,
-    base: Base | None = None,
-    moved: Array | None = None,
-    peaks: Peaks | None = None,
+    axes_of: AxesOf = axes_result,
+    known: Known = MappingProxyType({}),
 ) -> Response:
-    """Response at the results' times through spin-up, flight and spin-down, with errors and warnings. `base`, `moved`
-    and `peaks` are computed unless given, which they may be of a flight alone.
+    """Response at the results' times through spin-up, flight and spin-down, with errors and warnings; of bodies that
+    are `known` the displacements are not computed again.
     """
-    posed, trajectory, stride, entire = run.posed, run.flight, run.stride, run.trajectory
-    subject, settings = posed.subject, posed.settings
-    structure, beam, traced = subject.structure, posed.columns(subject.body), run.traced
-    assert subject.motion is not None
-    motion, chosen = subject.motion, run.sampled(stride)
-    fine = structure.displacement(trajectory.q[:, beam]) if moved is None else moved
-    if peaks is None:
-        (peaks,) = displacement_peaks(structure, [trajectory], beam.start, fine[None], settings.residual_from)
-
-    def read(
-        part: Trajectory, steps: Any, known: Base | None = None
-    ) -> tuple[tuple[Any, ...], Base, HubResult | None, Loads | None]:
-        """Times and coordinates, base, hub and loads at an index or slice of the steps of a trajectory."""
-        part = part.at(steps)
-        time, q, qd, qdd = part.time, part.q, part.qd, part.qdd
-        base, hub = _moving(motion, time, q, qd, qdd, known)
-        loads = None
-        if settings.loads:
-            loads = section_forces(structure, base, q[:, beam], qd[:, beam], qdd[:, beam], time, motion=motion)
-        return (time, q, qd, qdd), base, hub, loads
-
-    (time, q, qd, qdd), over_time, hub, loads = read(entire, chosen, base)
-    frequencies, _ = structure.rest
-    # Peaks are of all steps, of 50,000 at most: among more their neighbourhoods are looked at again. The results' steps
-    # are among those that are looked at.
-    fewest = min(stride, -(-len(trajectory.time) // LOADS_STEPS))
-    looked = next(every for every in range(fewest, stride + 1) if stride % every == 0)
-    felt_at_steps = None
-    if loads is not None and not traced:
-        every = loads.during(run.flown(stride))
-        if looked < stride:
-            (at, *state), base_there, _, at_steps = read(trajectory, slice(None, None, looked))
-            assert at_steps is not None
-            every, (y, yd, ydd) = at_steps, (values[:, beam] for values in state)
-            accelerated = every.acceleration[:, 1:] if structure.sections is not None else accelerations(
-                structure, base_there, y, yd, ydd
-            )  # fmt: skip
-            felt_at_steps = at, accelerated
-        of_flight = load_peaks(every, trajectory.time, lambda steps: read(trajectory, steps)[3], looked)
-        peaks = replace(peaks, loads=of_flight)
-    if hub is not None and not motion.free and loads is not None and loads.drive_torque is not None:
-        hub = replace(hub, drive_torque=loads.drive_torque)
-    if hub is not None and hub.free and not traced:
-        hub = replace(hub, fastest=float(np.abs(trajectory.qd[:, 0]).max()))
-    axes = None if traced or motion.kind != "centrifuge" else axes_of(motion, time)
-    outcome, message = "done", ""
-    straight = structure.source is None or structure.source.beam.line is None
-    felt = None if traced or structure.sections is not None or not settings.loads else accelerations(
-        structure, over_time, q[:, beam], qd[:, beam], qdd[:, beam]
-    )  # fmt: skip
-    beyond = len(entire.time) > len(trajectory.time)
-    displacement = structure.displacement(q[:, beam]) if beyond else fine[::stride]
-    errors = Errors()
-    warnings: tuple[str, ...] = ()
+    posed, traced, entire = run.posed, run.traced, run.trajectory
+    subject, system, settings = posed.subject, posed.system, posed.settings
+    motion, read = subject.motion, Histories.of(run, name, known)
+    time = read.time[read.kept]
+    bodies = {body: read.body(body) for body in system.flexible}
+    axes = None if traced or not isinstance(motion, Centrifuge) else axes_of(motion, time)
+    outcome, message, errors, warnings = "done", "", Errors(), tuple[str, ...]()
     if not traced:
-        ending = ending_of(run, {subject.body: (over_time, q[:, beam])}, time)
+        free = {body: (each.base, each.q) for body, each in bodies.items() if each.q.size and body not in system.laden}
+        ending = ending_of(run, free, time)
         outcome, message, from_run = ending.outcome, ending.message, ending.warnings
         if ending.done:
-            from_run += (*yielding(peaks.loads), *far_bent(structure, peaks.max_size))
-            errors, doubts = run.errors(step_errors, progress)
-            doubts += inaccuracies(structure, errors, settings)
-            from_run += doubts + effort(settings, len(trajectory.time) - 1, stride)
-        span = time[0], time[-1]
-        from_inputs = input_warnings(structure, motion, name=name, span=span, base=over_time, rest=frequencies)
-        warnings = from_inputs + settings.warnings + from_run + (() if axes is None else axes.warnings)
-    recovered = dict[str, Any]()
-    if settings.loads and not traced:
-        at_all, base_then = entire.at(chosen), over_time
-        if looked < stride and structure.recovery is not None:
-            at_all = entire.at(run.sampled(looked))
-            base_then, _ = _moving(motion, at_all.time, at_all.q, at_all.qd, at_all.qdd)
-        recovered = _recovered(structure, motion, at_all.time, base_then, at_all.q[:, beam], name, peaks)
-        if looked < stride and "solid" in recovered:
-            recovered["solid"] = recovered["solid"].sampled(np.searchsorted(at_all.time, time))
-    # Of what cannot be judged the steps alone are known.
-    known = settings.estimate and not structure.judged and math.isnan(errors.displacement.total)
-    stated = errors.displacement.step if known else errors.displacement.total
+            from_run += stressed_and_bent(run, bodies)
+            errors, of_bodies = run.errors(step_errors, progress)
+            from_run += of_bodies + inaccuracies(run, errors) + effort(settings, len(run.flight.time) - 1, run.stride)
+        base = next((each.base for body, each in bodies.items() if body == subject.body), None)
+        inputs = subject.doubts(name, base, span=(time[0], time[-1]))
+        warnings = inputs + settings.warnings + run.doubts + from_run + (() if axes is None else axes.warnings)
     flown = motion.flight if isinstance(motion, Centrifuge) else motion
     span = settings.start, settings.start + settings.duration
-    whole = flown.part_of(*span) if isinstance(flown, Flight) else None
+    felt_at_steps = None
+    if read.every < run.stride and settings.loads and not traced:
+        felt_at_steps = read.time[read.flown], read.over_time["acceleration"][read.flown]
     return Response(
         name=name,
-        environment=motion.kind,
-        model=structure.kind,
+        environment=kind_of(motion),
         outcome=outcome,
         message=message,
-        warnings=warnings,
+        warnings=tuple(dict.fromkeys(warnings)),
         notes=notes_on({name: motion}),
         time=time,
-        stations=np.asarray(structure.stations),
-        points=structure.points
-        if traced or structure.source is None
-        else names_at(structure.source.beam, structure.stations),
-        displacement=displacement,
-        q=q[:, beam],
-        qd=qd[:, beam],
-        base=over_time,
-        peaks=peaks,
+        points=system.points,
+        coordinates=system.coordinates,
+        units=units_of(system),
+        bodies=bodies,
+        base=None if posed.motion is None else posed.motion.base(time),
+        loop=None if run.loop is None else _sampled(run.loop, read.steps[read.kept]),
+        hub=read.hub(bodies),
+        axes=axes,
+        assembly=assembly_of(system) if settings.loads and not traced else None,
+        initial=begun_in_words(system, settings.begin),
         integrator=scheme_of(settings).name,
         step=run.step,
         steps=len(entire.time) - 1,
-        error_estimate=stated,
+        error_estimate=_stated(run, errors, outcome),
         errors=errors,
         residual_from=math.nan if settings.residual_from is None else settings.residual_from,
-        hub=hub,
-        axes=axes,
-        qdd=qdd[:, beam],
-        frequencies=frequencies,
-        loads=loads,
-        influence=influence(structure) if motion.kind == "centrifuge" and straight and not traced else None,
-        damping_ratio=structure.damping_ratio,
-        initial=str(settings.begin),
-        outline=outline_of(structure, motion, time, q[:, beam]) if settings.loads and not traced else None,
-        bodies=np.empty((0, 3)) if traced or structure.source is None else structure.source.beam.body_centres,
-        whole=whole,
+        residual_amplitude=read.residual,
+        maxima=None if traced else maxima_of(system, read.time[read.flown], _during(read.over_time, read.flown)),
+        whole=flown.part_of(*span) if isinstance(flown, Flight) else None,
         scale=level_factor(motion),
-        shapes=None if structure.source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
-        point_acceleration=felt,
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
         felt_at_steps=felt_at_steps,
-        **recovered,
+        **read.sampled(),
     )
 
 
-def _moving(
-    motion: Any, time: Floats, y: Array, yd: Array, ydd: Array, base: Base | None = None
-) -> tuple[Base, HubResult | None]:
-    """Motion of the root at times (t,) and unknowns (t, n), or the `base` if known; and of the hub, or None."""
-    if motion.free:
-        angle, rate, acceleration = y[:, 0], yd[:, 0], ydd[:, 0]
-        hub = HubResult(angle, rate, acceleration, motion.torque(time), free=True)
-        return motion.mount.base(angle, rate, acceleration), hub
-    base = motion.base(time) if base is None else base
-    if motion.kind != "hub":
-        return base, None
-    axis = motion.mount.R_HB[2]
-    return base, HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis)
+def _stated(run: Run, errors: Errors, outcome: str) -> float:
+    """Total error of the displacement; that of the steps alone where a body cannot be judged."""
+    total, step = errors.displacement.total, errors.displacement.step
+    judged = all(body.judged for body in run.posed.system.flexible.values())
+    stepped = run.posed.settings.estimate and outcome == "done" and not judged
+    return step if stepped and math.isnan(total) else total
 
 
-def _recovered(
-    structure: Structure, motion: Motion, time: Floats, base: Base, q: Floats, name: str, peaks: Peaks
-) -> dict[str, Any]:
-    """Fields that only the responses of curved beams, solids and rigid specimens have, by name."""
-    if structure.recovery is None:
-        return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
-    parts = structure.recovery.parts(time, base, q, motion=name, model=structure.kind, environment=motion.kind)
-    if "specimen" in parts:
-        parts["specimen"] = replace(parts["specimen"], root=peaks.loads)
-    return {"envelope": structure.recovery.envelope, **parts}
+def _sampled(loop: Loop, steps: Indices) -> Loop:
+    """Record of the controllers at some of the steps."""
+    return replace(loop, **{key: values[steps] for key, values in along_time(loop).items()})
+
+
+def _during(over_time: Mapping[str, Any], part: slice) -> dict[str, Any]:
+    """Histories at some of their times, by key."""
+    return {key: values[part] for key, values in over_time.items()}

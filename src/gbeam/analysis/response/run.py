@@ -18,7 +18,7 @@ from gbeam.analysis.response.posed import Posed, begun
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import Carried, beams_of, carried, deflections, histories, loads_of
+from gbeam.analysis.system.histories import Carried, carried, deflections, histories, loads_of
 from gbeam.analysis.system.point import Point, unknown_at_start
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
@@ -27,14 +27,12 @@ from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.signals import local_names
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import positive_definite
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import Errors, StepErrors
-from gbeam.results.parts import Base, Loads
 from gbeam.results.system import Loop
 
 LONG = 3_000  # steps: more of them follow deflections of several bodies within the tolerance only
@@ -164,8 +162,8 @@ class Run:
             for name, of_body in states.items():
                 of_body.append(carried(system, state, name, acting))
         for name, of_body in states.items():
-            body = system.flexible[name]
-            loads = loads_of(body, of_body, self.trajectory.time[chosen])
+            body, of = system.flexible[name], Carried.joined(of_body)
+            loads = loads_of(body, of, self.trajectory.time[chosen])
             force, moment = loads.root_force, loads.root_moment
             sizes = np.abs(force).max() * body.length, np.abs(moment).max()
             out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
@@ -174,7 +172,7 @@ class Run:
                 sides.append(loads.von_mises)  # under torsion alone the normal stresses are rounding
             stress = np.concatenate(sides, axis=1)[..., None]
             if body.recovery is not None:
-                stress = np.asarray(body.recovery.felt(np.concatenate([each.q for each in of_body])))
+                stress = np.asarray(body.recovery.felt(of.q))
             out.append(stress)
         return out
 
@@ -318,38 +316,20 @@ class Run:
         steps = self._flown(stride)
         return Solution(self.posed.system, self.trajectory.at(steps), lambda of, times: self.inputs(of, steps[times]))
 
-    def alone(self) -> dict[str, tuple[Base, Floats]]:
-        """Motion of the root (t, 3) and coordinates (t, n), at all steps, of each flexible body, by its name, on which
-        nothing hangs and no force acts.
-        """
-        tree, names, laden = self.posed.system.tree, self.posed.system.order, self.posed.system.laden
-        chosen, run = [name for name in self.deforming if name not in laden], self.trajectory
-        roots = {name: list[Frame]() for name in chosen}
-        for part in pieces(len(run.time), tree.size) if chosen else ():
-            state = tree.motion(run.q[part], run.qd[part], run.qdd[part], self.inputs(self.posed.system, part))
-            for name in chosen:
-                roots[name].append(state.roots[names.index(name)])
-        joined = {
-            name: Base(*(np.concatenate([getattr(each, key) for each in frames]) for key in ("a", "w", "alpha")))
-            for name, frames in roots.items()
-        }
-        return {name: (base, run.q[:, self.posed.columns(name)]) for name, base in joined.items()}
-
-    def histories(self, steps: Indices, *, loads: bool) -> tuple[dict[str, Any], dict[str, Loads]]:
-        """Histories by key at indices of the steps and, if `loads`, the loads along each beam by name."""
+    def histories(self, steps: Indices) -> tuple[dict[str, Any], dict[str, Carried]]:
+        """Histories by key at indices of the steps, and the state of each flexible body by name."""
         system, inertial = self.posed.system, self.posed.motion is None
-        columns, beams = dict[str, list[Floats]](), dict[str, list[Carried]]()
+        columns, bodies = dict[str, list[Floats]](), {name: list[Carried]() for name in system.flexible}
         for part in pieces(len(steps), system.tree.size):  # for memory: all frames of a part are held at once
             at, inputs = self.trajectory.at(steps[part]), self.inputs(system, steps[part])
-            values, of_beams = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
+            values, of_bodies = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
             for key, value in values.items():
                 columns.setdefault(key, []).append(value)
-            for name, beam in of_beams.items():
-                beams.setdefault(name, []).append(beam)
-        time = self.trajectory.time[steps]
-        along = {name: loads_of(beams_of(system)[name], parts, time) for name, parts in beams.items() if loads}
+            for name, of_body in of_bodies.items():
+                bodies[name].append(of_body)
         over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
-        return over_time | {"attitude": continuous(over_time["attitude"])}, along
+        over_time |= {"attitude": continuous(over_time["attitude"])}
+        return over_time, {name: Carried.joined(of_body) for name, of_body in bodies.items()}
 
 
 def _tip(body: Structure, columns: slice, y: Floats) -> Floats:

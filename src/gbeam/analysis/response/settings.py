@@ -134,11 +134,11 @@ class ResponseSettings(Value):
         lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
         return "" if self.estimate else f"{lacking}: the settings say estimate = false"
 
-    def kept_every(self, samples: int, step: float, stride: int = 1) -> int:
-        """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file: those of the results'
-        steps, `stride` of which make one of these, or fewer, unless the settings say how often.
+    def kept_every(self, samples: int, step: float) -> int:
+        """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file: all or fewer, unless
+        the settings say how often.
         """
-        wanted = stride * -(-samples // (stride * KEPT)) if self.histories is None else round(self.histories / step)
+        wanted = -(-samples // KEPT) if self.histories is None else round(self.histories / step)
         return max(1, wanted)
 
     @property

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any, Unpack, overload
+from typing import Any, Unpack
 
 from gbeam.analysis.response.posed import Posed, pose, poses, prepared
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
 from gbeam.analysis.response.stepping import answered, enough
-from gbeam.analysis.response.systems import system_response_of
 from gbeam.analysis.steady.subject import Subject
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
@@ -22,29 +21,8 @@ from gbeam.motion.protocol import Motion
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import StepErrors
 from gbeam.results.response import Response
-from gbeam.results.system import SystemResponse
 
 
-@overload
-def simulate(
-    structure: System,
-    motion: Motion | None = None,
-    settings: ResponseSettings | None = None,
-    *,
-    name: str = "",
-    progress: Progress = None,
-    **options: Unpack[Settings],
-) -> SystemResponse: ...
-@overload
-def simulate(
-    structure: Structure,
-    motion: Motion,
-    settings: ResponseSettings | None = None,
-    *,
-    name: str = "",
-    progress: Progress = None,
-    **options: Unpack[Settings],
-) -> Response: ...
 @typed
 def simulate(
     structure: Structure | System,
@@ -54,7 +32,7 @@ def simulate(
     name: str = "",
     progress: Progress = None,
     **options: Unpack[Settings],
-) -> Response | SystemResponse:
+) -> Response:
     """Compute the response of a beam in one environment, or of a system of bodies.
 
     It starts in relative equilibrium with the base's motion at the start (a free hub at rest), and what floats
@@ -78,8 +56,8 @@ def simulate(
 
     Returns
     -------
-    Response or SystemResponse
-        Of a structure, with the loads along the beam; of a system with momentum and energy. The outcome is ``done``,
+    Response
+        With the loads of every body that deforms, and momentum and energy on a ground at rest. The outcome is ``done``,
         ``diverged`` (the displacement left what the model can mean, the beam lost its stability, or the efforts of a
         controller are not finite), ``not converged`` (Newton's method failed) or ``law failed`` (a controller's law
         raised an error or gave no efforts); what was computed until then is kept. Where JAX traces the
@@ -115,7 +93,7 @@ def simulate(
         run, errors = Run(posed.integrated(posed.kept, posed.commands), posed.kept, posed), StepErrors()
     else:
         run, errors = _answered(subject, settings, progress)
-    return described(run, errors, name, progress)
+    return response_of(run, errors, name, progress)
 
 
 def _answered(subject: Subject, settings: ResponseSettings, progress: Progress) -> tuple[Run, StepErrors]:
@@ -130,12 +108,6 @@ def _answered(subject: Subject, settings: ResponseSettings, progress: Progress) 
 def _run(posed: Posed, progress: Progress, step: float, what: str) -> Run:
     """Run a problem by steps of a length, s, telling its progress as `what`."""
     return Run.by_steps(posed, step, partial(tell, progress, what))
-
-
-def described(run: Run, errors: StepErrors, name: str, progress: Progress = None, **known: Any) -> Any:
-    """Response made of a run, with the errors of its steps and others that the settings ask for, and what is known."""
-    of = response_of if run.posed.subject.body else system_response_of
-    return of(run, errors, name, progress, **known)
 
 
 def settings_of(settings: ResponseSettings | None, options: Settings) -> ResponseSettings:

@@ -178,8 +178,8 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
     bodies = {}
     for body, structure in system.flexible.items():
         state_of = carried(system, moving, body, acting)
-        base, q = Base(state_of.a, state_of.w, state_of.alpha), np.asarray(state_of.q)
-        loads = loads_of(structure, [state_of], time)
+        base, q = state_of.base, np.asarray(state_of.q)
+        loads = loads_of(structure, state_of, time)
         if body == subject.body:
             loads = about_the_hub(loads, subject.motion, base.alpha_WB_B)
         names = {"motion": name, "model": structure.kind, "environment": environment}

@@ -99,9 +99,15 @@ class Subject:
         """Motion of the root of the body that is alone, (3,)."""
         return state.base_of(self.body)
 
-    def doubts(self, name: str = "", base: Base | None = None) -> tuple[str, ...]:
-        """Doubts about one body and its motion, called `name`, or a motion of its `base`; none of a system."""
-        return input_warnings(self.structure, self.motion, name=name, base=base) if self.body else ()
+    def doubts(
+        self, name: str = "", base: Base | None = None, span: tuple[float, float] = (0.0, 0.0)
+    ) -> tuple[str, ...]:
+        """Doubts about the bodies' models, and of one body about its motion, called `name`, or a motion of its `base`,
+        over a span of time, s.
+        """
+        if not self.body:
+            return self.system.warnings
+        return input_warnings(self.structure, self.motion, name=name, span=span, base=base)
 
     def warnings(self, state: SteadySystem, name: str, *, resting: bool = False) -> tuple[str, ...]:
         """Doubts about the models of the bodies in a state that is `resting`, or departed from, and what it leaves out;

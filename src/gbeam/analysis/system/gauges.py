@@ -16,7 +16,6 @@ from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signals import CARRIED, carried_of, measurements
 from gbeam.mechanics.tree.system import System, stations_of
-from gbeam.results.parts import Base
 
 
 class Strained(NamedTuple):
@@ -32,8 +31,8 @@ class Strained(NamedTuple):
         if self.section is None:
             return state.q[k][-1] @ self.share
         assert body.sections is not None
-        q, qd, qdd, a, w, alpha, hung = carried(system, state, self.body, acting)
-        loads = sections(body, body.sections, Base(a, w, alpha), q, qd, qdd, inputs.loads[k], hung)
+        q, qd, qdd, base, hung = carried(system, state, self.body, acting)
+        loads = sections(body, body.sections, base, q, qd, qdd, inputs.loads[k], hung)
         of_section = [load[:, self.section] for load in (loads.section_force, loads.section_moment)]
         return namespace(*of_section).concatenate(of_section, axis=-1) @ self.share
 

@@ -18,28 +18,46 @@ from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base, Loads
-from gbeam.results.solids import SolidStress, Surface
 
+_OF_BASE = "a_WO_B", "w_WB_B", "alpha_WB_B"
 ROUNDING = 1e-12  # of the force times the length: a smaller moment is rounding; likewise a force
 
 
 class Carried(NamedTuple):
-    """A beam over time: coordinates, rates, accelerations (t, n), motion (t, 3) of its root, loads on its stations."""
+    """A body over time: coordinates, rates, accelerations (t, n), motion (t, 3) of its root, loads on its stations."""
 
     q: Floats
     qd: Floats
     qdd: Floats
-    a: Floats
-    w: Floats
-    alpha: Floats
+    base: Base
     hung: Hung
+
+    @classmethod
+    def joined(cls, pieces: list[Carried]) -> Carried:
+        """A body over all times of pieces, one after the other."""
+        if len(pieces) == 1:
+            return pieces[0]
+        first = pieces[0]
+        xp = namespace(*first[:3])
+        bases, hung = ([getattr(piece, name) for piece in pieces] for name in ("base", "hung"))
+        base = Base(*(xp.concatenate([getattr(each, name) for each in bases]) for name in _OF_BASE))
+        load = (xp.concatenate([getattr(each, name) for each in hung]) for name in ("force", "moment"))
+        q, qd, qdd = (xp.concatenate([piece[k] for piece in pieces]) for k in range(3))
+        return cls(q, qd, qdd, base, Hung(first.hung.station, *load))
+
+    def at(self, times: Any) -> Carried:
+        """Return the body at an index, slice or array of the times."""
+        if isinstance(times, slice) and times == slice(None):
+            return self
+        base = Base(*(getattr(self.base, name)[times] for name in _OF_BASE))
+        return Carried(self.q[times], self.qd[times], self.qdd[times], base, self.hung.during(times))
 
 
 def histories(
     system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *, inertial: bool
 ) -> tuple[dict[str, Floats], dict[str, Carried]]:
     """Histories by key, of points, coordinates, efforts and the ground's load, from free coordinates (t, n) and rates,
-    with momentum and energy if the ground is `inertial`; and the state of each beam by name.
+    with momentum and energy if the ground is `inertial`; and the state of each flexible body by name.
     """
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
@@ -67,7 +85,7 @@ def histories(
         gravity = np.zeros(3) if system.gravity is None else as_array(system.gravity)
         momentum, spin, energy = tree.invariants(state, gravity)
         out |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
-    return out, {name: carried(system, state, name, acting) for name in beams_of(system)}
+    return out, {name: carried(system, state, name, acting) for name in system.flexible}
 
 
 def deflections(body: Structure, q: Array) -> Array:
@@ -93,7 +111,7 @@ def beams_of(system: System) -> dict[str, Structure]:
 
 
 def carried(system: System, state: State, name: str, acting: list[list[Acting]]) -> Carried:
-    """State of one beam over time; `acting` has the wrenches on the points of every body."""
+    """State of one flexible body over time; `acting` has the wrenches on the points of every body."""
     k = system.order.index(name)
     places, root = list(stations_of(system.bodies[name]).values()), state.roots[k]  # type: ignore[arg-type]
     q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
@@ -104,36 +122,19 @@ def carried(system: System, state: State, name: str, acting: list[list[Acting]])
         for part in ("force", "moment")
     )
     hung = Hung(np.array([places[at_point.point] for at_point in acting[k]], dtype=int), force, moment)
-    return Carried(q, qd, qdd, root.a, root.w, root.alpha, hung)
+    return Carried(q, qd, qdd, Base(root.a, root.w, root.alpha), hung)
 
 
-def loads_of(beam: Structure, pieces: list[Carried], time: Floats) -> Loads:
-    """Loads along a beam at times (t,) s, of which the pieces, one after the other, have the states."""
-    *moving, hung = zip(*pieces, strict=True)
-    xp = namespace(*moving[0])
-    q, qd, qdd, a, w, alpha = (xp.concatenate(values) for values in moving)
-    station, force, moment = zip(*hung, strict=True)
-    hung_on = Hung(station[0], xp.concatenate(force), xp.concatenate(moment))
-    loads = section_forces(beam, Base(a, w, alpha), q, qd, qdd, time, hung=hung_on)
+def loads_of(body: Structure, of: Carried, time: Floats) -> Loads:
+    """Loads along a body at times (t,) s, at which it is in a state."""
+    loads = section_forces(body, of.base, of.q, of.qd, of.qdd, time, hung=of.hung)
+    xp = namespace(loads.force)
     # A joint that is free carries nothing but rounding.
     force, moment = (xp.abs(load).max(axis=(0, 2)) for load in (loads.force, loads.moment))
-    idle = {"force": force * beam.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * beam.length}
+    idle = {"force": force * body.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * body.length}
     kept: dict[str, Any] = {
         key: xp.where(none[:, None], 0.0, getattr(loads, key))
         for name, none in idle.items()
         for key in (name, f"section_{name}")
     }
     return replace(loads, **kept)
-
-
-def meshes_of(
-    system: System, time: Floats, q: Floats, motion: str, environment: str
-) -> tuple[dict[str, SolidStress], dict[str, Surface]]:
-    """Stress and surfaces of the bodies made of meshes, by name, at coordinates (t, n) at times (t,) s."""
-    stresses, surfaces = dict[str, SolidStress](), dict[str, Surface]()
-    for body, solid in system.flexible.items():
-        if solid.recovery is not None and solid.size:
-            names = {"motion": motion, "model": solid.kind, "environment": environment}
-            parts = solid.recovery.parts(time, None, q[:, deforming(system.coordinates, body)], **names)
-            stresses[body], surfaces[body] = parts["solid"], parts["surface"]
-    return stresses, surfaces

@@ -24,7 +24,6 @@ from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
 from gbeam.results.result import Result
 from gbeam.results.study import Study
-from gbeam.results.system import SystemResponse
 
 # In motion, or in three dimensions.
 SHOWN = Study, Response, SystemResponse, Rest, Modes
