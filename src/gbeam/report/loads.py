@@ -6,7 +6,20 @@ import math
 
 import numpy as np
 
-from gbeam.report.blocks import Block, Blocks, Cell, Columns, Facts, Items, Sentence, Value, named, numbered, table
+from gbeam.report.blocks import (
+    Block,
+    Blocks,
+    Cell,
+    Column,
+    Columns,
+    Facts,
+    Items,
+    Sentence,
+    Value,
+    named,
+    numbered,
+    table,
+)
 from gbeam.report.words import known, number, percent, tidy
 from gbeam.results.declared import declarations
 from gbeam.results.errors import ErrorEstimate
@@ -122,7 +135,7 @@ def _stress_table(solids: Facts, row_of: str) -> Blocks:
         yield Items(tuple(set(remarks.values()) if alike else (f"{name}: {each}" for name, each in remarks.items())))
 
 
-_READ: Columns = {
+_READ: dict[str, Column] = {
     "accelerometer reads, g": "sensor.size.max_abs",
     "von Mises, MPa": "solid.von_mises",
     "strain along x, µm/m": "solid.strain",

@@ -180,7 +180,7 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
 
 def _carrier(inner: Variables, v: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
     """Header of the turning of what carries a beam, as its outline has it: its attitude in flight, or the hub's."""
-    header = {"attitude": numbers.add(inner["attitude"])} if "attitude" in inner else {}
+    header: dict[str, Any] = {"attitude": numbers.add(inner["attitude"])} if "attitude" in inner else {}
     if "hub_radius" in inner:
         header |= {"radius": float(inner["hub_radius"]), "mounting": np.ravel(inner["hub_mounting"]).tolist()}
         header["angle"] = numbers.add(v["hub_angle"][index])
