@@ -100,10 +100,10 @@ def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Fa
 
 def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | None:
     """Readings of accelerometers; None in a response that is not done or has no accelerations."""
-    if response.outcome != "done" or getattr(response, "accelerations", ()) is None:
+    if response.outcome != "done":
         return None
     readings, peaks_of = [], []
-    at_steps = response.felt_at_steps if isinstance(response, Response) else None
+    at_steps = response.felt_at_steps
     for point, sensor in sensors.items():
         with placing_within(f"sensors.{point}"):
             reading = response.reading_at(point, sensor)
@@ -111,7 +111,7 @@ def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | N
         largest = vector_peaks(response.time, reading)
         if at_steps is not None:
             steps, felt = at_steps
-            finer = sensor.reads(felt[:, response.points.index(point)], float(steps[1] - steps[0]))
+            finer = sensor.reads(felt[:, response.point("point", point)], float(steps[1] - steps[0]))
             both = np.stack([largest, vector_peaks(steps, finer)])
             largest = tuple(np.where(both[1, 0] >= both[0, 0], both[1], both[0]))
         peaks_of.append(largest)

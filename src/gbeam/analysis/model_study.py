@@ -13,9 +13,9 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from gbeam.analysis.case import Case
+from gbeam.analysis.one_body import refuse_no_point
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
-from gbeam.analysis.system.histories import deflection
 from gbeam.arrays.types import Floats
 from gbeam.constants import ModelKind
 from gbeam.errors import ComputationError, InputError
@@ -23,7 +23,6 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of, remade
 from gbeam.mechanics.models import KINDS, Model
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.signals import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.peaks import vector_peaks
@@ -67,8 +66,8 @@ def compare_models(
     progress : callable or bool, optional
         Called with what is being done and the fraction done; True shows a bar.
     point : str, optional
-        Of a system, the one whose displacement is compared, ``body.point``: on a flexible body relative to its root,
-        elsewhere from its place at the start. By default the tip of the beam that deflects most.
+        The one whose displacement is compared: of a flexible body relative to its root, elsewhere from its place at the
+        start. By default the tip of the beam that deflects most.
 
     Returns
     -------
@@ -80,7 +79,7 @@ def compare_models(
     Raises
     ------
     InputError
-        If a kind is unknown, the beam has no damping ratio, or a system has no beam or no such point.
+        If a kind is unknown, the beam has no damping ratio, or no body is a beam, or there is no such point.
 
     Examples
     --------
@@ -111,7 +110,7 @@ def compare_models(
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)
             answers[kind, name] = answer, seconds
-            if case.system.alone is None and isinstance(answer, _Tip):
+            if isinstance(answer, _Tip) and answer.of.several:
                 point = point or answer.point
     rows, direction = [], {}
     for name in case.environments:
@@ -124,7 +123,7 @@ def compare_models(
 
 
 class _Tip(NamedTuple):
-    """Displacement `moved` (t, 3) m of the tip, or of the point compared, in a response, with its peaks (3,)."""
+    """Displacement `moved` (t, 3) m of the point compared in a response, with its peaks (3,)."""
 
     of: Response
     point: str
@@ -133,19 +132,15 @@ class _Tip(NamedTuple):
     time_of_peak: Floats
     residual: Floats
     residual_from: float
-    hub_angle: float = float("nan")
+    hub_angle: float
 
 
 def _refuse(case: Case, point: str | None) -> None:
-    """Raise InputError where no body is a beam, or a point is named that is not there or of a beam alone."""
+    """Raise InputError where no body is a beam, or a point is named that is not there."""
     if not any(body.source for body in case.system.flexible.values()):
         raise InputError("bodies", "have no beam, whose model could be another", "ask for run")
-    if point is None:
-        return
-    if case.system.alone is not None:
-        fix = "leave it out: the tip of a beam alone on its base is compared"
-        raise InputError("point", f"is {point!r}, and {case.system.order[0]} is the only body", fix)
-    case.system.point("point", point)
+    if point is not None:
+        refuse_no_point(case.system, "point", point)
 
 
 def _counterpart(case: Case, kind: ModelKind) -> Case | Failure:
@@ -176,26 +171,17 @@ def _answer(
         return case
     subject: Any = case.subject
     try:
-        response: Any = simulate(subject, motion, settings, name=name, progress=progress)
+        response = simulate(subject, motion, settings, name=name, progress=progress)
     except InputError as error:
         return Failure("cannot", str(error))
     except ComputationError as error:
         return Failure(error.outcome, str(error))
-    body, q = case.system.alone, response.q
-    if body is None:
-        tip = _tip_of(case.system, response, point)
-        name = tip.point.partition(".")[0]
-        body, q = case.system.flexible.get(name), q[:, deforming(case.system.coordinates, name)]
-    else:
-        peaks, hub = response.peaks, response.hub
-        angle = float("nan") if hub is None or not hub.free else float(hub.angle[-1])
-        tip = _Tip(
-            response, "tip", response.tip, peaks.max_abs, peaks.time_of_max, peaks.residual_amplitude,
-            response.residual_from, angle,
-        )  # fmt: skip
+    tip = _tip_of(response, point)
+    name = tip.point.partition(".")[0]
+    body = case.system.flexible.get(name)
     if response.outcome != "done" or body is None or body.kind != REFERENCE:
         return tip
-    tail = shape_tail(body, q)
+    tail = shape_tail(body, response.bodies[name].q)
     if tail <= SHAPES_FINE:
         return tip
     warning = (
@@ -205,21 +191,23 @@ def _answer(
     return tip._replace(of=replace(response, warnings=(*response.warnings, warning)))
 
 
-def _tip_of(system: System, response: SystemResponse, point: str | None) -> _Tip:
-    """Displacement of a point of a system, by default of the tip of the beam that deflects most."""
+def _tip_of(response: Response, point: str | None) -> _Tip:
+    """Displacement of a point, by default of the tip of the beam that deflects most."""
     if point is None:
-        tips = [f"{name}.tip" for name, body in system.flexible.items() if body.source]
-        point = max(tips, key=lambda tip: float(np.abs(_moved(system, response, tip)).max()))
-    moved, left = _moved(system, response, point), response.residual_amplitude
+        tips = {name: body.tip for name, body in response.bodies.items() if body.shapes is not None}
+        point = max(tips, key=lambda name: float(np.abs(tips[name]).max())) + ".tip"
+    k = response.point("point", point)
+    point = response.points[k]
+    owner, _, name = point.partition(".")
+    body, left, hub = response.bodies.get(owner), response.residual_amplitude, response.hub
+    residual = np.full(3, np.nan) if left is None else left[k]
+    angle = float("nan") if hub is None or not hub.free else float(hub.angle[-1])
+    if body is not None and name in body.points and body.peaks.displacement is not None:
+        moved, peaks = body.at(name), body.peaks.displacement[body.points.index(name)].components
+        return _Tip(response, point, moved, peaks.value, peaks.time, residual, response.residual_from, angle)
+    moved = response.place[:, k] - response.place[0, k]
     value, when = vector_peaks(response.time, moved)
-    residual = np.full(3, np.nan) if left is None else left[response.points.index(point)]
-    return _Tip(response, point, moved, value[:3], when[:3], residual, response.residual_from)
-
-
-def _moved(system: System, response: SystemResponse, point: str) -> Floats:
-    """Displacement (t, 3) m of a point, of a flexible body relative to its root, else from its place at the start."""
-    deflected = deflection(system, point, response.q)
-    return response.at(point) - response.at(point)[0] if deflected is None else np.asarray(deflected)
+    return _Tip(response, point, moved, value[:3], when[:3], residual, response.residual_from, angle)
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:

@@ -6,16 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import History, account_of, gradients, largest_load, largest_pair, points_of
-from gbeam.analysis.imitation.fatigue import fatigue, stress_at_point
-from gbeam.analysis.imitation.specimen import specimen_of
+from gbeam.analysis.imitation.accounting import History, account_of, gradients, largest_load, largest_pair
+from gbeam.analysis.imitation.fatigue import fatigue
+from gbeam.analysis.imitation.quantities import Peak, Quantities, largest
 from gbeam.arrays.types import Flags, Floats
 from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import index_of, positive
+from gbeam.guards.checks import positive
 from gbeam.guards.kinds import kinds
-from gbeam.numerics.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison
@@ -33,82 +32,30 @@ from gbeam.results.response import Response
 from gbeam.results.sensors import Sensor
 
 
-def peak_pairs(flight: Response, centrifuge: Response, during: slice, tips: tuple[int, int]) -> dict[str, PeakPair]:
-    """Largest sizes over the flight's times in each response, by name; `tips` are the stations of the tip in each.
-    ``largest_load`` of the machine is over all of its run. NaN stands for a size that a response lacks.
+def peak_pairs(flight: Quantities, machine: Quantities, during: slice, tip: int) -> dict[str, PeakPair]:
+    """Largest sizes over the flight's times in each run, by name; `tip` is the number of the point "tip".
+    ``largest_load`` of the machine is over all of its run. NaN stands for a size that a run lacks.
     """
-    last = centrifuge.time[during][-1]
-    in_flight = _peaks(flight, flight.time <= last + 1e-12 * abs(last), tips[0])
-    on_machine = _peaks(centrifuge, during, tips[1])
-    points = points_of(float(centrifuge.stations[-1]), centrifuge.bodies, centrifuge.envelope)
-    loads = (largest_load(each.time, each.base, points) for each in (flight, centrifuge))
+    in_flight, on_machine = flight.peaks(_until(flight, machine, during), tip), machine.peaks(during, tip)
+    loads = (largest_load(run.response.time, run.base, machine.ends) for run in (flight, machine))
     pairs = {name: PeakPair(a, on_machine[name][0], t, on_machine[name][1]) for name, (a, t) in in_flight.items()}
     return {"largest_load": largest_pair(*loads)} | pairs
 
 
-def _peaks(response: Response, part: slice | Flags, tip: int) -> dict[str, tuple[float, float]]:
-    """Largest sizes of a response over a part of its times, between steps, and their times, by name."""
-    time, peaks = response.time[part], response.peaks
-    known = {"tip": (peaks.max_size, peaks.time_of_max_size)}
-    if tip != len(response.stations) - 1 and peaks.displacement is not None:
-        known["tip"] = float(peaks.displacement.size.value[tip]), float(peaks.displacement.size.time[tip])
-    samples = {"tip": lambda: vector_peaks(time, response.displacement[part, tip])}
-    if response.solid is not None:
-        von_mises = response.solid.von_mises[part, None]
-        if response.solid.known:
-            samples["stress"] = lambda: _between_steps(time, von_mises)
-    elif response.loads is not None:
-        loads = response.loads
-        stress = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
-        if np.isfinite(stress).all():
-            samples["stress"] = lambda: _between_steps(time, stress)
-    if response.loads is not None:
-        carried = response.loads
-        samples |= {
-            "root_force": lambda: vector_peaks(time, carried.section_force[part, 0]),
-            "root_moment": lambda: vector_peaks(time, carried.section_moment[part, 0]),
-        }
-    if peaks.loads is not None:
-        worst = int(np.argmax(peaks.loads.stress.value))
-        extremes = {
-            "root_force": (peaks.loads.force.size, 0),
-            "root_moment": (peaks.loads.moment.size, 0),
-            "stress": (peaks.loads.stress, worst),
-        }
-        known |= {name: (float(e.value[k]), float(e.time[k])) for name, (e, k) in extremes.items()}
-
-    def peak(name: str) -> tuple[float, float]:
-        """The peak of all the response if it lies in the part, else the largest of the part's samples."""
-        value, when = known.get(name, (np.nan, np.nan))
-        if np.isfinite(value) and time[0] <= when <= time[-1]:
-            return value, when
-        if name not in samples:
-            return np.nan, np.nan
-        values, times = samples[name]()
-        most = int(np.argmax(values))
-        return float(values[most]), float(times[most])
-
-    names = ("tip", "root_force", "root_moment", "stress")
-    return {name: peak(name) for name in names if name != "tip" or response.q.shape[1]}  # a rigid tip does not move
+def _until(flight: Quantities, machine: Quantities, during: slice) -> Flags:
+    """The flight's times up to the last that is compared."""
+    last = machine.response.time[during][-1]
+    return flight.response.time <= last + _ROUNDING * abs(last)
 
 
-def _between_steps(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Largest of each history (t, k), known at samples alone, and its time, (k,) each."""
-    return maxima(time, values, *seven_point(time, values, near_maxima(time, values)))
-
-
-def _stresses_at(
-    at: str, flight: Response, centrifuge: Response, during: slice
-) -> PeakPair:
-    """Largest stress at a named point over the flight's times in each response; NaN if either has none there."""
-    last, largest = centrifuge.time[during][-1], []
-    for response, part in ((flight, flight.time <= last + _ROUNDING * abs(last)), (centrifuge, during)):
-        stress = stress_at_point(response, at)
-        if stress is None or not np.isfinite(stress[part]).all():
+def _stresses_at(at: str, flight: Quantities, machine: Quantities, during: slice) -> PeakPair:
+    """Largest stress at a named point over the flight's times in each run; NaN if either has none there."""
+    peaks = list[Peak]()
+    for run, part in ((flight, _until(flight, machine, during)), (machine, during)):
+        if (stress := run.stress_at("stress_at", at)) is None:
             return PeakPair(place_flight=at, place_machine=at)
-        value, time = _between_steps(response.time[part], stress[part, None])
-        largest.append((float(value[0]), float(time[0])))
-    (in_flight, time_flight), (on_machine, time_machine) = largest
+        peaks.append(largest(run.response.time[part], stress[part, None]))
+    (in_flight, time_flight), (on_machine, time_machine) = peaks
     return PeakPair(in_flight, on_machine, time_flight, time_machine, at, at)
 
 
@@ -194,54 +141,51 @@ def compare(
     >>> print(f"{comparison.relative[2]:.2%}")
     0.26%
     """
-    limits, chosen = checked_limits(accept), point or ""
-    runs = flight, centrifuge
-    if isinstance(flight, SystemResponse) and isinstance(centrifuge, SystemResponse):
-        chosen = chosen or flight.points[int(flight.largest.argmax())]
-        flight, centrifuge = specimen_of(flight), specimen_of(centrifuge)
-    if isinstance(flight, SystemResponse) or isinstance(centrifuge, SystemResponse):
-        raise InputError("centrifuge", "and flight are a system and a beam", "give two responses of one specimen")
-    flown, reproduced = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
-    first, last = max(flown[0], reproduced[0]), min(flown[1], reproduced[1])
-    slack = _ROUNDING * max(map(abs, flown))
+    limits, flown, spun = (
+        checked_limits(accept),
+        Quantities.of("flight", flight),
+        Quantities.of("centrifuge", centrifuge),
+    )
+    if flown.points != spun.points:
+        raise InputError("centrifuge", "is of another specimen than flight", "give two responses of one specimen")
+    chosen = point or flown.farthest
+    span, reproduced = (float(flight.time[0]), float(flight.time[-1])), centrifuge.flight_span
+    first, last = max(span[0], reproduced[0]), min(span[1], reproduced[1])
+    slack = _ROUNDING * max(map(abs, span))
     begin, end = np.searchsorted(centrifuge.time, (first - slack, last + slack))
     during = slice(int(begin), int(end))  # spin-up and spin-down are not the flight's
     time = centrifuge.time[during]
     if not len(time):
         raise InputError("centrifuge", "has no time in common with the flight", "compute both for the same times")
 
-    short = time[0] > flown[0] + slack or time[-1] < flown[1] - slack
-    whole = flown if short and flight.whole is None else flight.whole
+    short = time[0] > span[0] + slack or time[-1] < span[1] - slack
+    whole = span if short and flight.whole is None else flight.whole
 
     def in_flight(values: Floats) -> Floats:
         return interpolated(time, flight.time, values)
 
-    length, axes = float(centrifuge.stations[-1]), centrifuge.axes
-    tips = _station(flight, chosen), _station(centrifuge, chosen)
-    reference, actual = in_flight(flight.displacement), centrifuge.displacement[during]
-    tip_flight, tip_actual = reference[:, tips[0]], actual[:, tips[1]]
+    axes = centrifuge.axes
+    tip = flown.index("point", chosen)
+    reference, actual = in_flight(flown.displacement), spun.displacement[during]
+    tip_flight, tip_actual = reference[:, tip], actual[:, tip]
     covered = np.ones(len(time), dtype=bool) if axes is None else ~axes.not_followed[during]
     difference = tip_actual - tip_flight
     root, shock = None, None
-    if flight.loads is not None and centrifuge.loads is not None and covered.any():
-        a, b = flight.loads, centrifuge.loads
-        history = RootHistory(
-            in_flight(a.section_force[:, 0]), b.section_force[during, 0],
-            in_flight(a.section_moment[:, 0]), b.section_moment[during, 0],
-        )  # fmt: skip
-        root = _root(covered, history, in_flight(a.stress[:, 0]), b.stress[during, 0])
-    weights = _weights(control, flight, centrifuge)
+    if flown.root is not None and spun.root is not None and covered.any():
+        pairs = zip(flown.root, spun.root, strict=True)
+        history = RootHistory(*(each for a, b in pairs for each in (in_flight(a), b[during])))
+        root = _root(covered, history, in_flight(flown.root_stress), spun.root_stress[during])
+    weights = _weights(control, flown)
     sensors = {} if sensors is None else sensors
-    felt = _felt(runs[0], flight, sensors), _felt(runs[1], centrifuge, sensors)
+    felt = _felt(flown, sensors), _felt(spun, sensors)
     if felt[0] is not None and felt[1] is not None and covered.any():
-        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, sensors, flight, centrifuge)
+        shock = _shock(time, covered, in_flight(felt[0]), felt[1][during], weights, chosen, sensors, flown)
     first_name, second_name = (run.name or run.environment for run in (flight, centrifuge))
     names = first_name, second_name if second_name != first_name else f"the second {second_name}"
-    growth = in_flight(gradients(flight.base.w_WB_B, flight.base.alpha_WB_B))
-    spun = gradients(centrifuge.base.w_WB_B[during], centrifuge.base.alpha_WB_B[during])
-    of_beam, root_load = not len(centrifuge.envelope), in_flight(flight.base.a_WO_B)
-    ends = np.array([[length, 0.0, 0.0]]) if of_beam else centrifuge.envelope
-    machine_root = centrifuge.base.a_WO_B[during]
+    growth = in_flight(gradients(flown.base.w_WB_B, flown.base.alpha_WB_B))
+    turning = gradients(spun.base.w_WB_B[during], spun.base.alpha_WB_B[during])
+    root_load, machine_root = in_flight(flown.base.a_WO_B), spun.base.a_WO_B[during]
+    margins = [margin for margin in (flown.margin, spun.margin) if margin is not None]
     return Comparison(
         flight=names[0],
         centrifuge=names[1],
@@ -252,34 +196,27 @@ def compare(
         rms_difference=_rms(difference, covered),
         peak_flight=_largest(tip_flight, covered),
         peak_centrifuge=_largest(tip_actual, covered),
-        peaks=peak_pairs(flight, centrifuge, during, tips)
-        | ({} if stress_at is None else {STRESS_AT: _stresses_at(stress_at, *runs, during)}),
+        peaks=peak_pairs(flown, spun, during, tip)
+        | ({} if stress_at is None else {STRESS_AT: _stresses_at(stress_at, flown, spun, during)}),
         accounting=account_of(
-            time, History(root_load, root_load, growth, ends),
-            History(machine_root if axes is None else axes.actual[during], machine_root, spun, ends),
+            time, History(root_load, root_load, growth, spun.corners),
+            History(machine_root if axes is None else axes.actual[during], machine_root, turning, spun.corners),
             axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
         ),
         accept=limits,
-        stations=_statistics(time, covered, reference, actual, centrifuge, tips),
-        mismatch=_mismatch(covered, centrifuge, (spun - growth)[..., 0], tips[1]) if of_beam else None,
+        stations=_statistics(time, covered, reference, actual, spun, tip),
+        mismatch=_mismatch(covered, spun, (turning - growth)[..., 0], tip),
         root=root,
         shock=shock,
-        fatigue=fatigue(*runs, damage_at),
-        yield_strength=None if centrifuge.loads is None else centrifuge.loads.yield_strength,
-        margins_of_materials=_of_materials(flight, centrifuge),
+        fatigue=fatigue(flown, spun, damage_at),
+        yield_strength=spun.yield_strength,
+        margins_of_materials=(margins[0], margins[1]) if len(margins) == 2 else None,
         whole=whole,
         scale=flight.scale,
         exceeded="" if axes is None else axes.beyond,
         kept_every=centrifuge.kept_every,
         point=chosen,
     )  # fmt: skip
-
-
-def _of_materials(flight: Response, centrifuge: Response) -> tuple[float, float] | None:
-    """Least margins on yield of solids in flight and on the machine; None if either is not known."""
-    nearest = [None if run.solid is None else run.solid.nearest_yield for run in (flight, centrifuge)]
-    in_flight, on_machine = (None if point is None else point.margin for point in nearest)
-    return None if in_flight is None or on_machine is None else (in_flight, on_machine)
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:
@@ -290,23 +227,19 @@ def _rms(values: Floats, covered: Flags) -> Floats:
     return np.sqrt(np.mean(values[covered] ** 2, axis=0)) if covered.any() else np.full(values.shape[1:], np.nan)
 
 
-def _station(response: Response, point: str) -> int:
-    """Number of the station of a named point, by default of the tip, the last."""
-    return index_of("point", point, response.points) if point else len(response.stations) - 1
-
-
 def _statistics(
-    time: Floats, covered: Flags, reference: Floats, actual: Floats, centrifuge: Response, tips: tuple[int, int]
+    time: Floats, covered: Flags, reference: Floats, actual: Floats, machine: Quantities, tip: int
 ) -> Statistics | None:
-    """Sizes at each station, and trend and vibration of the tip, whose stations in both runs are `tips`; None if the
+    """Sizes at each station of the only body, and trend and vibration of the tip, whose number is `tip`; None if the
     samples are too few, too far apart or over too short a time to part trend from vibration.
     """
-    if not centrifuge.frequencies.size or len(time) < _FEWEST or not covered.any():
+    body = machine.body
+    if body is None or not body.frequencies.size or len(time) < _FEWEST or not covered.any():
         return None
-    step, cutoff = float(time[1] - time[0]), CUTOFF * float(centrifuge.frequencies[0]) / (2 * np.pi)
+    step, cutoff = float(time[1] - time[0]), CUTOFF * float(body.frequencies[0]) / (2 * np.pi)
     if not 1 / (len(time) - 1) < cutoff * step < 0.4:
         return None
-    late = covered & ~(time < centrifuge.residual_from)  # all if that is NaN
+    late = covered & ~(time < machine.response.residual_from)  # all if that is NaN
     late = late if late.any() else covered
 
     def sizes(values: Floats, trend: Floats) -> Sizes:
@@ -316,28 +249,30 @@ def _statistics(
 
     slow, slow_spun = np.moveaxis(low_pass(np.stack([reference, actual], axis=1), step, cutoff), 1, 0)
     return Statistics(
-        stations=centrifuge.stations,
+        stations=body.stations,
         cutoff=cutoff,
         flight=sizes(reference, slow),
         centrifuge=sizes(actual, slow_spun),
         difference=sizes(actual - reference, slow_spun - slow),
-        trend_flight=slow[:, tips[0]],
-        trend_centrifuge=slow_spun[:, tips[1]],
-        vibration_flight=(reference - slow)[:, tips[0]],
-        vibration_centrifuge=(actual - slow_spun)[:, tips[1]],
-        tip=tips[1],
+        trend_flight=slow[:, tip],
+        trend_centrifuge=slow_spun[:, tip],
+        vibration_flight=(reference - slow)[:, tip],
+        vibration_centrifuge=(actual - slow_spun)[:, tip],
+        tip=tip,
     )
 
 
-def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats, tip: int) -> Mismatch | None:
-    """Mismatch along a beam by the gradient (t, 3) 1/s², and bounds of its effects; None without a control point."""
-    if centrifuge.axes is None or not np.isfinite(centrifuge.axes.control_point) or not covered.any():
+def _mismatch(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -> Mismatch | None:
+    """Mismatch along a straight beam by the gradient (t, 3) 1/s², and bounds of its effects; None of other specimens,
+    and without a control point on the beam.
+    """
+    axes, body = machine.response.axes, machine.body
+    influence = None if body is None else body.influence
+    if axes is None or body is None or influence is None or axes.place is not None or not covered.any():
         return None
-    if centrifuge.axes.place is not None:  # beside the beam
+    if not np.isfinite(axes.control_point):
         return None
-    x_c, length = centrifuge.axes.control_point, float(centrifuge.stations[-1])
-    largest, influence = _largest(gradient, covered), centrifuge.influence
-    unknown = np.full(3, np.nan)
+    x_c, length, largest = axes.control_point, float(body.stations[-1]), _largest(gradient, covered)
 
     def bound(linear: Floats, uniform: Floats) -> Floats:
         return np.abs(linear - x_c * uniform) * largest
@@ -347,13 +282,13 @@ def _mismatch(covered: Flags, centrifuge: Response, gradient: Floats, tip: int) 
         gradient=gradient,
         max_gradient=largest,
         max_acceleration=largest * max(x_c, length - x_c),
-        tip_bound=unknown
-        if influence is None or tip != len(centrifuge.stations) - 1
-        else bound(influence.tip_linear, influence.tip_uniform),
-        force_bound=unknown if influence is None else bound(influence.force_linear, influence.force_uniform),
-        moment_bound=unknown if influence is None else bound(influence.moment_linear, influence.moment_uniform),
+        tip_bound=bound(influence.tip_linear, influence.tip_uniform)
+        if tip == len(body.stations) - 1
+        else np.full(3, np.nan),
+        force_bound=bound(influence.force_linear, influence.force_uniform),
+        moment_bound=bound(influence.moment_linear, influence.moment_uniform),
         length=length,
-        best=(-np.inf, np.inf) if influence is None else _best_control_points(influence),
+        best=_best_control_points(influence),
     )
 
 
@@ -378,26 +313,23 @@ def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_ce
     return RootLoads(*force, *moment, float(stress[0]), float(stress[1]), float(stress[2]), history)
 
 
-def _weights(control: Mapping[str, float] | None, *responses: Response) -> dict[str, float]:
-    """Shares of the control points by name; InputError if a response lacks one, or a weight is not positive."""
-    for name, weight in ({} if control is None else control).items():
+def _weights(control: Mapping[str, float] | None, run: Quantities) -> dict[str, float]:
+    """Shares of the control points by name; InputError if one is no point, or a weight is not positive."""
+    weights = {} if control is None else control
+    for name, weight in weights.items():
         positive(f"control.{name}", weight, "(a weight)")
-        for response in responses:
-            if name not in response.points:
-                raise InputError(f"control.{name}", "is no point", f"choose from {', '.join(response.points)}")
-    total = sum(({} if control is None else control).values())
-    return {} if control is None else {name: weight / total for name, weight in control.items()}
+        run.index(f"control.{name}", name)
+    return {name: weight / sum(weights.values()) for name, weight in weights.items()}
 
 
-def _felt(run: Response, response: Response, sensors: Mapping[str, Sensor]) -> Floats | None:
-    """Accelerations (t, s, 3) of all points, or readings at points with sensors; None if not known."""
-    felt = response.accelerations
-    if felt is None or not sensors:
-        return felt
-    felt = np.array(felt)
+def _felt(run: Quantities, sensors: Mapping[str, Sensor]) -> Floats | None:
+    """Accelerations (t, p, 3) of all points, or readings at points with sensors; None if not known."""
+    if run.acceleration is None or not sensors:
+        return run.acceleration
+    felt = np.array(run.acceleration)
     for name, sensor in sensors.items():
         with placing_within(f"sensors.{name}"):
-            felt[:, _station(response, name)] = run.reading_at(name, sensor)
+            felt[:, run.index("point", name)] = run.response.reading_at(name, sensor)
     return felt
 
 
@@ -409,9 +341,9 @@ def _shock(
     weights: Mapping[str, float],
     tip: str,
     sensors: Mapping[str, Sensor],
-    *responses: Response,
+    run: Quantities,
 ) -> Shock | None:
-    """Shock response spectra by accelerations (t, s, 3) at the tip, or their weighted mean at control points; None if
+    """Shock response spectra by accelerations (t, p, 3) at the tip, or their weighted mean at control points; None if
     samples are few.
     """
     if len(time) < _FEWEST:
@@ -421,8 +353,8 @@ def _shock(
     frequency = np.geomspace(max(lowest, highest / 1000), highest, _SPECTRUM)
     mean = np.zeros((_SPECTRUM, 6))
     for name, share in (weights or {tip: 1.0}).items():
-        of_flight, of_machine = (_station(response, name) for response in responses)
-        pair = np.concatenate([reference[:, of_flight], actual[:, of_machine]], axis=1)
+        point = run.index("point", name)
+        pair = np.concatenate([reference[:, point], actual[:, point]], axis=1)
         mean += share * largest_riding_acceleration(pair, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
     read = dict.fromkeys(sensors, ", as its sensor reads")
     control = ", ".join(f"{name} ({100 * share:.3g} %{read.get(name, '')})" for name, share in weights.items())

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gbeam.analysis.imitation.quantities import Quantities, sections_of
 from gbeam.arrays.types import Floats
-from gbeam.guards.checks import index_of
-from gbeam.mechanics.tree.system import ROOT
 from gbeam.numerics.peaks import turning_points
 from gbeam.results.measures import Fatigue, StressCycles
 from gbeam.results.parts import Loads
@@ -25,82 +24,56 @@ class Cyclic(NamedTuple):
     exponent: float
 
 
-def fatigue(
-    flight: Response, machine: Response, at: str | None = None
-) -> Fatigue | None:
+def fatigue(flight: Quantities, machine: Quantities, at: str | None = None) -> Fatigue | None:
     """Rainflow cycles of the stress in both runs at a named point, or where the stress ranges most in flight; None if
     either run has no stress there, or another material.
     """
     if at is None:
-        candidates = places_of(flight)
+        candidates = places_of(flight.response)
         place = max(candidates, key=lambda name: np.ptp(candidates[name].stress), default="")
-        in_flight, on_machine = candidates.get(place), places_of(machine).get(place)
+        in_flight, on_machine = candidates.get(place), places_of(machine.response).get(place)
     else:
-        place, in_flight, on_machine = f"at {at}", cyclic_at(flight, at), cyclic_at(machine, at)
+        place, in_flight, on_machine = f"at {at}", _cyclic_at(flight, at), _cyclic_at(machine, at)
     if in_flight is None or on_machine is None:
         return None
     if not np.array_equal(in_flight.exponent, on_machine.exponent, equal_nan=True):
         return None
     if not (np.isfinite(in_flight.stress).all() and np.isfinite(on_machine.stress).all()):
         return None
-    cycles = stress_cycles(flight.time, in_flight.stress), stress_cycles(machine.time, on_machine.stress)
-    return Fatigue(in_flight.exponent, *cycles, place)
+    cycles = (
+        stress_cycles(run.response.time, each.stress) for run, each in ((flight, in_flight), (machine, on_machine))
+    )
+    flown, spun = cycles
+    return Fatigue(in_flight.exponent, flown, spun, place)
 
 
 def places_of(response: Response) -> dict[str, Cyclic]:
     """Stresses at the roots of beams, and where each material of a mesh is stressed most, by the place in words."""
-    if isinstance(response, SystemResponse):
-        roots = ((f"of the root of {body}", _of_section(beam.loads, 0)) for body, beam in response.beams.items())
-        meshes = (_worst(solid, f"{body}'s ") for body, solid in response.solids.items())
-        return {place: cyclic for place, cyclic in roots if cyclic is not None} | {
-            place: cyclic for mesh in meshes for place, cyclic in mesh.items()
-        }
-    if response.solid is not None:
-        return _worst(response.solid)
-    root = None if response.loads is None else _of_section(response.loads, 0)
-    return {} if root is None else {"of the root": root}
+    places, several = dict[str, Cyclic](), len(response.bodies) > 1
+    for name, body in response.bodies.items():
+        loads, solid = sections_of(body), body.solid
+        if solid is not None:
+            places |= _worst(solid, f"{name}'s " if several else "")
+        elif loads is not None:
+            places[f"of the root of {name}" if several else "of the root"] = _of_section(loads, 0)
+    return places
 
 
-def cyclic_at(response: Response, at: str) -> Cyclic | None:
+def _cyclic_at(run: Quantities, at: str) -> Cyclic | None:
     """Normal stress and exponent at a named point; None if the point is of no beam or mesh."""
-    solid, loads, k = stressed_at("damage_at", response, at)
+    solid, loads, k = run.stressed("damage_at", at)
     if solid is not None:
         return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
     return None if loads is None else _of_section(loads, k)
 
 
-def stress_at_point(response: Response, at: str) -> Floats | None:
-    """Stress (t,) Pa at a named point, von Mises of a mesh, normal of a beam; None if the point is of neither."""
-    solid, loads, k = stressed_at("stress_at", response, at)
-    if solid is not None:
-        return solid.point_von_mises[:, k]
-    return None if loads is None else np.maximum(loads.stress_tension[:, k], -loads.stress_compression[:, k])
+def _of_section(loads: Loads, section: int) -> Cyclic:
+    """Stress on the fibre of a section where it ranges most."""
+    assert loads.fibre is not None
+    return Cyclic(loads.fibre[:, section], loads.fatigue_exponent)
 
 
-def stressed_at(
-    where: str, response: Response, at: str
-) -> tuple[SolidStress | None, Loads | None, int]:
-    """The mesh, or the loads of the beam, that a named point belongs to, else None, and its number there; InputError,
-    at the keyword `where`, if there is no such point.
-    """
-    index_of(where, at, response.points)
-    if isinstance(response, SystemResponse):
-        body, _, point = at.partition(".")
-        beam, solid = response.beams.get(body), response.solids.get(body)
-        loads, names = (None, ()) if beam is None else (beam.loads, (ROOT, *beam.points))
-    else:
-        point, solid, loads, names = at, response.solid, response.loads, ("", *response.points)
-    if solid is not None and point in solid.points:
-        return solid, None, solid.points.index(point)
-    return (None, loads, names.index(point)) if loads is not None and point in names else (None, None, 0)
-
-
-def _of_section(loads: Loads, section: int) -> Cyclic | None:
-    """Stress on the fibre of a section where it ranges most; None if not known."""
-    return None if loads.fibre is None else Cyclic(loads.fibre[:, section], loads.fatigue_exponent)
-
-
-def _worst(solid: SolidStress, of: str = "") -> dict[str, Cyclic]:
+def _worst(solid: SolidStress, of: str) -> dict[str, Cyclic]:
     """Stress where each material of a mesh is stressed most, by the place in words; empty where that is not known."""
     several = len(solid.materials) > 1
     if not solid.known:

@@ -17,7 +17,7 @@ import numpy as np
 from gbeam.analysis.imitation.accounting import largest_load, largest_pair, times_between
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
 from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, Ways, bringing
-from gbeam.analysis.imitation.specimen import specimen_of
+from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.arrays.namespace import namespace
@@ -82,11 +82,11 @@ def verify(
         response = simulate(structure, motion, settings, progress=report)
         if response.outcome != "done":
             raise ComputationError(response.outcome, f"a run that verifies the places is no answer: {response.message}")
-        return specimen_of(response) if isinstance(response, SystemResponse) else response
+        return response
 
     in_flight = simulated(flight, "flight")
     point = answers.tip or None if isinstance(structure, System) else None
-    tip = -1 if point is None else in_flight.points.index(point)
+    tip = Quantities.of("flight", in_flight).index("point", point or "")
     # Machines at different control points share their axis motions, and the current one may be at the middle.
     carried: dict[int, Response] = {}  # by axis motions
     responses: dict[tuple[int, bytes], Response] = {}  # by axis motions and control point
@@ -97,6 +97,7 @@ def verify(
         if (motion, key) not in responses:
             responses[motion, key] = simulated(machine, name)
         response = responses[motion, key]
+        of_tip = Quantities.of(name, response).displacement[:, tip]
         comparison = compare(in_flight, response, point=point)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         vibration, moved = np.nan, np.nan
@@ -106,8 +107,8 @@ def verify(
             if motion not in carried:
                 carried[motion] = simulated(_Carried(machine), f"{name}, carried")
             # Interpolated, since automatic steps may differ.
-            carried_tip = interpolated(response.time, carried[motion].time, carried[motion].displacement[:, tip])
-            swing = response.displacement[:, tip] - carried_tip
+            free = Quantities.of(name, carried[motion]).displacement[:, tip]
+            swing = of_tip - interpolated(response.time, carried[motion].time, free)
             swing -= low_pass(swing, step, cutoff)
             vibration, moved = (
                 float(np.linalg.norm(history[:, across], axis=1).max(initial=0.0))

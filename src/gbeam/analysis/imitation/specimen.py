@@ -6,7 +6,6 @@ solid and a rigid box alike."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -23,88 +22,6 @@ from gbeam.mechanics.equations.linear import PAIRS, rest_modes
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.numerics.eigen import RIGID, symmetric
-from gbeam.results.parts import Loads, Peaks
-from gbeam.results.response import Response
-from gbeam.results.solids import SolidStress
-
-
-def specimen_of(response: SystemResponse) -> Response:
-    """Response of a system on a moving ground, as that of one specimen: its points, loads of the ground, and stress of
-    beams and meshes; InputError if the ground rests or loads are lacking.
-    """
-    if response.base is None or response.assembly is None:
-        fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
-        raise InputError("", "is a system on a ground at rest, or without loads", fix)
-    from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of beams needs
-
-    beams = [beam.loads for beam in response.beams.values()]
-    felt = [  # accelerations in the axes of the points
-        Rotation.from_quat(np.roll(response.attitude[:, k], -1, axis=-1)).apply(response.acceleration[:, k])
-        for k in range(len(response.points))
-    ]
-    nothing, solid = np.full(3, math.nan), None
-    if response.solids:
-        solid = _together(response)
-    # The ground, then the largest stress at the roots; the sections of the beams follow.
-    tension = [np.max([beam.stress_tension[:, 0] for beam in beams], axis=0)[:, None]] if beams else []
-    compression = [np.min([beam.stress_compression[:, 0] for beam in beams], axis=0)[:, None]] if beams else []
-    tension += [beam.stress_tension for beam in beams]
-    compression += [beam.stress_compression for beam in beams]
-    unknown = np.full((len(response.time), 1), math.nan)
-    strengths = {beam.yield_strength for beam in beams}
-    loads = Loads(
-        stations=np.arange(float(1 + sum(beam.stress_tension.shape[1] for beam in beams))),
-        force=response.ground_force[:, None],
-        moment=response.ground_moment[:, None],
-        section_force=response.ground_force[:, None],
-        section_moment=response.ground_moment[:, None],
-        stress_tension=np.concatenate(tension, axis=1) if beams else unknown,
-        stress_compression=np.concatenate(compression, axis=1) if beams else unknown,
-        acceleration=felt[-1][:, None],
-        yield_strength=strengths.pop() if len(strengths) == 1 and solid is None else None,
-    )
-    return Response(
-        name=response.name,
-        environment=response.environment,
-        model="system",
-        outcome=response.outcome,
-        scale=response.scale,
-        message=response.message,
-        time=response.time,
-        stations=np.arange(float(len(response.points))),
-        points=response.points,
-        displacement=response.place - response.assembly.undeformed,
-        point_acceleration=np.stack(felt, axis=1),
-        q=response.q,
-        qd=response.qd,
-        base=response.base,
-        peaks=Peaks(nothing, nothing, nothing),
-        integrator=response.integrator,
-        step=response.step,
-        steps=response.steps,
-        error_estimate=response.error_estimate,
-        residual_from=response.residual_from,
-        loads=loads,
-        solid=solid,
-        axes=response.axes,
-        envelope=response.assembly.undeformed,
-        kept_every=response.kept_every,
-    )
-
-
-def _together(response: SystemResponse) -> SolidStress:
-    """Stress of the worst mesh, with the history of the largest of all bodies; a margin on yield only without beams."""
-    solids, beams = response.solids.values(), [beam.loads.stress.max(axis=1) for beam in response.beams.values()]
-    worst = max(solids, key=lambda solid: solid.worst.von_mises)
-    known = all(solid.known for solid in solids)
-    near = [solid.nearest_yield for solid in solids if solid.nearest_yield is not None and not beams and known]
-    return replace(
-        worst,
-        known=known,
-        von_mises=np.max([*(solid.von_mises for solid in solids), *beams], axis=0),
-        nearest_yield=min(near, key=lambda point: point.margin or math.inf, default=None),
-    )
-
 
 ALIKE = 1e-3  # of the displacement by a mode: two modes that differ by less count as equal
 

@@ -1,0 +1,215 @@
+"""Quantities of a response by which two runs of a specimen are compared."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.imitation.accounting import points_of
+from gbeam.arrays.types import Flags, Floats
+from gbeam.errors import InputError
+from gbeam.guards.checks import index_of
+from gbeam.mechanics.tree.system import ROOT
+from gbeam.numerics.peaks import maxima, near_maxima, seven_point, vector_peaks
+from gbeam.results.body_response import BodyResponse
+from gbeam.results.parts import Base, Extremes, Loads, VectorPeaks
+from gbeam.results.response import Response
+from gbeam.results.solids import SolidStress
+
+Peak = tuple[float, float]  # value and time, s; NaN where unknown
+UNKNOWN = math.nan, math.nan
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """Displacements (t, p, 3) m of a specimen's points from their undeformed places relative to the base, absolute
+    accelerations (t, p, 3) m/s² of them, and force and moment (t, 3) of the `root` on the base, in the base's axes;
+    None where a run has no loads. `ends` are the places (3,) m, by name, at one of which the load is largest, `corners`
+    (c, 3) those beside the root. `body` is the only one, where the base holds it by its root.
+    """
+
+    response: Response
+    base: Base
+    points: tuple[str, ...]
+    displacement: Floats
+    acceleration: Floats | None
+    root: tuple[Floats, Floats] | None
+    ends: Mapping[str, Floats]
+    corners: Floats
+    body: BodyResponse | None = None
+
+    @classmethod
+    def of(cls, where: str, response: Response) -> Quantities:
+        """Quantities of a response, given as the argument `where`; InputError if the ground rests, or loads are lacking
+        where joints move the bodies.
+        """
+        jointed = len(response.coordinates) > sum(body.q.shape[1] for body in response.bodies.values())
+        if response.base is None or ((response.several or jointed) and response.assembly is None):
+            fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
+            raise InputError(where, "is on a ground at rest, or without loads", fix)
+        if response.several or jointed:
+            return cls._of_points(response, response.base)
+        body, loads = response.body, response.body.loads
+        length = float(body.stations[-1])
+        return cls(
+            response,
+            response.base,
+            body.points,
+            body.displacement,
+            body.acceleration,
+            None if loads is None else (loads.section_force[:, 0], loads.section_moment[:, 0]),
+            points_of(length, body.masses, body.envelope),
+            body.envelope if len(body.envelope) else np.array([[length, 0.0, 0.0]]),
+            body,
+        )
+
+    @classmethod
+    def _of_points(cls, response: Response, base: Base) -> Quantities:
+        """Quantities of a response of several bodies, or of one on a joint, by its points."""
+        from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of one body needs
+
+        assert response.assembly is not None
+        undeformed, turns = response.assembly.undeformed, np.roll(response.attitude, -1, axis=-1)
+        felt = Rotation.from_quat(turns.reshape(-1, 4)).apply(response.acceleration.reshape(-1, 3))
+        return cls(
+            response,
+            base,
+            response.points,
+            response.place - undeformed,
+            felt.reshape(response.acceleration.shape),
+            (response.ground_force, response.ground_moment),
+            points_of(0.0, np.empty((0, 3)), undeformed),
+            undeformed,
+        )
+
+    @property
+    def farthest(self) -> str:
+        """Point whose displacement is compared where none is named: empty for the tip of the only body, else the one
+        that moves farthest from its place at the start.
+        """
+        return "" if self.body is not None else self.points[int(self.response.largest.argmax())]
+
+    def index(self, where: str, point: str) -> int:
+        """Return the number of a named point, with or without the name of the only body, the last where it is empty;
+        InputError at the keyword `where` if there is none.
+        """
+        if not point:
+            return self.displacement.shape[1] - 1
+        only = [f"{name}." for name in self.response.bodies if len(self.response.bodies) == 1]
+        known = [each for name in only for each in (name + point, point.removeprefix(name)) if each in self.points]
+        return index_of(where, point if point in self.points else next(iter(known), point), self.points)
+
+    def peaks(self, part: slice | Flags, point: int) -> dict[str, Peak]:
+        """Largest sizes over a part of the times, between steps, and their times, by name; `point` is that of "tip"."""
+        time, known = self.response.time[part], self._known(point)
+        histories = {"tip": self.displacement[:, point]} if self.response.q.shape[1] else {}  # a rigid tip stays
+        histories |= {} if self.root is None else dict(zip(("root_force", "root_moment"), self.root, strict=True))
+        found = dict.fromkeys(("root_force", "root_moment"), UNKNOWN)
+        for name, vectors in histories.items():
+            peak = _within(time, known[name].size) if name in known else None
+            found[name] = peak or _first(*vector_peaks(time, vectors[part]))
+        return found | {"stress": max(self._stresses(time, part), key=_by_size, default=UNKNOWN)}
+
+    def _known(self, point: int) -> dict[str, VectorPeaks]:
+        """Peaks over all steps, by name, that the response has; `point` is that of "tip"."""
+        if self.body is None:
+            most = self.response.maxima
+            return {} if most is None else {"root_force": most.ground_force, "root_moment": most.ground_moment}
+        moved, loads = self.body.peaks.displacement, self.body.peaks.loads
+        known = {} if moved is None else {"tip": moved[point]}
+        return known if loads is None else known | {"root_force": loads.root_force, "root_moment": loads.root_moment}
+
+    def _stresses(self, time: Floats, part: slice | Flags) -> Iterator[Peak]:
+        """Yield the largest stress of each body that has one, over a part of the times (t,), s."""
+        for body in self.response.bodies.values():
+            solid, loads = body.solid, sections_of(body)
+            if solid is not None:
+                yield largest(time, solid.von_mises[part, None]) if solid.known else UNKNOWN
+            elif loads is not None and body.peaks.loads is not None:
+                stress = body.peaks.loads.stress
+                worst = int(np.argmax(stress.value))
+                yield _within(time, stress, worst) or largest(
+                    time, np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
+                )
+
+    @property
+    def root_stress(self) -> Floats:
+        """Largest normal stress at the roots of bodies with sections, (t,) Pa; NaN without any."""
+        roots = [loads.stress[:, 0] for loads in map(sections_of, self.response.bodies.values()) if loads is not None]
+        return np.max(roots, axis=0) if roots else np.full(len(self.response.time), math.nan)
+
+    @property
+    def yield_strength(self) -> float | None:
+        """Yield strength of the bodies with sections, Pa; None where they differ, or there are others with stress."""
+        strengths = {loads.yield_strength for loads in map(sections_of, self.response.bodies.values()) if loads}
+        return strengths.pop() if len(strengths) == 1 and not solids_of(self.response) else None
+
+    @property
+    def margin(self) -> float | None:
+        """Least margin on yield of the materials of solids; None where that of a body is not known."""
+        solids = solids_of(self.response)
+        if not all(solid.known for solid in solids) or any(map(sections_of, self.response.bodies.values())):
+            return None
+        near = [solid.nearest_yield.margin for solid in solids if solid.nearest_yield is not None]
+        return min((margin for margin in near if margin is not None), default=None)
+
+    def stress_at(self, where: str, point: str) -> Floats | None:
+        """Return the stress (t,) Pa at a named point, von Mises of a mesh, normal of a beam; None if the point is of
+        neither; InputError at the keyword `where` if there is no such point.
+        """
+        solid, loads, k = self.stressed(where, point)
+        if solid is not None:
+            return solid.point_von_mises[:, k]
+        return None if loads is None else loads.stress[:, k]
+
+    def stressed(self, where: str, point: str) -> tuple[SolidStress | None, Loads | None, int]:
+        """Return the stress of the solid, or the loads of the sections, of the body that a named point belongs to, else
+        None, and the point's number there; InputError at the keyword `where` if there is no such point.
+        """
+        body, name = self.body, self.points[self.index(where, point)]
+        if body is None:
+            owner, _, name = name.partition(".")
+            body = self.response.bodies.get(owner)
+        if body is not None and body.solid is not None:
+            return (body.solid, None, body.solid.points.index(name)) if name in body.solid.points else (None, None, 0)
+        loads = None if body is None else sections_of(body)
+        names = () if body is None else (ROOT, *body.points)
+        return (None, loads, names.index(name)) if name in names else (None, None, 0)
+
+
+def sections_of(body: BodyResponse) -> Loads | None:
+    """Loads of a body that has sections; None of other bodies, and without loads."""
+    return None if body.loads is None or body.loads.fibre is None else body.loads
+
+
+def solids_of(response: Response) -> list[SolidStress]:
+    """Stresses of solids."""
+    return [body.solid for body in response.bodies.values() if body.solid is not None]
+
+
+def largest(time: Floats, values: Floats) -> Peak:
+    """Largest of histories (t, k), known at samples alone, between them, and its time; NaN if one is not known."""
+    if not np.isfinite(values).all():
+        return UNKNOWN
+    return _first(*maxima(time, values, *seven_point(time, values, near_maxima(time, values))))
+
+
+def _within(time: Floats, extremes: Extremes, k: Any = ()) -> Peak | None:
+    """A peak of all a run, the `k`-th of several, if it is known and lies in the part with times (t,), s."""
+    value, when = float(extremes.value[k]), float(extremes.time[k])
+    return (value, when) if np.isfinite(value) and time[0] <= when <= time[-1] else None
+
+
+def _first(values: Floats, times: Floats) -> Peak:
+    """Largest of values (k,), with its time."""
+    most = int(np.argmax(values))
+    return float(values[most]), float(times[most])
+
+
+def _by_size(peak: Peak) -> float:
+    """Key of peaks by their sizes; one that is unknown may be the largest."""
+    return math.inf if math.isnan(peak[0]) else peak[0]
