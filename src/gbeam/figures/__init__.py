@@ -5,14 +5,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from typing import Any, get_args, get_origin
 
 from gbeam.errors import InputError
-from gbeam.figures import imitation, response, steady, studies, systems
+from gbeam.figures import bodies, imitation, machine, response, steady, studies
 from gbeam.figures.description import Figure
 from gbeam.printable import closest
+from gbeam.results.body_response import BodyResponse
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.equilibrium import Critical, CriticalMap, Rest
@@ -38,8 +39,8 @@ _OF: dict[type[Figured[Any]], tuple[Callable[..., Figure], ...]] = {
     Fit: (studies.fit,),
     Optimum: (studies.optimum,),
     ShapedCommand: (studies.shaping, studies.robustness),
-    SolidStress: (systems.stress,),
-    SpecimenLoads: (systems.specimen,),
+    SolidStress: (bodies.stress,),
+    SpecimenLoads: (bodies.specimen,),
 }
 
 
@@ -79,8 +80,6 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"critical": partial(steady.critical, result, title)} if len(result.followed) else {}
         case Sweep():
             return _of_sweep(result, title)
-        case SystemResponse():
-            return _of_system(result, title)
         case Modes() if not len(result.frequency):
             return {}
         case Sensitivity():
@@ -101,26 +100,6 @@ def figure_names(kind: type[Figured[Any]]) -> tuple[str, ...]:
 def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
     """Figures of several results of one kind, each with the name of its motion."""
     return {f"{kind} {name}": describe for name, described in named.items() for kind, describe in described.items()}
-
-
-def _of_system(result: SystemResponse, title: str) -> dict[str, Describe]:
-    """Functions that describe the figures of a system, of what its response holds, by name."""
-    described: dict[str, Describe] = {}
-    if result.largest.any() or not named(result):
-        described["points"] = partial(systems.points, result, title)
-    if named(result):
-        described["coordinates"] = partial(systems.coordinates, result, title)
-    if result.readings is not None:
-        described["sensors"] = partial(response.sensors, result, result.readings, title)
-    if result.loop is not None:
-        described["loop"] = partial(systems.loop, result, title)
-    described |= {f"loads {body}": partial(systems.loads, result, body, title) for body in result.beams}
-    described |= {f"stress {body}": partial(systems.stress, each, title) for body, each in result.solids.items()}
-    if result.axes is not None:
-        described |= _of_machine(result, result.axes, title)
-    if result.invariants is not None:
-        described["energy"] = partial(systems.energy, result, title)
-    return described
 
 
 def _of_rests(rests: Sequence[Rest], title: str = "") -> dict[str, Describe]:
@@ -149,32 +128,58 @@ def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
     return described | {f"{name} history": partial(studies.history, result, name, title) for name in result.histories}
 
 
-def _of_machine(result: Response | MachinePlan | SystemResponse, axes: AxesResult, title: str) -> dict[str, Describe]:
+def _of_machine(result: Response | MachinePlan, axes: AxesResult, title: str) -> dict[str, Describe]:
     """Figures of a machine: tracking of the load, and rate, acceleration and, if known, jerk of its axes."""
     quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
     return {
-        "tracking": partial(response.tracking, result, axes, title),
-        **{f"axes_{each}": partial(response.axes_of, result, axes, each, title) for each in quantities},
+        "tracking": partial(machine.tracking, result, axes, title),
+        **{f"axes_{each}": partial(machine.axes_of, result, axes, each, title) for each in quantities},
     }
 
 
 def _of_response(result: Response, title: str) -> dict[str, Describe]:
-    """Functions that describe the figures of a response but for its tip, of what it holds, by name."""
+    """Functions that describe the figures of a response but for its tips, of what it holds, by name."""
     described: dict[str, Describe] = {}
-    if result.specimen is not None:
-        described["specimen"] = partial(systems.specimen, result.specimen, title)
-    described["base"] = partial(response.base, result, title)
+    turning = result.hub is not None and result.base is None  # freely: the hub's figure has its coordinate
+    joints = {} if turning else named(result)
+    if result.several and (result.largest.any() or not joints):
+        described["points"] = partial(response.points, result, title)
+    if joints:
+        described["coordinates"] = partial(response.coordinates, result, joints, title)
+    base = next((each.base for each in result.bodies.values()), None) if turning else result.base
+    if base is not None:
+        described["base"] = partial(response.base, result, base, title)
     if result.readings is not None:
         described["sensors"] = partial(response.sensors, result, result.readings, title)
-    if result.loads is not None and result.specimen is None:
-        described["loads"] = partial(response.loads, result, result.loads, title)
+    if result.loop is not None:
+        described["loop"] = partial(response.loop, result, result.loop, title)
+    for name, body in result.bodies.items():
+        of_body = _of_body(result, name, body, title)
+        described |= {_named(kind, name, result.bodies): describe for kind, describe in of_body.items()}
     if result.axes is not None:
         described |= _of_machine(result, result.axes, title)
     if result.hub is not None:
         described["hub"] = partial(response.hub, result, result.hub, title)
-    if result.solid is not None:
-        described["stress"] = partial(systems.stress, result.solid, title)
+    if result.invariants is not None:
+        described["energy"] = partial(response.energy, result, result.invariants, title)
     return described
+
+
+def _of_body(result: Response, name: str, body: BodyResponse, title: str) -> dict[str, Describe]:
+    """Figures of one body of a response: loads of a rigid specimen; or loads of its root, and stress of a mesh."""
+    if body.specimen is not None:
+        return {"specimen": partial(bodies.specimen, body.specimen, title)}
+    described: dict[str, Describe] = {}
+    if body.loads is not None:
+        described["loads"] = partial(bodies.loads, result, name, title)
+    if body.solid is not None:
+        described["stress"] = partial(bodies.stress, body.solid, title)
+    return described
+
+
+def _named(kind: str, body: str, names: Collection[str]) -> str:
+    """Name of a figure of a body, with that of the body where there are several."""
+    return f"{kind} {body}" if len(names) > 1 else kind
 
 
 def _of_comparison(result: Comparison, title: str, main: str, other: str, end: str = "") -> dict[str, Describe]:
@@ -189,27 +194,31 @@ def _of_comparison(result: Comparison, title: str, main: str, other: str, end: s
 
 def _of_study(study: Study, title: str) -> dict[str, Describe]:
     """Figures of a study: the tips, the sizes of the loads, every response, and comparisons."""
-    of_each = {}
-    for name, each in study.responses.items():
-        of_each[name] = _of_response(each, title) if isinstance(each, Response) else _of_system(each, title)
-    described = _of_tips(study)
-    if sum(each.loads is not None for each in response.alone(study).values()) > 1:
-        described["sizes"] = partial(response.sizes, study)
-    return described | _by_motion(of_each) | _compared(study.comparisons, title)
+    names, described = response.bodies(study), _of_tips(study)
+    for body in names:
+        if sum(body in each.bodies and each.bodies[body].loads is not None for each in study.responses.values()) > 1:
+            described[_named("sizes", body, names)] = partial(response.sizes, study, body)
+    described |= _by_motion({name: _of_response(each, title) for name, each in study.responses.items()})
+    return described | _compared(study, title)
 
 
 def _of_tips(study: Study) -> dict[str, Describe]:
-    """The figure of the tips of a study's motions together; none of rigid specimens and of several bodies."""
-    tips = [each for each in response.alone(study).values() if each.specimen is None]
-    return {"tip": partial(response.tip, study)} if tips else {}
+    """The figure of the tip of every body in a study's motions together; none of rigid specimens."""
+    responses, names = study.responses.values(), response.bodies(study)
+    return {
+        _named("tip", body, names): partial(response.tip, study, body)
+        for body in names
+        if any(body in each.bodies and each.bodies[body].specimen is None for each in responses)
+    }
 
 
-def _compared(comparisons: Sequence[Comparison], title: str) -> dict[str, Describe]:
+def _compared(study: Study, title: str) -> dict[str, Describe]:
     """Figures of comparisons, by the names of their centrifuges."""
     described: dict[str, Describe] = {}
-    for compared in comparisons:
+    for compared in study.comparisons:
         of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")
         parts = compared.root or compared.stations or compared.mismatch
-        # Without parts a comparison is the difference that the tip's figure has.
-        described |= {name: each for name, each in of_pair.items() if parts or name.startswith("shock")}
+        # Without parts a comparison is the difference that a tip's figure has.
+        apart = parts or not any(response.at_tip(compared, body) for body in response.bodies(study))
+        described |= {name: each for name, each in of_pair.items() if apart or name.startswith("shock")}
     return described

@@ -1,9 +1,9 @@
-"""A response: its tip, what its sections carry, the motion of its base, and the machine or the hub that moves it."""
+"""A response as a whole: its tips, points and coordinates, the motion of its base, its controllers and energy."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,8 +13,8 @@ from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
     ROUNDING,
+    Dash,
     Figure,
-    Level,
     Line,
     Panel,
     Span,
@@ -24,7 +24,6 @@ from gbeam.figures.description import (
     estimated,
     imitating,
     largest,
-    limit_levels,
     moving,
     not_drawn,
     of_motion,
@@ -32,19 +31,18 @@ from gbeam.figures.description import (
     stretches,
 )
 from gbeam.printable import raised
+from gbeam.results.body_response import BodyResponse
 from gbeam.results.comparison import Comparison
-from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Base, Loads
-from gbeam.results.response import HubResult, PlotHeading, Response
+from gbeam.results.parts import Base
+from gbeam.results.response import HubResult, Response
 from gbeam.results.result import Floats
 from gbeam.results.sensors import Readings
 from gbeam.results.study import ModelStudy, Study
+from gbeam.results.system import ENERGIES, Invariants, Loop
 
-Names = tuple[tuple[str, ...], tuple[str, ...]]
-AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
-FORCES = ("axial N", "shear V_y", "shear V_z")
-MOMENTS = ("torque", "bending M_y", "bending M_z")
-SECTION, BASE = (FORCES, MOMENTS), (tuple("xyz"),) * 2  # names of components
+Coordinates = Mapping[str, tuple[Floats, str, Floats]]  # of joints: history, unit and effort by name
+COLOURS = 6
+DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
 
 
 def looks(study: Study) -> dict[str, dict[str, Any]]:
@@ -56,15 +54,23 @@ def looks(study: Study) -> dict[str, dict[str, Any]]:
     return {name: compared.get(name, FLIGHT) for name in study.responses}
 
 
-def alone(study: Study) -> dict[str, Response]:
-    """Responses of a study that are of one body, by the motion's name."""
-    return {name: each for name, each in study.responses.items() if isinstance(each, Response)}
+def bodies(study: Study) -> tuple[str, ...]:
+    """Names of the bodies of a study's responses."""
+    return tuple(dict.fromkeys(name for each in study.responses.values() for name in each.bodies))
 
 
-def tip(study: Study) -> Figure:
-    """Describe the tip's displacement along every axis in which it moves."""
-    responses, compared = alone(study), study.comparisons
-    sizes = [each.peaks.max_abs for each in responses.values()]
+def at_tip(compared: Comparison, body: str) -> bool:
+    """True if a comparison is of the tip of a body."""
+    of, _, point = (compared.point or "tip").rpartition(".")
+    return point == "tip" and of in ("", body)
+
+
+def tip(study: Study, body: str) -> Figure:
+    """Describe the displacement of a body's tip along every axis in which it moves."""
+    responses = {name: each for name, each in study.responses.items() if body in each.bodies}
+    moved = {name: each.bodies[body] for name, each in responses.items()}
+    compared = [each for each in study.comparisons if at_tip(each, body)]
+    sizes = [each.peaks.max_abs for each in moved.values()]
     axes = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
     spans = [_spans(responses, each) for each in compared]
     shaded = spans[0] if len(compared) == 1 else ()
@@ -72,15 +78,24 @@ def tip(study: Study) -> Figure:
         shaded = tuple(span for each in responses.values() for span in stretches(each.axes, each.time))
     panels = []
     for axis in axes:
-        panel = _displacement(study, axis, named=len(responses) > 1 and axis == axes[0])
+        panel = _displacement(study, moved, axis, named=len(responses) > 1 and axis == axes[0])
         panels.append(replace(panel, spans=shaded, height=1.6 if len(axes) == 1 else 1.2))
         panels += [_difference(study, each, axis, span) for each, span in zip(compared, spans, strict=True)]
     if len(panels) == 1:
         panels[0] = replace(panels[0], height=2.0)
-    errors = {name if len(responses) > 1 else "": each.error_estimate for name, each in responses.items()}
+    errors = {name if len(responses) > 1 else "": _error(each, body) for name, each in responses.items()}
     notes = (*not_drawn(axes, *sizes), *estimated(errors))
     outcomes = tuple(each.outcome for each in responses.values())
-    return Figure(study.title, "tip displacement relative to the base", tuple(panels), notes, outcomes)
+    of = f"of {body} relative to its root" if len(bodies(study)) > 1 else "relative to the base"
+    return Figure(study.title, f"tip displacement {of}", tuple(panels), notes, outcomes)
+
+
+def _error(response: Response, body: str) -> float:
+    """Estimated error of the displacement of a body, of its largest."""
+    if len(response.bodies) == 1:
+        return response.error_estimate
+    errors = response.errors
+    return dict(zip(errors.beams, errors.displacement_by_beam.tolist(), strict=False)).get(body, math.nan)
 
 
 def models(study: ModelStudy, title: str = "") -> Figure:
@@ -97,20 +112,14 @@ def models(study: ModelStudy, title: str = "") -> Figure:
     return Figure(title or study.title, subject, tuple(panels), outcomes=(study.outcome,))
 
 
-def _displacement(study: Study, axis: int, *, named: bool) -> Panel:
-    """Panel of the tip's displacement along an axis, a line for every environment."""
-    scale, unit = scale_of("m", *(each.tip[:, axis] for each in alone(study).values()))
-    lines = [
-        # A run that diverged at once is no line.
-        Line(
-            each.time,
-            scale * each.tip[:, axis],
-            name,
-            marks="joined" if len(each.time) == 1 else "",
-            **looks(study)[name],
-        )
-        for name, each in alone(study).items()
-    ]
+def _displacement(study: Study, moved: Mapping[str, BodyResponse], axis: int, *, named: bool) -> Panel:
+    """Panel of a tip's displacement along an axis, a line for every environment."""
+    scale, unit = scale_of("m", *(each.tip[:, axis] for each in moved.values()))
+    lines = []
+    for name, each in moved.items():
+        time = study.responses[name].time
+        marks = "joined" if len(time) == 1 else ""  # a run that diverged at once is no line
+        lines.append(Line(time, scale * each.tip[:, axis], name, marks=marks, **looks(study)[name]))
     return Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=named)
 
 
@@ -135,17 +144,18 @@ def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Spa
     return stretches(response.axes, response.time, compared.accounting)
 
 
-def sizes(study: Study) -> Figure:
-    """Describe the sizes of stress, root force and root moment of all environments together."""
-    loaded = {name: each for name, each in alone(study).items() if each.loads is not None}
-    kinds: tuple[tuple[str, str, Callable[[Response, Any], Floats]], ...] = (
+def sizes(study: Study, body: str) -> Figure:
+    """Describe the sizes of stress, root force and root moment of a body in all environments together."""
+    loaded = {name: each for name, each in study.responses.items() if each.bodies[body].loads is not None}
+    kinds: tuple[tuple[str, str, Callable[[BodyResponse, Any], Floats]], ...] = (
         ("largest stress", "Pa", lambda of, its: its.stress.max(axis=1) if of.solid is None else of.solid.von_mises),
         ("root force", "N", lambda _, loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),
         ("root moment", "N m", lambda _, loads: np.linalg.norm(loads.section_moment[:, 0], axis=1)),
     )
     panels: list[Panel] = []
     for words, si, size in kinds:
-        values = {name: (each.time, size(each, each.loads)) for name, each in loaded.items()}
+        of = {name: each.bodies[body] for name, each in loaded.items()}
+        values = {name: (loaded[name].time, size(each, each.loads)) for name, each in of.items()}
         known = {name: each for name, each in values.items() if np.isfinite(each[1]).any()}
         scale, unit = scale_of(si, *(each for _, each in known.values()))
         look = looks(study)
@@ -153,72 +163,84 @@ def sizes(study: Study) -> Figure:
         if lines:
             panels.append(Panel(f"{words}, {unit}", lines, zero=True, named=not panels))
     stress = " and largest stress anywhere" if len(panels) == len(kinds) else ""
-    return Figure(study.title, f"sizes of the loads at the root{stress}", tuple(panels))
+    of_body = f" of {body}" if len(bodies(study)) > 1 else ""
+    return Figure(study.title, f"sizes of the loads at the root{of_body}{stress}", tuple(panels))
 
 
-def carried_along(loads: Loads) -> tuple[Panel, ...]:
-    """Loads of the sections at one time, along the beam."""
-    scale, unit = scale_of("m", loads.stations)
-    stress = (loads.stress_tension[0], loads.stress_compression[0])
-    panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
-    return tuple(replace(each, x=f"position from the root, {unit}") for each in panels)
-
-
-def loads(response: Response, carried: Loads, title: str = "") -> Figure:
-    """Describe over time what the root, or the base of a solid, carries, the extreme stresses, and a hub's torque."""
-    beam = response.point_acceleration is None  # which only the loads of a beam have
-    panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
-    if carried.beam_torque is not None:
-        scale, unit = scale_of("N m", carried.beam_torque)
-        panels.append(Panel(f"torque from the hub, {unit}", (Line(response.time, scale * carried.beam_torque),)))
-    spans = stretches(response.axes, response.time)
-    words = (
-        "loads in the root's section, and stress anywhere along the beam" if beam else "loads on the base, base axes"
+def points(response: Response, title: str = "") -> Figure:
+    """Describe the displacement of every point from its place at the start along the axes of the ground."""
+    moved = response.place - response.place[0]
+    scale, unit = scale_of("m", moved)
+    axes = moving(moved)
+    panels = tuple(
+        Panel(
+            f"{'xyz'[i]}, {unit}",
+            tuple(
+                Line(
+                    response.time,
+                    scale * moved[:, k, i],
+                    response.points[k],
+                    colour=n % COLOURS,
+                    dash=DASHES[n // COLOURS % len(DASHES)],
+                )
+                for n, k in enumerate(_moving(moved))
+            ),
+            zero=True,
+            named=i == axes[0],
+        )
+        for i in axes
     )
-    subject = of_motion(response.name, words)
-    shaded = tuple(replace(each, spans=spans) for each in panels)
-    return Figure(title, subject, shaded, judged(response.errors, carried), (response.outcome,))
+    subject = of_motion(response.name, "displacement of the points from the start, axes of the ground")
+    notes = (*not_drawn(axes, moved), *estimated({"": response.errors.place.total}))
+    return Figure(title, subject, panels, notes, (response.outcome,))
 
 
-def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
-    """Loads of the root's section over time, and the extreme stresses along the beam."""
-    stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
-    return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried, names)
+def _moving(moved: np.ndarray) -> list[int]:
+    """Indices of the points that move; of points that move alike only the first."""
+    size = np.abs(moved).max(initial=0.0)
+    chosen: list[int] = []
+    for k in range(moved.shape[1]):
+        distances = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
+        if np.abs(moved[:, k]).max(initial=0.0) > ROUNDING * size and min(distances, default=np.inf) > ROUNDING * size:
+            chosen.append(k)
+    return chosen
 
 
-def judged(errors: Any, carried: Loads) -> tuple[str, ...]:
-    """Notes on the estimated errors of loads and, where it is known, stress."""
-    known = bool(np.isfinite(carried.stress).all())
-    stress = (errors.stress.total, errors.stress.peak) if known else (math.nan,) * 2
-    parts = ("loads", "their peaks", "stress", "its peaks"), (errors.loads.total, errors.loads.peak, *stress)
-    return estimated(dict(zip(*parts, strict=True)))
+def coordinates(response: Response, histories: Coordinates, title: str = "") -> Figure:
+    """Describe joints' coordinates, by name each with its unit, and the efforts of their drives."""
+    panels = []
+    size = max((np.abs(history).max(initial=0.0) for history, *_ in histories.values()), default=0.0)
+    for name, (history, unit, effort) in histories.items():
+        if 0 < np.abs(history).max(initial=0.0) <= ROUNDING * size:  # rounding
+            continue
+        panels.append(Panel(f"{name}, {unit}", (Line(response.time, history),)))
+        if np.any(effort):
+            scale, unit = scale_of("N" if unit == "m" else "N m", effort)
+            panels.append(Panel(f"drive, {unit}", (Line(response.time, scale * effort),), zero=True))
+    subject = of_motion(response.name, "coordinates of the joints")
+    return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
 
 
-def _carried(
-    where: Floats,
-    force: Floats,
-    moment: Floats,
-    stress: tuple[Floats, Floats],
-    carried: Loads,
-    names: Names = SECTION,
-) -> Iterator[Panel]:
-    """Panels of forces and moments (k, 3) over `where` (k,) and, if known, of the largest and smallest stress (k,)."""
-    lever = largest(force) * float(np.max(carried.stations, initial=0.0))
-    moment = np.where(np.abs(moment) <= ROUNDING * lever, 0.0, moment)  # what is no number stays a gap
-    for kind, si, values, labels in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
-        scale, unit = scale_of(si, values)
-        yield components(where, scale * values, labels, Panel(f"{kind}, {unit}", zero=True))
-    if np.isfinite(carried.stress).all():
-        scale, unit = scale_of("Pa", *stress)
-        lines = [Line(where, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
-        strength = math.inf if carried.yield_strength is None else carried.yield_strength
-        levels = limit_levels(scale * strength, scale * np.concatenate(stress), "yield strength")
-        yield Panel(f"stress, {unit}", tuple(lines), levels=levels)
+def loop(response: Response, control: Loop, title: str = "") -> Figure:
+    """Describe measurements and commands of the controllers, as asked for and as applied."""
+    panels = [
+        Panel(f"{name.rpartition(': ')[2]}, {raised(unit)}", (Line(response.time, control.measured[:, k]),))
+        for k, (name, unit) in enumerate(zip(control.measurements, control.units, strict=True))
+    ]
+    for k, (name, unit) in enumerate(zip(control.drives, control.drive_units, strict=True)):
+        asked, applied = control.asked[:, k], control.applied[:, k]
+        scale, unit = scale_of(unit, asked, applied)
+        lines = (
+            Line(response.time, scale * asked, "asked for", colour=REFERENCE, dash="dashed"),
+            Line(response.time, scale * applied, "applied"),
+        )
+        panels.append(Panel(f"{name}, {unit}", lines, zero=True))
+    return Figure(title, of_motion(response.name, "controllers"), tuple(panels), outcomes=(response.outcome,))
 
 
-def base(response: Response, title: str = "") -> Figure:
-    """Describe the motion of the root."""
-    motion, panels = response.base, []
+def base(response: Response, motion: Base, title: str = "") -> Figure:
+    """Describe the motion of the base."""
+    panels = []
     spans = stretches(response.axes, response.time)
     turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
     for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if turning else ("a_WO_B",):
@@ -245,92 +267,17 @@ def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
 def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
     """Describe the turning of a hub about z."""
     shown = [(f"{field}, {declared(HubResult, field)[1]}", getattr(motion, field)) for field in ("angle", "rate")]
-    torque = motion.drive_torque
-    if torque is None and response.loads is not None:
-        torque = response.loads.drive_torque
-    if torque is not None:
-        scale, unit = scale_of("N m", torque)
-        shown.append((f"drive torque, {unit}", scale * torque))
+    if motion.drive_torque is not None:
+        scale, unit = scale_of("N m", motion.drive_torque)
+        shown.append((f"drive torque, {unit}", scale * motion.drive_torque))
     panels = tuple(Panel(label, (Line(response.time, values),)) for label, values in shown)
     return Figure(title, of_motion(response.name, "the hub, about z"), panels, outcomes=(response.outcome,))
 
 
-def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str = "") -> Figure:
-    """Describe one quantity of a centrifuge's axes, a panel for each axis, with its limits."""
-    history: Floats = getattr(axes, quantity)
-    unit = raised(declared(AxesResult, quantity)[1])
-    allowed = {use.axis: use.allowed for use in axes.limits if use.quantity == quantity}
-    spans, panels = stretches(axes, response.time), []
-    for i in range(3):
-        limit = allowed.get(f"axis {i + 1}", math.inf)
-        levels = limit_levels(limit, history[:, i])
-        beyond = ", beyond the panel" if math.isfinite(limit) and not levels else ""
-        title_of = f"{AXES[i]}: {_used(history[:, i], limit, unit)}{beyond}"
-        lines = (Line(response.time, history[:, i], **imitating(0)),)
-        panels.append(Panel(f"{quantity}, {unit}", lines, title_of, levels=levels, spans=spans, zero=True))
-    if quantity == "acceleration":
-        panels[0] = _with_power(panels[0], axes)
-    subject = of_motion(response.name, f"{quantity} of the machine's axes")
-    return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))
-
-
-def _with_power(panel: Panel, axes: AxesResult) -> Panel:
-    """Add the arm's acceleration that a limit on its power leaves at its rate."""
-    (line,) = panel.lines
-    rate, size = np.abs(axes.rate[:, 0]), np.abs(line.y)
-    most = max([float(size.max()), *(abs(each.value) for each in panel.levels)])
-    for use in axes.limits:
-        if use.quantity == "power" and math.isfinite(use.allowed) and use.used > 0:
-            available = float((rate * size).max()) / use.share / np.maximum(rate, 1e-12)
-            bound = np.where(available < 1.3 * most, available, np.nan)
-            power = Line(line.x, bound, "limit of the power", colour=REFERENCE, dash="dotted")
-            panel = replace(panel, lines=(*panel.lines, power, replace(power, y=-bound, label=f"_{power.label}")))
-    return panel
-
-
-def _used(history: Floats, limit: float, unit: str) -> str:
-    """Use of a limit, in words."""
-    used = float(np.nanmax(np.abs(history)))
-    return f"{_plain(used)} of {_plain(limit)} {unit}" if math.isfinite(limit) else f"up to {_plain(used)} {unit}"
-
-
-def _plain(value: float) -> str:
-    """Three digits, below a million without an exponent."""
-    rounded = float(f"{value:.3g}")
-    return f"{rounded:.0f}" if 1000 <= rounded < 1e6 else f"{rounded:g}"
-
-
-def tracking(response: PlotHeading, axes: AxesResult, title: str = "") -> Figure:
-    """Figure of the load at the control point over time: size and components, target, machine's and flight's."""
-    components = moving(axes.actual, axes.reference)  # those that are not negligible
-    time = response.time
-    scale, unit = scale_of("m/s^2", axes.reference)
-    loads: list[tuple[Floats, Floats, str, dict[str, Any]]] = [
-        (time, axes.reference, "target", {"colour": REFERENCE, "dash": "dashed"}),
-        (time, axes.actual, "machine", imitating(0)),
-    ]
-    if axes.flight is not None:
-        near = 1e-9 * (time[-1] - time[0])
-        flown = (time >= axes.span[0] - near) & (time <= axes.span[1] + near)
-        loads.insert(0, (time[flown], axes.flight[flown], "flight", FLIGHT))
-    size = tuple(Line(times, scale * np.linalg.norm(load, axis=1), name, **look) for times, load, name, look in loads)
-    idle = (Level(scale * axes.idle, "idle", "dotted"),) if axes.idle > 0 else ()
-    panels = [Panel(f"size, {unit}", size, levels=idle, zero=True)]
-    for i in components:
-        lines = tuple(Line(times, scale * load[:, i], name, **look) for times, load, name, look in loads)
-        panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, named=False, height=0.8))
-    panels.append(_error(time, axes, scale, unit))
-    spans = stretches(axes, time)
-    about = of_motion(response.name, "load at the control point: flight's, the target and the machine's")
-    return Figure(title, about, tuple(replace(each, spans=spans) for each in panels), outcomes=(response.outcome,))
-
-
-def _error(time: Floats, axes: AxesResult, scale: float, unit: str) -> Panel:
-    """Panel of the tracking error, in the unit of the loads, scaled to the times that are followed."""
-    error, followed = axes.tracking_error, ~axes.not_followed
-    ends = ends_of(followed, scale * error)
-    # Below a millionth of the load it is rounding, and shown as none.
-    top = max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest(axes.reference)) or 1.0
-    title = f"size of machine − target{', scaled to the times that are followed' if ends else ''}"
-    line = Line(time, scale * error, "machine − target", **imitating(0))
-    return Panel(f"tracking error, {unit}", (line,), title, limits=(0.0, top), named=False, height=0.8)
+def energy(response: Response, invariants: Invariants, title: str = "") -> Figure:
+    """Describe kinetic and elastic energy, that of gravity, and their sum."""
+    parts = invariants.energy
+    lines = [Line(response.time, parts[:, k], name, colour=k) for k, name in enumerate(ENERGIES)]
+    lines.append(Line(response.time, parts.sum(axis=1), "whole", colour=len(ENERGIES), dash="dashed"))
+    panel = Panel("energy, J", tuple(lines))
+    return Figure(title, of_motion(response.name, "energy"), (panel,), outcomes=(response.outcome,))

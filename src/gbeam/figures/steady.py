@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gbeam.figures.bodies import carried_along, judged
 from gbeam.figures.description import (
     FLIGHT,
     GREY,
@@ -31,7 +32,6 @@ from gbeam.figures.description import (
     scale_of,
     scaled,
 )
-from gbeam.figures.response import carried_along, judged
 from gbeam.results.equilibrium import BodyRest, Critical, CriticalMap, Rest
 from gbeam.results.errors import along
 from gbeam.results.modal import Campbell, Modes, near_multiples
@@ -106,7 +106,7 @@ def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
     assert carried is not None
     of = f" of {body}" if len(rest.bodies) > 1 else ""
     subject = of_motion(rest.motion, f"internal loads at rest{of}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
-    return Figure(title, subject, carried_along(carried), judged(rest.errors, carried))
+    return Figure(title, subject, carried_along(carried), judged(rest, body, carried))
 
 
 def modes(result: Modes, title: str = "") -> Figure:

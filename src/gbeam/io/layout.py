@@ -104,7 +104,7 @@ _NUMBERED = {
 }
 
 
-_OF_ALL = {"time", "mode", *_LABELLED}  # dimensions that rows by name share
+SHARED = {"time", "mode", *_LABELLED}  # dimensions that rows by name share
 
 
 def name_of(key: str, declaration: Declaration, pattern: str) -> str:
@@ -150,7 +150,7 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
             units = declaration.unit if isinstance(declaration.unit, dict) else {}
             for row, part in value.items():
                 inner = group_of(part, (), f"{row}_{part_pattern}", units.get(row, ""))
-                dims_of_row = {dim for entry in inner.variables.values() for dim in entry.dims} - _OF_ALL
+                dims_of_row = {dim for entry in inner.variables.values() for dim in entry.dims} - SHARED
                 inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in dims_of_row})
                 group.attrs.update(inner.attrs)
                 group.coordinates.update({dim: entry for dim, entry in inner.coordinates.items() if dim})

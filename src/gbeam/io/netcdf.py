@@ -12,8 +12,8 @@ import io
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -40,15 +40,13 @@ from gbeam.io.layout import (
     group_of,
     in_files,
     known,
-    known_attrs,
     labels,
     thinned,
     variable,
     whole_group,
 )
 from gbeam.results.cases import BOUNDS, ORDERS, PROBABILITY, SAMPLE, Parameter, Sweep
-from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.errors import Errors
+from gbeam.results.comparison import MachinePlan
 from gbeam.results.machine import LimitUse
 from gbeam.results.provenance import Provenance
 from gbeam.results.response import Response
@@ -60,14 +58,7 @@ def response_group(response: Response) -> Group:
     """Return what a file holds of a response."""
     group = whole_group(response)
     limits = {} if response.axes is None else limits_variables(response.axes.limits)
-    return Group(known(group.variables) | limits, group.coordinates, group.attrs | _errors(response.errors))
-
-
-def _errors(errors: Errors) -> dict[str, float | str]:
-    """Estimated errors, fractions."""
-    named = {name: asdict(getattr(errors, name)) for name in ("displacement", "loads", "stress")}
-    values = {f"error_{name}_{part}": value for name, parts in named.items() for part, value in parts.items()}
-    return known_attrs({**values, "error_note": errors.note, "error_theory": errors.causes})
+    return Group(known(group.variables) | limits, group.coordinates, group.attrs)
 
 
 def plan_group(plan: MachinePlan) -> Group:
@@ -198,11 +189,7 @@ def to_xarray(result: Any) -> Any:
 def _group(result: Result, *, every: bool) -> Group:
     """Group of a result, with the samples of histories that files keep, or with `every` one."""
     group = _GROUPS.get(type(result), whole_group)(result)
-    return (
-        thinned(group, result.kept_every)
-        if isinstance(result, (Response, SystemResponse, Comparison)) and not every
-        else group
-    )
+    return thinned(group, 1 if every else result.kept_every)
 
 
 def _study(study: Study, *, every: bool) -> dict[str, Group]:
@@ -276,11 +263,13 @@ def _stored(variables: dict[str, Any], attrs: dict[str, dict[str, Any]]) -> Stor
 
 
 _HEAD = "motion,time_s"
-_VECTORS = {  # variable, name of its columns, unit
-    "tip": ("tip", "m"),
+_OF_BODIES = {  # variable, name of its columns, unit
+    "displacement": ("tip", "m"),
     "section_force": ("root_section_force", "N"),
     "section_moment": ("root_section_moment", "N_m"),
     "root_acceleration": ("root_acceleration", "m_per_s2"),
+}
+_OF_MACHINES = {
     "load_reference": ("load_target", "m_per_s2"),
     "load_actual": ("load_made", "m_per_s2"),
     "axis_angle": ("axis_angle", "rad"),
@@ -292,34 +281,44 @@ _VECTORS = {  # variable, name of its columns, unit
 def csv_of(stored: Stored) -> str:
     """Return one line for each time of each motion, SI, base axes; what a motion does not have is empty.
 
-    Of the sections' forces, moments and stress it has those of the root, in the axes of its section: those of the beam
-    on its base, and so of another sign than root_force and root_moment elsewhere, which are those of the base.
+    Columns of a body begin with its name where there are several. Of the sections' forces, moments and stress a body
+    has those of the root, in the axes of its section: those of the beam on its base, and so of another sign than
+    root_force and root_moment elsewhere, which are those of the base.
     """
-    names = [path.split("/")[1] for path in stored.variables if path.startswith("motions/") and path.endswith("/time")]
+    paths = [path.split("/")[1:] for path in stored.variables if path.startswith("motions/")]
+    motions = [name for name, variable in paths if variable == "time"]
+    ending = "_displacement"
+    bodies = [*dict.fromkeys(each.removesuffix(ending) for _, each in paths if each.endswith(ending))]
+    before = {body: f"{body}_" if len(bodies) > 1 else "" for body in bodies}
+    vectors = {
+        f"{body}_{variable}": (f"{before[body]}{name}", unit)
+        for body in bodies
+        for variable, (name, unit) in _OF_BODIES.items()
+    } | _OF_MACHINES
     columns = [
         f"{name}_{part}_{unit}"
-        for variable, (name, unit) in _VECTORS.items()
-        for part in ("123" if variable.startswith("axis") else "xyz")
+        for variable, (name, unit) in vectors.items()
+        for part in ("123" if variable in _OF_MACHINES else "xyz")
     ]
-    lines = [",".join([_HEAD, *columns, "stress_Pa"])]
-    for name in names:
-        lines.extend(_rows(stored, name, len(columns)))
+    stresses = {f"{body}_stress": f"{before[body]}stress_Pa" for body in bodies}
+    lines = [",".join([_HEAD, *columns, *stresses.values()])]
+    for name in motions:
+        lines.extend(_rows(stored, name, vectors, stresses))
     return "\n".join(lines) + "\n"
 
 
-def _rows(stored: Stored, name: str, count: int) -> Iterator[str]:
-    """Lines of one motion: its name, the time, `count` components of vectors, and the stress of the root."""
+def _rows(stored: Stored, name: str, vectors: Iterable[str], stresses: Iterable[str]) -> Iterator[str]:
+    """Lines of one motion: its name, the time, components of vectors at the tip or the root, stress of the root."""
     place = f"motions/{name}/"
     time = stored.variables[f"{place}time"]
-    values = np.full((len(time), count + 1), np.nan)
-    for k, vector in enumerate(_VECTORS):
-        array = stored.variables.get(place + ("displacement" if vector == "tip" else vector))
-        if array is not None:
-            station = -1 if vector == "tip" else 0
-            values[:, 3 * k : 3 * k + 3] = array[:, station] if array.ndim == 3 else array
-    stress = stored.variables.get(f"{place}stress")
-    if stress is not None:
-        values[:, -1] = stress[:, 0]
+    known = {each: stored.variables.get(f"{place}{each}") for each in (*vectors, *stresses)}
+    columns = []
+    for each in vectors:
+        array = known[each]
+        array = np.full((len(time), 3), np.nan) if array is None else array
+        station = -1 if each.endswith("_displacement") else 0
+        columns.append(array[:, station] if array.ndim == 3 else array)
+    columns += [np.full((len(time), 1), np.nan) if known[each] is None else known[each][:, :1] for each in stresses]
     quoted = f'"{name}"' if "," in name or '"' in name else name
-    for t, row in zip(time, values, strict=True):
+    for t, row in zip(time, np.concatenate(columns, axis=1), strict=True):
         yield f"{quoted},{t:.9g}," + ",".join("" if np.isnan(each) else f"{each:.9g}" for each in row)

@@ -22,7 +22,6 @@ _MODULES = {
     "searches": ("Sensitivity", "Fit", "Optimum", "ShapedCommand", "Placement"),
     "steady": ("Rest", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
     "study": ("Study", "ModelStudy"),
-    "systems": ("SystemResponse",),
 }
 _TITLED = ("Study", "MachinePlan", "ModelStudy")  # in a terminal
 

@@ -59,18 +59,12 @@ def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
 
                 figures["lines"] = list(comparison_lines(answer))
             case Study():
-                from gbeam.report.study import comparison_lines, of_beam, of_machine, of_system
+                from gbeam.report.study import comparison_lines, response_lines
 
                 for name, response in answer.responses.items():
-                    sentences = of_beam(response) if isinstance(response, Response) else of_system(response)
-                    lines = [*sentences, *of_machine(response)]
-                    figures["motions"][name]["lines"] = lines
+                    figures["motions"][name]["lines"] = list(response_lines(response))
                 for entry, comparison in zip(figures["comparisons"], answer.comparisons, strict=True):
                     entry["lines"] = list(comparison_lines(comparison))
-            case SystemResponse():
-                from gbeam.report.study import of_system
-
-                figures["lines"] = list(of_system(answer))
             case Sweep():
                 figures["outcome"] = answer.state
     return figures

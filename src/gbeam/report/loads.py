@@ -1,9 +1,8 @@
-"""Tables of loads, stress and estimated errors, of motions or of the bodies of a system."""
+"""Tables of the bodies of responses and of states of rest: points, loads, stress and estimated errors."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,8 +13,27 @@ from gbeam.results.errors import ErrorEstimate
 from gbeam.results.parts import margin_words
 
 
+def several(motion: Facts) -> bool:
+    """Return True if points are on other bodies than one that deforms."""
+    bodies = motion.get("bodies", {})
+    return len(bodies) != 1 or {point.partition(".")[0] for point in motion["points"]} != {*bodies}
+
+
+def by_body(motions: Facts) -> tuple[str, Facts]:
+    """Return the head of a column, and bodies by their names in it, each with its name as `body` and its motion as
+    `of`: the motion where one body is all that there is, the body of one motion, or both.
+    """
+    rows = [(name, body, {**each, "body": body, "of": motion}) for name, motion in motions.items()
+            for body, each in motion.get("bodies", {}).items()]  # fmt: skip
+    if not any(map(several, motions.values())):
+        return "motion", {name: each for name, _, each in rows}
+    if len(motions) == 1:
+        return "body", {body: each for _, body, each in rows}
+    return "motion and body", {f"{name}, {body}": each for name, body, each in rows}
+
+
 def resting_loads(loads: Facts, row_of: str = "motion") -> Block:
-    """Table of root loads and stress at rest, a row for every `row_of`: motion, or beam of a system."""
+    """Table of root loads and stress at rest, a row for every `row_of`: motion, body or both."""
     cells = {row_of: "name", "force, N": "force", "moment, N m": "moment"}
     cells |= {"stress, MPa": "stress", "largest in": "place"}
     cells |= {"margin on yield": "least", "torque from the hub, N m": "beam_torque"}
@@ -44,9 +62,9 @@ def _at_rest(loads: Facts) -> Facts:
     }
 
 
-def loads_table(motions: Facts, row_of: str = "motion") -> Block:
-    """Table of the largest root loads and stress, a row for every `row_of`: motion, or beam of a system."""
-    rows = [{"name": name, **each["loads"]} for name, each in motions.items() if "loads" in each]
+def loads_table(bodies: Facts, row_of: str) -> Block:
+    """Table of the largest root loads and stress, a row for every `row_of`: motion, body or both."""
+    rows = [{"name": name, **each["loads"]} for name, each in bodies.items() if "loads" in each]
     cells: Columns = {
         row_of: "name",
         "root force, N": "root_force.size.max_abs",
@@ -76,16 +94,14 @@ def margin(value: float | None) -> Cell:
     return Cell(margin_words(value).removeprefix("margin on yield "), "bad" if value < 0 else "")
 
 
-def parts_tables(motions: Facts, row_of: str = "motion") -> tuple[Block, ...]:
+def parts_tables(bodies: Facts, row_of: str) -> tuple[Block, ...]:
     """Tables of the largest stress of meshes, and of the loads of rigid specimens."""
-    solids, rigid = ({n: each[key] for n, each in motions.items() if key in each} for key in ("solid", "specimen"))
-    return *stress_table(solids, row_of), *specimen_tables(rigid)
+    solids, rigid = ({n: each[key] for n, each in bodies.items() if key in each} for key in ("solid", "specimen"))
+    return *_stress_table(solids, row_of), *_specimen_tables(rigid, row_of)
 
 
-def stress_table(solids: Facts, row_of: str = "motion") -> Blocks:
-    """Tables of the largest von Mises stress of meshes, its place and the least margin, a row for every `row_of`:
-    motion, or body of a system; and what is left out of the stress.
-    """
+def _stress_table(solids: Facts, row_of: str) -> Blocks:
+    """Tables of the largest von Mises stress of meshes, its place and the least margin, and what is left out of it."""
     cells: Columns = {
         row_of: "name",
         "von Mises, MPa": "worst.von_mises",
@@ -106,46 +122,53 @@ def stress_table(solids: Facts, row_of: str = "motion") -> Blocks:
         yield Items(tuple(set(remarks.values()) if alike else (f"{name}: {each}" for name, each in remarks.items())))
 
 
-# Of the rows of `at_points`.
-READ: Columns = {
+_READ: Columns = {
     "accelerometer reads, g": "sensor.size.max_abs",
     "von Mises, MPa": "solid.von_mises",
     "strain along x, µm/m": "solid.strain",
 }
 
 
-def at_points(facts: Facts, points: Facts) -> Iterator[Facts]:
-    """Yield rows of named points (``body.point`` of systems) with the readings of their accelerometers, and the largest
-    stress and strain of a mesh.
-    """
-    for name, row in points.items():
-        body, _, point = name.rpartition(".")
-        solid = facts.get("solids", {}).get(body) if body else facts.get("solid")
-        of_solid = solid["points"].get(point) if solid else None
-        yield {"name": name, **row, "sensor": facts.get("sensors", {}).get(name), "solid": of_solid}
+def _read(motion: Facts, body: str, point: str) -> Facts:
+    """Readings of the accelerometer at a point of a body, and the largest stress and strain of a mesh there."""
+    bodies, sensors = motion.get("bodies", {}), motion.get("sensors", {})
+    short = sensors.get(point) if [*bodies] == [body] else None
+    solid = bodies.get(body, {}).get("solid", {"points": {}})
+    return {"sensor": sensors.get(f"{body}.{point}", short), "solid": solid["points"].get(point)}
 
 
-def points_table(motions: Facts) -> Block:
-    """Table of the largest values at named points, by motion; empty if there is only a tip, without a sensor."""
+def points_table(motion: Facts) -> Block:
+    """Table of the largest motions of the points of several bodies, with what is read there."""
+    residual = f"residual from {known(motion.get('residual_from')):g} s, m"
+    cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
+    rows = [each | _read(motion, *each["name"].split(".", 1)) for each in named(motion["points"])]
+    return table(rows, cells | _READ | {residual: "residual_size"}, optional=(*_READ, residual))
+
+
+def stations_table(bodies: Facts) -> Block:
+    """Table of the largest values at named stations, by motion; empty if there is only a tip, without a sensor."""
     rows = [
-        {"motion": name, **row}
-        for name, each in motions.items()
-        for row in at_points(each, {point["name"]: point for point in each["stations"] if point.get("name")})
+        {"motion": name, **station, **_read(each["of"], each["body"], station["name"])}
+        for name, each in bodies.items()
+        for station in each["stations"]
+        if station.get("name")
     ]
-    rigid = any("specimen" in each for each in motions.values())
+    rigid = any("specimen" in each for each in bodies.values())
     rows = [row for row in rows if row["sensor"] or not rigid]
     if all(row["name"] == "tip" and not row["sensor"] for row in rows):
         return Items(())
     moves = {} if rigid else {"moves by, mm": "size.max_abs"}
-    return table(rows, {"motion": "motion", "point": "name", **moves, **READ}, "Largest at named points", optional=READ)
+    return table(
+        rows, {"motion": "motion", "point": "name", **moves, **_READ}, "Largest at named points", optional=_READ
+    )
 
 
 def _place(path: str) -> Columns:
     return {f"{axis}, mm": f"{path}.{axis}:.4g" for axis in "xyz"}
 
 
-def specimen_tables(rigid: Facts) -> Blocks:
-    """Tables of the loads of rigid specimens in every motion: at the corners, on the fixture and on the bolts."""
+def _specimen_tables(rigid: Facts, row_of: str) -> Blocks:
+    """Tables of the loads of rigid specimens: at the corners, on the fixture and on the bolts."""
 
     def spread(each: Facts) -> Value:
         verdicts = {True: (", PASS", "good"), False: (", NOT ACCEPTED", "bad"), None: ("", "")}
@@ -153,7 +176,7 @@ def specimen_tables(rigid: Facts) -> Blocks:
         return Cell(f"{100 * known(each['spread']):.3g} %{words}", tone)
 
     corners: Columns = {
-        "motion": "name",
+        row_of: "name",
         "largest, g": "largest_load.size",
         **_place("largest_load.place"),
         "at, s": "largest_load.time",
@@ -163,30 +186,36 @@ def specimen_tables(rigid: Facts) -> Blocks:
         "and, N m": "moment.max_abs",
     }
     yield table(named(rigid), corners, "Load at the corners", optional=("limit",))
-    bolts = [{"motion": name, **bolt} for name, each in rigid.items() for bolt in numbered(each["bolts"])]
-    of_bolts: Columns = {"motion": "motion", "bolt": "number", **_place("place")}
+    bolts = [{"name": name, **bolt} for name, each in rigid.items() for bolt in numbered(each["bolts"])]
+    of_bolts: Columns = {row_of: "name", "bolt": "number", **_place("place")}
     of_bolts |= {f"{name}, N": name for name in ("tension", "compression", "shear")}
     yield table(bolts, of_bolts, "Largest loads of the bolts, alike and without preload", optional=("compression, N",))
 
 
-def errors(motions: Facts, bodies: Facts | None = None, more: tuple[str, ...] = ()) -> Blocks:
-    """Table of the estimated errors in every motion by their causes, `more` than those of deflection, loads and stress,
-    and sentences on what is not estimated; `bodies` tells rigid specimens, by default the motions themselves.
-    """
-    rigid = all("specimen" in each for each in (motions if bodies is None else bodies).values())
+def errors(motions: Facts) -> Blocks:
+    """Table of the estimated errors in every motion by their causes, and sentences on what is not estimated."""
     rows = [
         {"name": name, "of": quantity, **each["errors"][quantity]}
         for name, each in motions.items()
-        for quantity in (("loads",) if rigid or "specimen" in each else ("displacement", *more, "loads", "stress"))
+        for quantity in _judged(each)
         if each["errors"][quantity]["total"] is not None
     ]
     causes = {name.replace("_", " "): f"{name}:%" for name, _ in declarations(ErrorEstimate)}
     yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)
-    if not rows and not rigid:
+    if not rows and any("displacement" in _judged(each) for each in motions.values()):
         yield Sentence("no error estimate", "faint")
     for name, each in motions.items():
         if each["errors"].get("note"):
             yield Sentence(f"{name}: {each['errors']['note']}", "faint")
+
+
+def _judged(motion: Facts) -> tuple[str, ...]:
+    """Quantities whose errors are told: of loads alone where all is rigid and rests on its base."""
+    bodies = motion.get("bodies", {}).values()
+    if bodies and all("specimen" in each for each in bodies):
+        return ("loads",)
+    apart = several(motion) and motion["errors"]["place"] != motion["errors"]["displacement"]
+    return ("displacement", *(("place",) if apart else ()), "loads", "stress")
 
 
 def errors_by_body(errors: Facts) -> Block:

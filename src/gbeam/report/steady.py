@@ -29,7 +29,7 @@ from gbeam.report.blocks import (
     six,
     table,
 )
-from gbeam.report.loads import errors, errors_by_body, parts_tables, resting_loads
+from gbeam.report.loads import by_body, errors, errors_by_body, parts_tables, resting_loads, several
 from gbeam.report.words import errors_in_words, known, number, percent, tidy
 from gbeam.results.equilibrium import CriticalMap
 from gbeam.results.errors import Accelerated, along
@@ -42,43 +42,22 @@ ROUNDING = 1e-10  # a damping ratio smaller than this is none
 def rest(facts: Facts) -> Blocks:
     """Displacements of bodies and points in every motion, loads of bodies and of the ground, stress, and the errors."""
     motions = facts["motions"]
-    several = {name: each for name, each in motions.items() if _several(each)}
-    head, bodies = _by_body(motions, by_motion=not several)
+    apart = {name: each for name, each in motions.items() if several(each)}
+    head, bodies = by_body(motions)
     yield Items(tuple(f"motion {name}: {each['message']}" for name, each in motions.items() if each["message"]), "bad")
     for each in motions.values():
         yield from evenly(each)
     yield Section("View", (Place("viewer"),))
-    tips: Columns = {head: "name", "at, s": "time", "model": "model"}
+    tips: Columns = {head: "name", "at, s": "of.time", "model": "model"}
     tips |= {f"{axis}, mm": f"tip.{axis}:.6g" for axis in "xyz"}
     bending = [each for each in named(bodies) if "specimen" not in each]
-    yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(several)))
+    yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(apart)))
     loads = {name: each["loads"] for name, each in bodies.items() if "loads" in each}
-    yield Section("Loads", (resting_loads(loads, head), *parts_tables(bodies, head), *_on_ground(several)))
+    yield Section("Loads", (resting_loads(loads, head), *parts_tables(bodies, head), *_on_ground(apart)))
     if bodies:
-        more = ("place",) if several else ()
-        yield Section(
-            "Accuracy", (*errors(motions, bodies, more), *(errors_by_body(e["errors"]) for e in several.values()))
-        )
+        by_bodies = (errors_by_body(each["errors"]) for each in apart.values())
+        yield Section("Accuracy", (*errors(motions), *by_bodies))
     yield Section("Figures", (FIGURES,))
-
-
-def _several(rest: Facts) -> bool:
-    """True if points are on other bodies than one that deforms."""
-    bodies = rest.get("bodies", {})
-    return len(bodies) != 1 or {point.partition(".")[0] for point in rest["points"]} != {*bodies}
-
-
-def _by_body(motions: Facts, *, by_motion: bool) -> tuple[str, Facts]:
-    """Head of a column, and bodies that deform by their names in it: of the motion, if it is asked for, the body, or
-    both where there are several motions.
-    """
-    rows = [(name, body, each | {"time": rest["time"]}) for name, rest in motions.items()
-            for body, each in rest.get("bodies", {}).items()]  # fmt: skip
-    if by_motion:
-        return "motion", {name: each for name, _, each in rows}
-    if len(motions) == 1:
-        return "body", {body: each for _, body, each in rows}
-    return "motion and body", {f"{name}, {body}": each for name, body, each in rows}
 
 
 def _points(motions: Facts) -> Blocks:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -20,9 +20,20 @@ from gbeam.report.blocks import (
     Place,
     Section,
     Sentence,
+    named,
+    quantities,
     table,
 )
-from gbeam.report.loads import errors, loads_table, parts_tables, points_table
+from gbeam.report.loads import (
+    by_body,
+    errors,
+    errors_by_body,
+    loads_table,
+    parts_tables,
+    points_table,
+    several,
+    stations_table,
+)
 from gbeam.report.machine import (
     ends_line,
     followed,
@@ -34,15 +45,16 @@ from gbeam.report.machine import (
     tracked,
     verdict,
 )
-from gbeam.report.systems import of_points, units_in
 from gbeam.report.words import errors_in_words, known, largest_loads, number, percent, sentence, tidy
 from gbeam.results.accounting import in_g, metres, seconds
 from gbeam.results.accounting import percent as share_of
+from gbeam.results.body_response import BodyResponse
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import RULES
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.facts import facts_of
 from gbeam.results.response import Response
+from gbeam.results.result import Floats
 from gbeam.results.system import named as named_histories
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
@@ -50,45 +62,89 @@ EPISODES = 8  # of holding listed; a rough record has hundreds
 SHORTFALLS = 2
 
 
-def of_beam(response: Response) -> Iterator[str]:
-    """Yield sentences on accuracy, start, root loads, stress, hub, and the samples that a file keeps."""
-    rigid = response.specimen is not None
-    if not rigid:
+def response_lines(response: Response) -> Iterator[str]:
+    """Yield sentences on accuracy, start, joints, controllers, loads, stress, hub, energy, samples and machine."""
+    if response.coordinates:
         yield _accuracy(response)
         if response.initial:
             yield response.initial
-    if response.loads is not None and response.peaks.loads is not None and not rigid:
-        yield largest_loads(response.peaks.loads)
-    for part in (response.solid, response.specimen):
-        if part is not None:
-            yield from part.lines
+    turning = response.hub is not None and response.base is None  # freely: the hub's line has its coordinate
+    joints = {} if turning else named_histories(response)
+    if joints:
+        yield f"at the end {_at_end(response, joints)}"
+    if response.loop is not None:
+        shares = zip(response.loop.drives, response.loop.saturated, strict=True)
+        yield "; ".join(f"{drive} limited at {100 * share:.3g} % of the samples" for drive, share in shares)
+    if response.several and response.maxima is not None:
+        force, moment = response.maxima.ground_force.size, response.maxima.ground_moment.size
+        yield (
+            f"on the ground: largest force {number(float(force.value))} N at {float(force.time):.4g} s, moment "
+            f"{number(float(moment.value))} N m at {float(moment.time):.4g} s"
+        )
+    for name, body in response.bodies.items():
+        before = f"{name}: " if len(response.bodies) > 1 else ""
+        yield from (f"{before}{line}" for line in _body_lines(body))
     if response.hub is not None:
         angle, rate = response.hub.angle_end, response.hub.rate_max
         yield f"hub: angle at the end {number(angle)} rad, largest rate {number(rate)} rad/s"
-        if response.hub.free and np.any(response.damping_ratio):
-            yield _damping(response)
+        if turning and np.any(response.body.damping_ratio):
+            yield _damping(response.body)
+    if response.invariants is not None:
+        energy = response.invariants.energy
+        first, last = map(number, tidy(energy[[0, -1]].sum(axis=1).tolist(), float(np.abs(energy).max())))
+        yield f"energy {first} J at the start, {last} J at the end"
     if response.kept_every > 1:
         kept = response.time[:: response.kept_every]
         yield (
             f"a result file keeps {len(kept)} of {len(response.time)} samples of its histories, "
             f"{seconds(float(kept[1] - kept[0]))} apart; histories of [response] says otherwise"
         )
+    yield from _machine_lines(response)
+
+
+def _at_end(response: Response, joints: Mapping[str, tuple[Floats, str, Floats]]) -> str:
+    """Coordinates of joints at the end, with their units, where rounding errors are zero."""
+    size = max(float(np.abs(history).max()) for history, *_ in joints.values())
+    at_end = [float(history[-1]) for history, *_ in joints.values()]
+    scale = float(np.abs(response.place).max(initial=0.0))
+    ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))), scale)
+    units = (unit for _, unit, _ in joints.values())
+    return ", ".join(f"{name} {number(end)} {unit}" for name, end, unit in zip(joints, ends, units, strict=True))
+
+
+def _body_lines(body: BodyResponse) -> Iterator[str]:
+    """Sentences on the loads of a body's root, and on the stress of a mesh or the loads of a rigid specimen."""
+    if body.specimen is not None:
+        yield from body.specimen.lines
+        return
+    if body.loads is not None and body.peaks.loads is not None:
+        yield largest_loads(body.peaks.loads)
+    if body.solid is not None:
+        yield from body.solid.lines
 
 
 def _accuracy(response: Response) -> str:
-    """Sentence on the model, the time steps, and the estimated errors, with what they leave out."""
+    """Sentence on the models, the time steps, and the estimated errors, with what they leave out."""
+    errors, total = response.errors, response.errors.displacement.total
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
     else:
-        error = f"estimated error {errors_in_words(facts_of(response.errors.displacement))} of the largest displacement"
-        if math.isfinite(response.errors.loads.total):
-            error += f", {_of_largest(response.errors.loads, 'root load')}"
-        if response.solid is not None and math.isfinite(response.errors.stress.total):
-            error += f", {_of_largest(response.errors.stress, 'stress')}"
-        if response.point_acceleration is not None and response.errors.note:  # no beam, of which all is judged
-            link = ", of the time step alone: " if math.isnan(response.errors.displacement.shapes) else "; "
-            error += f"{link}{response.errors.note}"
-    return f"{response.model}, {response.integrator}, {response.steps_in_words}; {error}"
+        largest = "a body's largest deflection" if len(response.bodies) > 1 else "the largest displacement"
+        shares = (
+            percent(response.error_estimate) if math.isnan(total) else errors_in_words(facts_of(errors.displacement))
+        )
+        error = f"estimated error {shares} of {largest}"
+        if response.several and response.bodies and math.isfinite(errors.place.total):
+            error += f", {percent(errors.place.total)} of places"
+        if math.isfinite(errors.loads.total):
+            error += f", {_of_largest(errors.loads, 'root load')}"
+        if math.isfinite(errors.stress.total) and any(each.solid is not None for each in response.bodies.values()):
+            error += f", {_of_largest(errors.stress, 'stress')}"
+        if errors.note:
+            link = ", of the time step alone: " if math.isnan(errors.displacement.shapes) else "; "
+            error += f"{link}{errors.note}"
+    models = dict.fromkeys(each.model for each in response.bodies.values())
+    return f"{', '.join([*models, response.integrator, response.steps_in_words])}; {error}"
 
 
 def _of_largest(error: ErrorEstimate, what: str) -> str:
@@ -98,14 +154,14 @@ def _of_largest(error: ErrorEstimate, what: str) -> str:
     return f"{percent(error.peak)} of the largest {what} ({percent(error.total)} of it at any one instant)"
 
 
-def _damping(response: Response) -> str:
+def _damping(body: BodyResponse) -> str:
     """Modes that the damping ratio is of, where that is not obvious: with a free hub the beam's modes are others."""
-    ratios = np.atleast_1d(response.damping_ratio)
+    ratios = np.atleast_1d(body.damping_ratio)
     size = " to ".join(f"{100 * each:.3g}" for each in sorted({float(ratios.min()), float(ratios.max())}))
     return f"damping {size} % of critical, of the modes of the beam on a hub at rest; those with the free hub have more"
 
 
-def of_machine(response: Response) -> Iterator[str]:
+def _machine_lines(response: Response) -> Iterator[str]:
     """Sentences on how a centrifuge begins and ends, follows the load, and where it does not."""
     axes = response.axes
     if axes is None:
@@ -175,62 +231,43 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         yield f"load along the beam differs by up to {in_g(mismatch.max_acceleration[main])}{bent}{advice}"
 
 
-def of_system(response: SystemResponse) -> Iterator[str]:
-    """Yield sentences on joints, controllers, loads, stress, energy and the error."""
-    histories = named_histories(response)
-    size = max((float(np.abs(history).max()) for history, *_ in histories.values()), default=0.0)
-    at_end = [float(history[-1]) for history, *_ in histories.values()]
-    scale = float(np.abs(response.place).max(initial=0.0))
-    ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))), scale)
-    joints = ", ".join(
-        f"{name} {number(end)} {unit}" for (name, (_, unit, _)), end in zip(histories.items(), ends, strict=True)
-    )
-    yield response.initial
-    if joints:
-        yield f"at the end {joints}"
-    if response.loop is not None:
-        shares = zip(response.loop.drives, response.loop.saturated, strict=True)
-        limited = (f"{drive} limited at {100 * share:.3g} % of the samples" for drive, share in shares)
-        yield "; ".join(limited)
-    if response.peaks is not None:
-        force, moment = response.peaks.ground_force.size, response.peaks.ground_moment.size
-        yield (
-            f"on the ground: largest force {number(float(force.value))} N at {float(force.time):.4g} s, moment "
-            f"{number(float(moment.value))} N m at {float(moment.time):.4g} s"
-        )
-    yield from (f"{body}: {largest_loads(each.peaks)}" for body, each in response.beams.items() if each.peaks)
-    yield from (f"{body}: {line}" for body, each in response.solids.items() for line in each.lines)
-    invariants = response.invariants
-    if invariants is not None:
-        totals = invariants.energy[[0, -1]].sum(axis=1)
-        first, last = map(number, tidy(totals.tolist(), float(np.abs(invariants.energy).max())))
-        yield f"energy {first} J at the start, {last} J at the end"
-    error = percent(response.error_estimate)
-    accuracy = f"estimated error {error}" if math.isfinite(response.error_estimate) else "no error estimate"
-    yield f"{response.integrator}, {response.steps} steps of {1e3 * response.step:.4g} ms, {accuracy}"
-
-
 HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
 
 
 def study(facts: Facts) -> Blocks:
     """The verdicts on centrifuges, the largest displacements and loads, the machines, the errors, and all in words."""
     motions = {name: motion for name, motion in facts["motions"].items() if "environment" in motion}
-    systems = {name: motion for name, motion in motions.items() if "coordinates" in motion}
-    alone = {name: motion for name, motion in motions.items() if name not in systems}
+    head, bodies = by_body(motions)
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
-    response = _tips(alone), points_table(alone), loads_table(alone), *parts_tables(alone)
+    alone = {name: each for name, each in bodies.items() if not several(each["of"])}
+    response = _tips(bodies, head), stations_table(alone), loads_table(bodies, head), *parts_tables(bodies, head)
     yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))
-    for name, motion in systems.items():
-        points = tuple(of_points({**motion, "units": units_in(facts)}))
-        yield Section(f"motion {name}", points, titled=True, verbose=name in compared_in(facts))
+    for name, motion in motions.items():
+        if several(motion):
+            told = points_table(motion), errors_by_body(motion["errors"]), *_of_joints(motion, units_in(facts))
+            yield Section(f"motion {name}", told, titled=True, verbose=name in compared_in(facts))
     for name, motion in motions.items():
         if "limits" in motion:
             yield Section(f"Machine: {name}", (limits(motion), Sentence(followed(motion))), titled=True, detail=True)
-    yield Section("Accuracy", tuple(errors(alone)), detail=True)
+    yield Section("Accuracy", tuple(errors(motions)), detail=True)
     yield from in_words_of(facts)
+
+
+def units_in(facts: Facts) -> dict[str, str]:
+    """Return the units of the quantities of one motion, by their paths in it."""
+    return {path.removeprefix("motions.*."): unit for path, unit in facts.get("units", {}).items()}
+
+
+_TOLD = ("points", "coordinates", "bodies", "errors", "limits", "name", "environment", "message")
+
+
+def _of_joints(motion: Facts, units: dict[str, str]) -> Blocks:
+    """Coordinates of several bodies at the end, and all else, for a page only."""
+    yield table(named(motion["coordinates"]), {"coordinate": "name", "at the end, m or rad": "end"}, detail=True)
+    others = {key: value for key, value in motion.items() if key not in _TOLD}
+    yield Section("", tuple(quantities(others, units)), detail=True)
 
 
 def verdicts(facts: Facts) -> Blocks:
@@ -265,23 +302,23 @@ def in_words_of(facts: Facts) -> Blocks:
         yield from said(each, each["centrifuge"] if several else "")
 
 
-def _tips(motions: Facts) -> Block:
-    """Largest displacements of the tip along the axes in which it moves."""
+def _tips(bodies: Facts, head: str) -> Block:
+    """Largest displacements of tips along the axes in which they move, a row for every `head` and axis."""
     rows = []
-    for name, motion in motions.items():
-        sizes = {axis: known(peak["max_abs"]) for axis, peak in motion["tip"].items()}
+    for name, body in bodies.items():
+        sizes = {axis: known(peak["max_abs"]) for axis, peak in body["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
         axes = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
         shown = [axis for axis in axes if axis != "size" or len(axes) > 2]
-        rows += [{"motion": name, "axis": axis, **motion["tip"][axis]} for axis in shown]
+        rows += [{"name": name, "axis": axis, **body["tip"][axis]} for axis in shown]
     cells: Columns = {
-        "motion": "motion",
+        head: "name",
         "tip along": "axis",
         "largest, mm": "max_abs",
         "at, s": "time_of_max:.3f",
         "residual amplitude, mm": "residual_amplitude",
     }
-    caption = "Displacement of the tip relative to the base axes"
+    caption = f"Displacement of the tip relative to the {'base' if head == 'motion' else 'root'} axes"
     return table(rows, cells, caption, optional=("residual amplitude, mm",))
 
 

@@ -51,7 +51,7 @@ def largest_known(*values: float) -> float:
 class ErrorEstimate(Lacking, Part):
     """Estimated errors of one quantity, or a vector's length, as fractions of its largest; NaN where there is none."""
 
-    step: float = quantity("", "estimated error of the time steps", name=None, default=math.nan)
+    step: float = quantity("", "estimated error of the time steps", default=math.nan)
     shapes: float = quantity("", SHAPES, note="against the same model with more", default=math.nan)
     model: float = quantity("", MODEL, default=math.nan)
     beam_theory: float = quantity("", THEORY, note=SLENDER, default=math.nan)
@@ -104,16 +104,22 @@ class Errors(Part):
     displacement: ErrorEstimate = part(
         "of the displacement of a body's points relative to its root, over its largest, the largest of all bodies; of "
         "places where no body deforms",
+        name="displacement_",
         default_factory=ErrorEstimate,
     )
     place: ErrorEstimate = part(
-        "of the points' places in axes of the ground, over the largest displacement", default_factory=ErrorEstimate
+        "of the points' places in axes of the ground, over the largest displacement",
+        name="place_",
+        default_factory=ErrorEstimate,
     )
     loads: ErrorEstimate = part(
-        "of the force and moment at the root of a beam, the largest of all", default_factory=ErrorEstimate
+        "of the force and moment at the root of a beam, the largest of all",
+        name="loads_",
+        default_factory=ErrorEstimate,
     )
     stress: ErrorEstimate = part(
         "of the largest size of the normal stress over a beam's sections, the largest of all",
+        name="stress_",
         default_factory=ErrorEstimate,
     )
     beams: tuple[str, ...] = labels("beam that is judged", "judged", key="", default=())

@@ -154,7 +154,7 @@ class Mismatch(Part):
         name=None,
         note="m L³ |1/3 − ξ/2| max|gradient|",
     )
-    length: float = internal("m", "length of the beam, L")
+    length: float = fact("length of the beam, L", "m", name=None)
     best: tuple[float, float] = internal(
         "m",
         "control points with the least moment at the root, and the least displacement of the tip",

@@ -173,7 +173,9 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         "of deflections, places, root loads and stress, as fractions of the largest", name="error_",
         default_factory=Errors,
     )  # fmt: skip
-    residual_from: float = fact("start of the residual", "s", key=None, note="NaN where not given", default=math.nan)
+    residual_from: float = fact(
+        "start of the residual", "s", optional=True, note="NaN where not given", default=math.nan
+    )
     residual_amplitude: Floats | None = quantity(
         "m", "half peak-to-peak after residual_from, of a flexible body's points relative to its root, else of places",
         "point axis", frame="axes of the body's root, else of the ground", optional=True, default=None,

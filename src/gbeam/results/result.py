@@ -99,6 +99,11 @@ class Result(Value):
     )
     provenance: Provenance | None = field(default=None, repr=False)
 
+    @property
+    def kept_every(self) -> int:
+        """Number of samples of histories of which a file has one."""
+        return 1
+
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         document(cls)

@@ -44,7 +44,6 @@ PAGES = {
     "Critical": Page("critical-speed", ("quantity", "searched_to", "reason")),
     "CriticalMap": Page("critical-speed --masses", ("mass", "position", "critical_speed")),
     "Placement": Page("place", ("fraction_of_length", "options")),
-    "SystemResponse": Page("run", ("points", "coordinates", "steps")),
     "SolidStress": Page("run", ("worst", "singular_depth")),
     "SpecimenLoads": Page("run", ("corners", "bolts", "largest_load")),
     "Sweep": Page("sweep", ("parameters", "measures")),
@@ -105,9 +104,6 @@ def viewer(
     motions = facts["motions"] if kind == "Study" else {}
     if kind == "Rest":
         motions = {name: {"environment": "rest"} for name in facts["motions"]}
-    if kind == "SystemResponse":  # of one motion, alone
-        motions = {facts["name"] or facts["environment"]: facts}
-        variables = {f"motions/{name}/{key}": each for name in motions for key, each in variables.items()}
     environments = {name: each["environment"] for name, each in motions.items() if "environment" in each}
     shown = scene(environments, variables, numbers)
     return {} if shown is None else {"scene": shown}

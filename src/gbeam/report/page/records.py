@@ -9,16 +9,17 @@ from typing import Any, TypeVar
 import numpy as np
 
 from gbeam.figures import Describe, figures_of
-from gbeam.io.layout import name_of, pattern_of
+from gbeam.io.layout import SHARED, name_of, pattern_of
 from gbeam.report.page.parts import under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, records_in
+from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
 from gbeam.results.equilibrium import BodyRest, Critical
 from gbeam.results.machine import AxesResult
-from gbeam.results.measures import Mismatch, Shock
+from gbeam.results.measures import Shock
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.parts import Loads
+from gbeam.results.response import Response
 from gbeam.results.result import Figured, Floats, Result
 from gbeam.results.searches import CommandRun, Fit, FittedColumn, ShapedCommand
 from gbeam.results.study import KINDS, Study
@@ -35,7 +36,6 @@ _NEEDED = {
     "ShapedCommand": "command",
     "SolidStress": "von_mises",
     "SpecimenLoads": "acceleration",
-    "SystemResponse": "time",
 }
 
 
@@ -97,7 +97,8 @@ def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Fa
         if declaration.role == "part" and _has(inner, v, within := pattern_of(declaration, pattern)):
             return read(inner, inner_facts or {}, v, within)
         if declaration.role == "rows" and isinstance(inner_facts, dict):
-            return {row: read(inner, row_facts, {**v, **under(f"{row}_", v)}) for row, row_facts in inner_facts.items()}
+            shared = {name: v[name] for name in SHARED if name in v}
+            return {row: read(inner, known, shared | under(f"{row}_", v)) for row, known in inner_facts.items()}
     elif f"{variable}_real" in v:
         return v[f"{variable}_real"] + 1j * v[f"{variable}_imag"]
     elif declaration.role == "coordinate" or (declaration.role == "variable" and variable in v):
@@ -207,19 +208,12 @@ def _study(facts: Facts, variables: Facts) -> Study:
     for name, entry in facts["motions"].items():
         v = under(f"motions/{name}/", variables)
         if "time" in v:
-            response_kind, *_ = [kind for kind in records_in(Study, "responses") if _states(entry, kind)]
-            responses[name] = read(response_kind, entry, v, name=name)
+            responses[name] = read(Response, entry, v)
     for entry in facts["comparisons"]:
         v = under(f"comparisons/{entry['centrifuge']}/", variables)
         if "time" in v and entry["flight"] in responses:
-            stations = getattr(responses[entry["flight"]], "stations", None)
-            comparisons.append(read(Comparison, entry, v if stations is None else {"station": stations, **v}))
+            comparisons.append(read(Comparison, entry, v))
     return Study("", responses, tuple(comparisons))
-
-
-def _states(facts: Facts, kind: Any) -> bool:
-    """True if JSON has all rows that every record of a kind has."""
-    return facts.keys() >= set(kind.json_rows.values())
 
 
 def _at_rest(loads: Facts) -> Loads:
@@ -321,7 +315,6 @@ _APART: dict[type, Callable[[Facts, Facts], Facts]] = {
     BodyRest: lambda facts, _: {"loads": _at_rest(facts["loads"])} if facts.get("loads") else {},
     Fit: _fit,
     MachinePlan: lambda facts, v: {"axes": read(AxesResult, facts, v)},
-    Mismatch: lambda _, v: {"length": float(v["station"][-1]) if "station" in v else np.nan},
     Modes: _eigenvalues,
     Sensitivity: _sensitivity,
     ShapedCommand: _shaped,

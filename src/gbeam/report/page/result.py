@@ -26,7 +26,7 @@ from gbeam.results.result import Result
 from gbeam.results.study import Study
 
 # In motion, or in three dimensions.
-SHOWN = Study, Response, SystemResponse, Rest, Modes
+SHOWN = Study, Response, Rest, Modes
 _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another verb"
 
 

@@ -21,8 +21,9 @@ SURFACE = ("vertices", "triangles", "shapes", "stress", "sizes")
 BEYOND = 1e-3  # of the largest stress that is judged: more is said
 MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
 GROUND = "ground_root_acceleration"
-_PLACED = ("place", "attitude", GROUND)  # of the points of a system, and of its ground
+_PLACED = ("place", "attitude", GROUND)  # of points, and of the ground
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
+BASE = np.array([0.0, 0, 0, 1, 0, 0, 0, 0, 0, 0])  # frame of a body whose root is the origin and does not turn
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
 PERIOD = 2.0  # s, in which a mode is shown
@@ -35,62 +36,13 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
     shown = []
     for name, environment in motions.items():
         v = under(f"motions/{name}/", variables)
-        if "outline" in v:
-            shown.append((motion(name, environment, v, numbers), v["outline_time"], v["outline"]))
-        elif "surface_vertices" in v:
-            shown.append(_solid(name, environment, v, numbers))
-        elif "specimen_corner_place" in v:
-            shown.append(_rigid(name, environment, v, numbers))
-        elif "hangs_on" in v:
-            at_rest = v["place"].ndim == 2
-            shown.append(_system(name, environment, _at_once(v) if at_rest else v, numbers))
+        if "hangs_on" in v:
+            shown.append(motion(name, environment, _at_once(v) if v["place"].ndim == 2 else v, numbers))
     if not shown:
         return None
     _, time, displacement = shown[0]
     start = float(time[(displacement[:, -1] ** 2).sum(axis=-1).argmax()])
     return {"motions": [header for header, *_ in shown], "start": start}
-
-
-def motion(name: str, environment: str, variables: Variables, numbers: Numbers) -> dict[str, Any]:
-    """Header of a beam's motion: its outline, stress and load, and the turning of what carries it."""
-    get: Any = variables.get
-    index = _indices(get("time"), get("outline_time"))
-    beam = {"beam": _beam(variables, index, numbers)}
-    header = _header(name, environment, [beam], numbers.add(get("outline_time")), _largest(get("outline")))
-    header["length"] = float(get("point")[-1])
-    if (rest := get("outline_place")) is not None:
-        header |= _extent(rest, numbers)
-    reach = np.array([[float(get("point")[-1]), 0.0, 0.0]]) if rest is None else rest
-    header |= _carried(variables, index, np.concatenate([np.zeros((1, 3)), reach]), numbers)
-    if get("attitude") is not None:
-        header["attitude"] = numbers.add(get("attitude"))
-    if get("hub_radius") is not None:
-        header["radius"], header["mounting"] = float(get("hub_radius")), np.ravel(get("hub_mounting")).tolist()
-        header["angle"] = numbers.add(get("hub_angle")[index])
-    return header
-
-
-def _solid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """Header of a solid's motion; its times (t,) and the displacement (t, 1, 3) of the vertex that moves farthest."""
-    times, vertices = v["surface_time"], v["surface_vertices"]
-    surface, tip = _surface(under("surface_", v), v.get("solid_von_mises"), numbers)
-    header = _header(name, environment, [{"surface": surface}], numbers.add(times), _largest(tip))
-    header |= _around(vertices, numbers) | _carried(v, _indices(v["time"], times), vertices, numbers)
-    return header, times, tip
-
-
-def _rigid(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """Header of a rigid specimen's motion, as a box about its corners; times (t,) and root acceleration (t, 1, 3)."""
-    index = np.arange(0, len(v["time"]), -(-len(v["time"]) // TIMES))
-    corners, bolts = v["specimen_corner_place"], v.get("specimen_bolt_place", np.empty((0, 3)))
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    box = _box(high - low, (low + high) / 2, np.eye(3))
-    frames = np.zeros((len(index), 10))
-    frames[:, 3] = 1.0  # at the base and along its axes
-    body = {"frame": numbers.add(frames), "box": box, "points": np.asarray(bolts).tolist()}
-    header = _header(name, environment, [body], numbers.add(v["time"][index]), 0.0)
-    header |= _around(np.concatenate([corners, bolts]), numbers) | _carried(v, index, corners, numbers)
-    return header, v["time"][index], v["root_acceleration"][index, None]
 
 
 def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: float) -> dict[str, Any]:
@@ -101,13 +53,6 @@ def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: f
 def _indices(time: Floats, some: Floats) -> Any:
     """Indices of `some` of the times in `time`."""
     return np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)
-
-
-def _around(places: Floats, numbers: Numbers) -> dict[str, Any]:
-    """Length, and middle and radius of the view, of places (p, 3)."""
-    low, high = places.min(axis=0), places.max(axis=0)
-    radius = float(np.linalg.norm(high - low)) / 2
-    return {"length": 2 * radius, "middle": numbers.add((low + high)[None] / 2), "radiusShown": 1.05 * radius}
 
 
 def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
@@ -128,7 +73,7 @@ def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tup
 def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
     """Header of the load of the base, and of the machine, if any, about a specimen over `places` (p, 3)."""
     actual = v.get("load_actual")
-    load = v.get("root_acceleration", v.get(GROUND)) if actual is None else actual
+    load = v.get(GROUND) if actual is None else actual
     header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
     if actual is None:
         return header
@@ -164,8 +109,10 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
     return header
 
 
-def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
-    """Header of a system's motion; its times (t,) and the deflection (t, 1, 3) of the body that deflects most."""
+def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
+    """Header of the motion of bodies; its times (t,) and the deflection (t, 1, 3) of the body that deflects most, of
+    bodies that are rigid the load of their ground.
+    """
     time, beams = v["time"], [body for body in v["body"] if f"{body}_outline" in v]
     times = v[f"{beams[0]}_outline_time"] if beams else time[:: -(-len(time) // TIMES)]
     index = _indices(time, times)
@@ -173,9 +120,10 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
     frames: dict[str, tuple[Any, Any, Floats]] = {
         "ground": (Rotation.identity(), np.zeros(3), np.zeros((len(times), 3)))
     }
-    parts, corners = [], list[Floats]()
+    parts, corners, carrier = [], list[Floats](), dict[str, Any]()
     deflected = np.zeros((len(times), 1, 3))
     for k, body in enumerate(v["body"]):
+        inner = under(f"{body}_", v)
         root = points.index(f"{body}.root")
         attitude = v["attitude"][index, root]
         turn = Rotation.from_quat(np.roll(attitude, -1, axis=-1))
@@ -186,38 +134,57 @@ def _system(name: str, environment: str, v: Variables, numbers: Numbers) -> tupl
             bent = parent_turn.inv().apply(place[:, points.index(parent)] - parent_place) - v["place_at_rest"][k]
             offset = offset + parent_turn.apply(np.where(np.abs(bent) > 1e-9 * np.abs(place).max(), bent, 0.0))
         frames[body] = turn, origin, offset
-        part: dict[str, Any] = {"frame": numbers.add(np.concatenate([origin, attitude, offset], axis=-1))}
+        frame = np.concatenate([origin, attitude, offset], axis=-1)
+        part: dict[str, Any] = {"frame": numbers.add(frame)}
+        reach = np.zeros((0, 3))
         if body in beams:
-            inner = under(f"{body}_", v)
             part["beam"] = _beam(inner, index, numbers)
             tip = inner["outline"][:, -1:]
             deflected = tip if _largest(tip) > _largest(deflected) else deflected
-            line = inner.get("outline_place", np.zeros((0, 3)))  # of a straight one its points say where it is
-            corners += [origin[:, None] + turn.apply(each)[:, None] for each in line]
-        elif f"{body}_surface_vertices" in v:
-            inner = under(f"{body}_surface_", v)
-            stored_times = v[f"{body}_surface_time"]
-            inner["sizes"] = np.stack([np.interp(times, stored_times, each) for each in inner["sizes"].T], axis=1)
-            part["surface"], moved = _surface(inner, v.get(f"{body}_von_mises"), numbers)
+            reach = inner.get("outline_place", reach)  # of a straight one its points say where it is
+            carrier |= _carrier(inner, v, index, numbers)
+        elif "surface_vertices" in inner:
+            surface = under("surface_", inner)
+            surface["sizes"] = np.stack(
+                [np.interp(times, surface["time"], each) for each in surface["sizes"].T], axis=1
+            )
+            part["surface"], moved = _surface(surface, inner.get("solid_von_mises"), numbers)
             deflected = moved if _largest(moved) > _largest(deflected) else deflected
-            low, size = inner["vertices"].min(axis=0), np.ptp(inner["vertices"], axis=0)
-            corners += [origin[:, None] + turn.apply(corner)[:, None] for corner in low + CORNERS * size]
+            reach = surface["vertices"].min(axis=0) + CORNERS * np.ptp(surface["vertices"], axis=0)
+        elif "specimen_corner_place" in inner:
+            bolts = inner.get("specimen_bolt_place", reach)
+            low, high = (pick(inner["specimen_corner_place"], axis=0) for pick in (np.min, np.max))
+            part |= {"box": _box(high - low, (low + high) / 2, np.eye(3)), "points": bolts.tolist()}
+            reach = np.concatenate([low + CORNERS * (high - low), bolts])
         else:
             others = [i for i, each in enumerate(points) if each.startswith(f"{body}.") and i != root]
             part["points"] = [turn[0].inv().apply(place[0, i] - origin[0]).tolist() for i in others]
             if "box" in v and np.isfinite(v["box"][k]).all():  # no variable where all are flexible
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
                 part["box"] = _box(size, centre, rotation)
-                halves = SIGNS * size / 2
-                corners += [origin[:, None] + turn.apply(centre + rotation @ half)[:, None] for half in halves]
+                reach = centre + (SIGNS * size / 2) @ rotation.T
+        corners += [origin[:, None] + turn.apply(each)[:, None] for each in reach]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
     largest = max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)])
     header = _header(name, environment, parts, numbers.add(times), largest)
     header["length"] = max((float(v[f"{body}_point"][-1]) for body in beams), default=radius)
-    header |= {"middle": numbers.add(middle), "radiusShown": radius}
+    if len(parts) > 1 or corners or np.any(frame - BASE):  # more than one straight beam on its base
+        header |= {"middle": numbers.add(middle), "radiusShown": radius}
     at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
-    return header | _carried(v, index, at_start, numbers), times, deflected
+    header |= carrier | _carried(v, index, at_start, numbers)
+    if GROUND in v and not deflected.any():
+        deflected = v[GROUND][index, None]
+    return header, times, deflected
+
+
+def _carrier(inner: Variables, v: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
+    """Header of the turning of what carries a beam, as its outline has it: its attitude in flight, or the hub's."""
+    header = {"attitude": numbers.add(inner["attitude"])} if "attitude" in inner else {}
+    if "hub_radius" in inner:
+        header |= {"radius": float(inner["hub_radius"]), "mounting": np.ravel(inner["hub_mounting"]).tolist()}
+        header["angle"] = numbers.add(v["hub_angle"][index])
+    return header
 
 
 def _box(size: Floats, centre: Floats, rotation: Floats) -> dict[str, Any]:
@@ -233,12 +200,6 @@ def _view(place: Floats) -> tuple[Floats, float]:
     if whole > FAR * of_bodies > 0:
         return middle, 1.05 * of_bodies
     return (low + high)[None] / 2, 1.05 * whole or 1.0
-
-
-def _extent(rest: Floats, numbers: Numbers) -> dict[str, Any]:
-    """Length and view of a beam whose points (p, 3) at rest are on no straight line."""
-    middle, radius = _view(rest[None])
-    return {"length": _largest(rest), "middle": numbers.add(middle), "radiusShown": radius}
 
 
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:
@@ -304,7 +265,7 @@ def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str
         for body, mesh in meshes.items():
             moving[f"{body}_surface_time"] = PHASES
             moving[f"{body}_surface_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
-        motions.append(_mode(label, _system(label, label, moving, numbers)[0]))
+        motions.append(_mode(label, motion(label, label, moving, numbers)[0]))
     return {"labels": labels, "motions": motions}
 
 

@@ -1,0 +1,155 @@
+"""One body of a response: what its sections or its base carry, the stress of a mesh, the loads of a rigid specimen."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from gbeam.figures.description import (
+    FLIGHT,
+    ROUNDING,
+    Figure,
+    Level,
+    Line,
+    Panel,
+    components,
+    estimated,
+    largest,
+    limit_levels,
+    of_motion,
+    scale_of,
+    stretches,
+)
+from gbeam.results.equilibrium import Rest
+from gbeam.results.parts import Loads
+from gbeam.results.response import Response
+from gbeam.results.result import Floats
+from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
+
+Names = tuple[tuple[str, ...], tuple[str, ...]]
+FORCES = ("axial N", "shear V_y", "shear V_z")
+MOMENTS = ("torque", "bending M_y", "bending M_z")
+SECTION, BASE = (FORCES, MOMENTS), (tuple("xyz"),) * 2  # names of components
+NEAR = 3.0  # times the largest stress: a strength beyond would press the lines to the ground
+
+
+def loads(response: Response, body: str, title: str = "") -> Figure:
+    """Describe over time what the root of a body carries, the extreme stresses, and the torque from a hub."""
+    of = response.bodies[body]
+    carried = of.loads
+    assert carried is not None
+    beam = of.shapes is not None  # which only a beam has
+    panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
+    if carried.beam_torque is not None:
+        scale, unit = scale_of("N m", carried.beam_torque)
+        panels.append(Panel(f"torque from the hub, {unit}", (Line(response.time, scale * carried.beam_torque),)))
+    spans = stretches(response.axes, response.time)
+    of_body = f" of {body}" if len(response.bodies) > 1 else ""
+    section = f"loads in the root's section{of_body}, and stress anywhere along {'it' if of_body else 'the beam'}"
+    words = section if beam else f"loads on the base{of_body}, base axes"
+    shaded = tuple(replace(each, spans=spans) for each in panels)
+    subject = of_motion(response.name, words)
+    return Figure(title, subject, shaded, judged(response, body, carried), (response.outcome,))
+
+
+def carried_along(loads: Loads) -> tuple[Panel, ...]:
+    """Loads of the sections at one time, along the beam."""
+    scale, unit = scale_of("m", loads.stations)
+    stress = (loads.stress_tension[0], loads.stress_compression[0])
+    panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
+    return tuple(replace(each, x=f"position from the root, {unit}") for each in panels)
+
+
+def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
+    """Loads of the root's section over time, and the extreme stresses along the beam."""
+    stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
+    return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried, names)
+
+
+def judged(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...]:
+    """Notes on the estimated errors of a body's loads and, where it is known, stress."""
+    errors = result.errors
+    kinds = {"loads": errors.loads.total, "their peaks": errors.loads.peak}
+    kinds |= {"stress": errors.stress.total, "its peaks": errors.stress.peak}
+    if len(result.bodies) > 1:  # of which these are the largest
+        by_body = errors.loads_by_beam, errors.load_peaks_by_beam, errors.stress_by_beam, errors.stress_peaks_by_beam
+        known = (dict(zip(errors.beams, each.tolist(), strict=False)) for each in by_body)
+        kinds = {kind: each.get(body, math.nan) for kind, each in zip(kinds, known, strict=True)}
+    if not np.isfinite(carried.stress).all():
+        kinds |= {"stress": math.nan, "its peaks": math.nan}
+    return estimated(kinds)
+
+
+def _carried(
+    where: Floats,
+    force: Floats,
+    moment: Floats,
+    stress: tuple[Floats, Floats],
+    carried: Loads,
+    names: Names = SECTION,
+) -> Iterator[Panel]:
+    """Panels of forces and moments (k, 3) over `where` (k,) and, if known, of the largest and smallest stress (k,)."""
+    lever = largest(force) * float(np.max(carried.stations, initial=0.0))
+    moment = np.where(np.abs(moment) <= ROUNDING * lever, 0.0, moment)  # what is no number stays a gap
+    for kind, si, values, labels in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
+        scale, unit = scale_of(si, values)
+        yield components(where, scale * values, labels, Panel(f"{kind}, {unit}", zero=True))
+    if np.isfinite(carried.stress).all():
+        scale, unit = scale_of("Pa", *stress)
+        lines = [Line(where, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
+        strength = math.inf if carried.yield_strength is None else carried.yield_strength
+        levels = limit_levels(scale * strength, scale * np.concatenate(stress), "yield strength")
+        yield Panel(f"stress, {unit}", tuple(lines), levels=levels)
+
+
+def stress(result: SolidStress, title: str = "") -> Figure:
+    """Describe the largest von Mises stress over time, and that at the named points."""
+    scale, unit = scale_of("Pa", result.von_mises)
+    lines = [Line(result.time, scale * result.von_mises, "anywhere", **FLIGHT)]
+    lines += [
+        Line(result.time, scale * result.point_von_mises[:, k], name, colour=k % 5)
+        for k, name in enumerate(result.points)
+    ]
+    levels: tuple[Level, ...] = ()
+    near = result.nearest_yield
+    if near is not None and near.yield_strength is not None and near.yield_strength < NEAR * result.von_mises.max():
+        levels = (Level(scale * near.yield_strength, f"yield of {near.material or 'the material'}"),)
+    subject = of_motion(result.motion, f"von Mises stress, {result.model}")
+    panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
+    where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.apart}"
+    return Figure(title, subject, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
+
+
+def specimen(result: SpecimenLoads, title: str = "") -> Figure:
+    """Describe the load at the corners, force and moment of the fixture, and of the bolts."""
+    size = np.linalg.norm(result.acceleration, axis=-1)
+    scale, unit = scale_of("m/s^2", size)
+    centre = np.linalg.norm(result.centre, axis=-1)
+    lines = [Line(result.time, scale * centre, "centre of mass", **FLIGHT)]
+    lines += [
+        Line(result.time, scale * size.max(axis=1), "largest corner", colour=0),
+        Line(result.time, scale * size.min(axis=1), "smallest corner", colour=1, dash="dashed"),
+    ]
+    panels = [Panel(f"load, {unit}", tuple(lines), zero=True)]
+    for values, si, name in ((result.force, "N", "force"), (result.moment, "N m", "moment")):
+        factor, factor_unit = scale_of(si, values)
+        axes = [f"{name} {axis}" for axis in "xyz"]
+        panels.append(components(result.time, factor * values, axes, Panel(f"{name} on the specimen, {factor_unit}")))
+    if len(result.bolts):
+        panels.append(_bolts(result, result.bolt_pull, "tension (+), compression (−)"))
+        panels.append(_bolts(result, result.shear, "shear"))
+    subject = of_motion(result.motion, f"rigid specimen of {result.mass:g} kg")
+    spread = f"largest spread over the specimen: {100 * result.spread_max:.3g} % of the largest load"
+    return Figure(title, subject, tuple(panels), (spread,))
+
+
+def _bolts(result: SpecimenLoads, values: Floats, name: str) -> Panel:
+    """Panel of one quantity of every bolt."""
+    factor, unit = scale_of("N", values)
+    lines = tuple(
+        Line(result.time, factor * values[:, k], f"bolt {k + 1}", colour=k % 6) for k in range(values.shape[1])
+    )
+    return Panel(f"{name} of bolts, {unit}", lines)
