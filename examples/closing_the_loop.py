@@ -40,7 +40,7 @@ def lqg() -> gb.Feedback:
     return gb.Feedback(law, MEASURED, ["axis.angle"], sample=SAMPLE, delay=DELAY, limit=LIMIT)
 
 
-def main() -> gb.SystemResponse:
+def main() -> gb.Response:
     """Turn the exact model by half a radian."""
     system = satellite("exact", lqg(), angle=-0.5, axial=1, z=4)
     return gb.simulate(system, duration=20.0, tolerance=1e-3)

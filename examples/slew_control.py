@@ -31,7 +31,7 @@ def structure(kind: str, axial: int, y: int) -> gb.Structure:
     return gb.assemble(beam, kind, axial=axial, y=y)
 
 
-def respond(beam: gb.Structure, torque: gb.Sum | gb.Feedback) -> gb.SystemResponse:
+def respond(beam: gb.Structure, torque: gb.Sum | gb.Feedback) -> gb.Response:
     """Response of hub and beam to a torque over time, or to a controller."""
     closed = isinstance(torque, gb.Feedback)
     axis = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], effort=None if closed else torque)

@@ -13,8 +13,8 @@ def respond(structure: gb.Structure, motion: gb.Flight) -> None:
     """The first call is right; the others are misspelt or of a wrong type."""
     gb.simulate(structure, motion, duration=10.0, step=1e-3, parameters={"beta": 0.3}, initial="undeformed")
     gb.simulate(structure, motion, duration="10 s", step="1 ms", tolerance="0.5 %")
-    gb.simulate(structure, motion, duratoin=10.0)  # type: ignore[call-overload]
-    gb.simulate(structure, motion, duration=[10.0])  # type: ignore[call-overload]
+    gb.simulate(structure, motion, duratoin=10.0)  # type: ignore[call-arg]
+    gb.simulate(structure, motion, duration=[10.0])  # type: ignore[arg-type]
     gb.simulate_batch([(structure, motion)], duration=1.0, stpe=0.1)  # type: ignore[call-arg]
     gb.static(structure, motoin=motion)  # type: ignore[call-arg]
     gb.ResponseSettings(1.0, integrator="rk4")  # type: ignore[arg-type]

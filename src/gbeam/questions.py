@@ -93,9 +93,9 @@ class Question:
     motion: str | None = ""  # kind of motion that it asks about, "" for any; None for all that can answer
     differentiable: bool = True  # true if its figures are smooth in the scenario's values
     deforms: bool = True  # true if it needs a specimen that deforms
-    # Figures that studies take where none is named, for every {motion}, every motion of a body {alone} on its base,
-    # every {beam} of several bodies, centrifuge ({machine}), centrifuge with limits of acceptance ({limited}), and
-    # figure that its verdict is on ({judged}).
+    # Figures that studies take where none is named, for every {motion}, {body} that deforms, whose name is left out
+    # where it is the only one, centrifuge ({machine}), centrifuge with limits of acceptance ({limited}), and figure
+    # that its verdict is on ({judged}).
     usual: tuple[str, ...] = ()
 
     @property
@@ -226,10 +226,8 @@ def _time(case: Case, at: float | None) -> float:
     deforms=False,
     usual=(
         "comparisons.{judged}",
-        "motions.{alone}.tip.size.max_abs",
-        "motions.{alone}.loads.root_moment.size.max_abs",
-        "motions.{motion}.points.{beam}.tip.displacement_max",
-        "motions.{motion}.beams.{beam}.root_moment.size.max_abs",
+        "motions.{motion}.bodies.{body}.tip.size.max_abs",
+        "motions.{motion}.bodies.{body}.loads.root_moment.size.max_abs",
         "comparisons.{machine}.verdict.followed",
         "comparisons.{limited}.verdict.accepted",
     ),

@@ -44,7 +44,7 @@ def answer(shapes: int, world: str, **more: Any) -> tuple[Any, Any, np.ndarray]:
     body, push = rod(shapes), gb.Flight(z=gb.SmoothStep(1.0, RAMP, start=0.1))
     system = gb.System({"rod": body}, {"clamp": gb.Joint("fixed", "rod")}) if world == "system" else None
     response = gb.simulate(system or body, push, duration=END, integrator="gauss", **more)
-    loads = response.loads if system is None else response.beams["rod"].loads
+    loads = response.loads if system is None else response.bodies["rod"].loads
     return response.errors, response.time, loads.root_moment[:, 1]
 
 

@@ -115,7 +115,7 @@ def test_fitted_steps_of_a_hub_keep_the_time_of_its_vibration() -> None:
     """Steps of 20 ms leave 1e-5 of the bending in the plane, and would 1.5e-4 if they were not fitted."""
     system = on_hub()
 
-    def swung(step: float) -> gb.SystemResponse:
+    def swung(step: float) -> gb.Response:
         return gb.simulate(system, duration=2.0, step=step, integrator="gauss", estimate=False, loads=False)
 
     fine, coarse = swung(1e-3), swung(0.02)

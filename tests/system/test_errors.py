@@ -74,7 +74,7 @@ MOVED: dict[str, tuple[gb.System, dict[str, Any]]] = {
 
 
 @cache
-def moved(name: str) -> gb.SystemResponse:
+def moved(name: str) -> gb.Response:
     """Response of a system by steps that fit it, with what it states."""
     system, how = MOVED[name]
     return gb.simulate(system, **how)
@@ -105,7 +105,7 @@ def test_what_is_stated_is_what_more_shapes_change(name: str, least: float, most
     assert (response.errors.displacement_by_beam > 0.9 * np.array(changed)).all()
     assert response.error_estimate == bent.total == response.errors.displacement_by_beam.max()
     assert response.errors.by_beam.max() == pytest.approx(errors.slender, rel=0.3)
-    each = [apart(response.beams[name].loads, truth.beams[name].loads) for name in response.errors.beams]
+    each = [apart(response.bodies[name].loads, truth.bodies[name].loads) for name in response.errors.beams]
     loads, stress = (max(values) for values in zip(*each, strict=True))
     assert response.errors.loads.slender == pytest.approx(loads, rel=0.03)
     assert response.errors.stress.slender == pytest.approx(stress, rel=0.03)
@@ -116,7 +116,7 @@ def relative(a: Any, b: Any) -> float:
     return float(np.linalg.norm(a - b, axis=1).max() / np.linalg.norm(a, axis=1).max())
 
 
-def deflection(system: gb.System, response: gb.SystemResponse, name: str) -> Any:
+def deflection(system: gb.System, response: gb.Response, name: str) -> Any:
     """Displacement (t, 3) m of a body's tip relative to its root, by its coordinates."""
     columns = [k for k, each in enumerate(response.coordinates) if each.startswith(f"{name}.q")]
     return np.asarray(system.flexible[name].displacement(response.q[:, columns]))[:, -1]
@@ -240,8 +240,8 @@ def test_loads_that_steps_do_not_resolve_are_warned_of() -> None:
     assert not any("deflections are wrong" in each for each in followed.warnings)
     # What two shapes lack rings faster than the results' times, at which it was not seen.
     step = float(followed.time[1] - followed.time[0]) / 4
-    truth = gb.simulate(pushed(10), duration=0.1, step=step, estimate=False).beams["beam"].loads.root_force[::4]
-    true = np.abs(followed.beams["beam"].loads.root_force - truth).max() / np.abs(truth).max()
+    truth = gb.simulate(pushed(10), duration=0.1, step=step, estimate=False).bodies["beam"].loads.root_force[::4]
+    true = np.abs(followed.bodies["beam"].loads.root_force - truth).max() / np.abs(truth).max()
     assert 0.03 < true < 1.5 * followed.errors.loads.total < 2 * true
 
 
@@ -278,7 +278,7 @@ def test_a_controller_answers_what_is_lacking() -> None:
     true = np.linalg.norm(truth.place - response.place, axis=-1).max() / size
     errors = response.errors.place
     assert true > 1e-4 and errors.slender - errors.step == pytest.approx(true, rel=1e-3)
-    beam, other = response.beams["beam"].loads, truth.beams["beam"].loads
+    beam, other = response.bodies["beam"].loads, truth.bodies["beam"].loads
     assert response.errors.loads.slender - response.errors.loads.step == pytest.approx(apart(beam, other)[0], rel=1e-3)
     assert np.isnan(response.errors.displacement.beam_theory) and "do not hold" in response.errors.note
 
@@ -306,7 +306,7 @@ def test_the_theory_of_slender_beams_is_judged_in_the_loop_that_holds_a_plant() 
     thick = gb.simulate(column(replace(soft, rotary_inertia=True), shear_z=3), estimate=False, **how)
     size = np.linalg.norm(response.place - response.place[0], axis=-1).max()
     true = np.linalg.norm(thick.place - response.place, axis=-1).max() / size
-    loads, stress = apart(response.beams["column"].loads, thick.beams["column"].loads)
+    loads, stress = apart(response.bodies["column"].loads, thick.bodies["column"].loads)
     errors = response.errors
     assert 1e-3 < true < 2e-3 and errors.place.beam_theory == pytest.approx(true, rel=0.03)
     assert 0.05 < loads < 0.07 and errors.loads.beam_theory == pytest.approx(loads, rel=0.1)

@@ -151,7 +151,7 @@ def test_what_a_section_carries_is_measured() -> None:
     system = satellite(law, angle=1e-5)
     response = gb.simulate(system, initial="undeformed", duration=2.0, step=SAMPLE / 8, estimate=False)
     assert response.loop is not None and response.loop.units == ("rad", "rad/s", "N m")
-    moment = response.beams["panel"].loads.section_moment[:, 0, 1]
+    moment = response.bodies["panel"].loads.section_moment[:, 0, 1]
     np.testing.assert_allclose(response.loop.measured[8:-1:8, 2], moment[8:-1:8], atol=1e-9 * np.abs(moment).max())
     closed = gb.linearize(system, loop="closed", outputs=["axis.angle", "panel.root.moment_y"])
     state, angles = np.zeros(len(closed.a)), []

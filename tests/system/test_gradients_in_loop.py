@@ -31,7 +31,7 @@ def figure(system: gb.System, duration: float = 0.3) -> Any:
     run = gb.simulate(system, duration=duration, step=0.01, initial="undeformed", estimate=False)
     assert run.loop is not None
     recorded = (1e-2 * run.loop.measured**2).sum() + (1e-3 * (run.loop.asked**2 + run.loop.applied**2)).sum()
-    stress = 1e-6 * run.beams["panel"].loads.stress[-3:].sum()
+    stress = 1e-6 * run.bodies["panel"].loads.stress[-3:].sum()
     return 10 * run.at("panel.tip")[-3:].sum() + recorded + stress
 
 

@@ -80,7 +80,7 @@ def test_a_beam_as_a_system_is_the_beam(model: str, integrator: str, seed: int) 
     alone = gb.simulate(beam, motion, **how)
     joined = gb.simulate(gb.System({"beam": beam}, {"clamp": gb.Joint("fixed", "beam")}), motion, **how)
     for name in ("q", "qd"):
-        one, other = getattr(alone, name), getattr(joined, name)
+        one, other = getattr(alone.body, name), getattr(joined.body, name)
         np.testing.assert_allclose(other, one, rtol=1e-12, atol=1e-12 * np.abs(one).max())
 
 

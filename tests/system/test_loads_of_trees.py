@@ -23,7 +23,7 @@ def test_one_body_on_a_turning_joint_carries_what_the_beam_on_a_hub_does() -> No
     bodies = {"hub": gb.RigidBody(1.0, (4.0, 4.0, 5.0), points={"rim": (0.4, 0, 0)}), "beam": structure}
     turning = gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=rate)
     system = gb.System(bodies, {"axis": turning, "clamp": gb.Joint("fixed", "beam", "hub.rim")})
-    of_tree = gb.simulate(system, **SLOW).beams["beam"]
+    of_tree = gb.simulate(system, **SLOW).bodies["beam"]
     beam = gb.simulate(structure, gb.Hub(radius=0.4, rate=rate, inertia=5.0), **SLOW)
     assert beam.loads is not None and beam.peaks.loads is not None
     for name in ("force", "moment", "section_force", "section_moment", "stress", "von_mises", "acceleration"):
@@ -56,7 +56,7 @@ def test_sections_carry_what_joints_do(kind: str, moments: float) -> None:
     """
     response = gb.simulate(_branched(kind), initial="undeformed", **SLOW)
     some = slice(None) if moments < 1e-6 else slice(21)
-    first, last = (response.beams[name].loads for name in ("first", "last"))
+    first, last = (response.bodies[name].loads for name in ("first", "last"))
     turned = gb.Joint("fixed", "first", turn=(0.3, -0.5, 0.8)).steps[0].R
     pairs = [
         (first.force[:, 0] @ turned.T, response.ground_force, 1e-10),
@@ -105,7 +105,7 @@ def test_a_ball_takes_no_moment_of_rounding() -> None:
     """A pendulum on a ball: its root's moment was 5e-15 N m, which was written and drawn."""
     joints = {"ball": gb.Joint("spherical", "rod", turn=(0.0, 1.0, 0.0), initial_rate={"wz": 1.0})}
     response = gb.simulate(gb.System({"rod": flexible("exact")}, joints, gravity=(0, 0, -9.81)), **SLOW)
-    loads = response.beams["rod"].loads
+    loads = response.bodies["rod"].loads
     assert not loads.moment[:, 0].any() and not loads.section_moment[:, 0].any()
     assert np.abs(loads.force[:, 0]).max() > 0.1 and np.abs(loads.moment[:, 1]).max() > 1e-4
 

@@ -42,7 +42,7 @@ def both() -> tuple[Any, Any]:
 
 def test_a_mesh_in_a_system_has_the_stress_of_the_specimen() -> None:
     for ours, theirs in zip(both(), specimen(), strict=True):
-        stress, wanted = ours.solids["strip"], theirs.solid
+        stress, wanted = ours.bodies["strip"].solid, theirs.solid
         assert stress.worst.node == wanted.worst.node and stress.points == ("half", "tip")
         assert stress.worst.von_mises == pytest.approx(wanted.worst.von_mises, rel=2e-3)
         strain = wanted.strain_at("half")
@@ -71,7 +71,7 @@ def test_limits_at_points_of_a_mesh_in_a_system_are_the_specimens() -> None:
 def test_the_larger_stress_of_a_mesh_and_a_beam_is_judged() -> None:
     flight, machine = both()
     compared = gb.compare(flight, machine, point="strip.tip", damage_at="rod.half")
-    largest = max(flight.solids["strip"].worst.von_mises, flight.beams["rod"].peaks.largest_stress.value)
+    largest = max(flight.bodies["strip"].solid.worst.von_mises, flight.bodies["rod"].peaks.largest_stress.value)
     assert compared.peaks["stress"].flight == pytest.approx(largest, rel=1e-3)
     assert compared.fatigue is not None and compared.fatigue.place == "at rod.half"
     alone = gb.compare(*runs(beam()), damage_at="half").fatigue
@@ -87,7 +87,7 @@ def test_stress_of_a_mesh_in_a_system_stands_in_every_output(tmp_path: Path) -> 
     flight.save(tmp_path / "flight.nc")
     with xr.open_datatree(tmp_path / "flight.nc") as tree:
         assert tree["strip_point_von_mises"].dims == ("time", "strip_point")
-        np.testing.assert_allclose(tree["strip_von_mises"], flight.solids["strip"].von_mises, rtol=1e-6)
+        np.testing.assert_allclose(tree["strip_von_mises"], flight.bodies["strip"].solid.von_mises, rtol=1e-6)
 
 
 def test_a_scenario_of_a_mesh_on_a_plate_is_judged_by_its_stress(

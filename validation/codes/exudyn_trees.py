@@ -99,7 +99,7 @@ def _fallen_in_exudyn(steps: int) -> np.ndarray:
     return _sampled(system, [sensor], FALL)
 
 
-def _spun() -> gb.SystemResponse:
+def _spun() -> gb.Response:
     section, material = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS)
     bodies: dict[str, gb.RigidBody | gb.Structure] = {}
     turned = {"a": gb.Place((RADIUS, 0, 0), (np.pi / 2, 0, 0)), "b": gb.Place((-RADIUS, 0, 0), (0, np.pi, 0))}

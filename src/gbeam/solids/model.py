@@ -110,14 +110,14 @@ class SolidModel(Value):
         >>> print(f"{1e-6 * stress.worst.von_mises:.1f} MPa, margin {stress.nearest_yield.margin:.0f}")
         14.0 MPa, margin 16
         """
-        bent = answer if isinstance(answer, Response) else answer.body
+        bent = answer.body
         q = np.atleast_2d(np.asarray(bent.q, dtype=float))
-        if answer.model != self.structure.kind or q.shape[1] != self.structure.size:
-            problem = f"is of {answer.model}, with {q.shape[1]} coordinates"
+        if bent.model != self.structure.kind or q.shape[1] != self.structure.size:
+            problem = f"is of {bent.model}, with {q.shape[1]} coordinates"
             raise InputError("answer", problem, f"give one of this {self.structure.kind} with {self.structure.size}")
         time = np.atleast_1d(np.asarray(answer.time, dtype=float))
         name = answer.name if isinstance(answer, Response) else answer.motion
-        origin = {"motion": name, "model": answer.model, "warnings": answer.warnings, "provenance": answer.provenance}
+        origin = {"motion": name, "model": bent.model, "warnings": answer.warnings, "provenance": answer.provenance}
         return solid_stress(self._nodal, time, q, **origin)
 
 

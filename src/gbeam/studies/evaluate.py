@@ -18,21 +18,23 @@ import numpy as np
 from gbeam.analysis.case import Case
 from gbeam.analysis.environments import study_of
 from gbeam.analysis.response.batch import TOGETHER, simulate_batch
-from gbeam.errors import ComputationError, GbeamError, InputError
-from gbeam.mechanics.structure import Structure
+from gbeam.errors import ComputationError, GbeamError
 from gbeam.mechanics.tree.system import System
 from gbeam.questions import Needs, question_of, reduced
 from gbeam.results.cases import ANSWERED
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Failure
-from gbeam.studies.figures import Facts, History, Keys, answer_facts, own_keys, value_at
+from gbeam.studies.figures import Facts, History, Keys, answer_facts, own_keys, value_at, without_body
 from gbeam.studies.template import Template
 
 Function = Callable[[Any], float]
 NO_FACTS: Facts = {"outcome": "done"}  # where functions measure the case, and no verb answers
 # Figures of a motion, and of a comparison, that have the same digits if no loads are computed.
-_WITHOUT_LOADS = ("tip", "stations", "hub", "step", "steps", "damping_ratio", "axes", "limits", "tracking_error")
+_WITHOUT_LOADS = (
+    "tip", "stations", "points", "coordinates", "hub", "step", "steps", "damping_ratio", "axes", "limits",
+    "tracking_error",
+)  # fmt: skip
 _VERDICT_WITHOUT_LOADS = (("verdict", "tip"), ("verdict", "followed"))
 
 
@@ -136,6 +138,7 @@ def of_loads(keys: Keys) -> bool:
     """True unless a figure is known to have the same digits where no loads are computed."""
     match keys[0]:
         case "motions":
+            keys = without_body(keys)
             return len(keys) < 3 or keys[2] not in _WITHOUT_LOADS
         case "comparisons":
             return keys[2:] not in _VERDICT_WITHOUT_LOADS
@@ -165,7 +168,7 @@ def _line(error: Exception) -> str:
 
 
 Task = tuple[int, tuple[str, ...]]  # number of the case, and its changes
-Posed = tuple[int, Case, Structure]
+Posed = tuple[int, Case]
 MANY = 4 * TOGETHER  # cases that are built at once, so that most batches of equal runs are full
 _ALONE = ("response", "model")  # tables: cases that differ in these share few steps or sizes
 
@@ -189,8 +192,7 @@ def settled(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
     if settings is None or not inquiry.together:
         return inquiry
     enough = settings.step is not None or cases >= TOGETHER
-    body = case.system.alone
-    able = body is not None and body.size > 0 and not settings.estimate and not case.automatic
+    able = len(case.system.tree.free) > 0 and not settings.estimate and not case.automatic
     return replace(inquiry, together=enough and able)
 
 
@@ -211,7 +213,7 @@ def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
                 key = tuple(each for each in overrides if not each.startswith("motion."))  # motions share a structure
                 case = inquiry.template.changed(overrides).built(systems.get(key))
                 systems[key] = case.system
-                posed.append((number, case, _alone(case)))
+                posed.append((number, case))
             except Exception as error:
                 yield without_figures(number, inquiry.width, error)
         # Settings differ where a motion's record ends at another time.
@@ -219,25 +221,17 @@ def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
             yield from _answered(inquiry, list(group), one_structure=set(systems) == {()})
 
 
-def _alone(case: Case) -> Structure:
-    """Structure of a case that is integrated with others; InputError where it is a system, unlike the first one."""
-    body = case.system.alone
-    if body is None:
-        raise InputError("bodies", "are joined to a system, and the first case's is alone", "sweep these apart")
-    return body
-
-
 def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:
     """Rows of cases with the same settings, each as soon as all of its motions are answered."""
     settings = reduced(posed[0][1], inquiry.needs).response
-    pairs = [(k, name) for k, (_, case, _) in enumerate(posed) for name in case.motions]
+    pairs = [(k, name) for k, (_, case) in enumerate(posed) for name in case.environments]
     answers: dict[int, dict[str, Response | Exception]] = {}  # of cases by index in `posed`, then by motion
     for (k, name), answer in _responses(posed, pairs, settings, one_structure=one_structure):
-        number, case, _ = posed[k]
+        number, case = posed[k]
         by_motion = answers.setdefault(k, {})
         by_motion[name] = answer
-        if len(by_motion) == len(case.motions):
-            yield _row(inquiry, number, case, {name: by_motion[name] for name in case.motions})
+        if len(by_motion) == len(case.environments):
+            yield _row(inquiry, number, case, {name: by_motion[name] for name in case.environments})
             del answers[k]
 
 
@@ -247,9 +241,8 @@ def _responses(
     """Response, or exception, of each pair of a case's index in `posed` and a motion, in any order."""
     left = dict.fromkeys(pairs)
     try:
-        for k, response in simulate_batch(
-            ((posed[k][2], posed[k][1].motions[name]) for k, name in pairs), settings, one_structure=one_structure
-        ):
+        cases = ((posed[k][1].subject, posed[k][1].environments[name]) for k, name in pairs)
+        for k, response in simulate_batch(cases, settings, one_structure=one_structure):
             case, name = pairs[k]
             del left[case, name]
             yield (case, name), replace(response, name=name, provenance=posed[case][1].provenance)

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.analysis.system.histories import beams_of
 from gbeam.errors import InputError
+from gbeam.mechanics.tree.system import stations_of
 from gbeam.printable import advise, closest
-from gbeam.questions import question_of
+from gbeam.questions import HUB, question_of
 from gbeam.results.result import Floats
 from gbeam.scenario.values import path_text
 from gbeam.studies.template import Template
@@ -111,7 +111,7 @@ def find(facts: Facts, name: str) -> Keys:
     wanted = f".{name}"
     fits = [path for path in keys_of if f".{path}".endswith(wanted)]
     # Of the only body that deforms, its name may be left out.
-    fits = fits or [path for path, keys in keys_of.items() if f".{path_text(_without_body(keys))}".endswith(wanted)]
+    fits = fits or [path for path, keys in keys_of.items() if f".{path_text(without_body(keys))}".endswith(wanted)]
     if not fits:
         ends = {path[at:] for path in keys_of for at in [0, *(dot.end() for dot in re.finditer(r"\.", path))]}
         near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
@@ -139,7 +139,7 @@ def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
 
 
-def _without_body(keys: Sequence[Any]) -> tuple[Any, ...]:
+def without_body(keys: Sequence[Any]) -> tuple[Any, ...]:
     """Keys of a figure without those that lead to a body."""
     at = keys.index(BODIES) if BODIES in keys else len(keys)
     return (*keys[:at], *keys[at + 2 :])
@@ -153,7 +153,7 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
     """True if a path can end in these keys; its ``*`` are any names, which may contain dots, and a body's may be left
     out.
     """
-    if BODIES in path and _fits(ends, _without_body(path)):
+    if BODIES in path and _fits(ends, without_body(path)):
         return True
     name, last = ".".join(ends), len(path) - 1
     words = [re.escape(key) if key != "*" else ".+" if k < last else "[^.]+" for k, key in enumerate(path)]
@@ -166,15 +166,16 @@ def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, 
     These begin with what the verdict is on: limits of acceptance, or the largest load where there is none.
     """
     case = template.built()
-    patterns = question_of(verb).usual
+    patterns, deforming = question_of(verb).usual, tuple(case.system.flexible)
     limited = [name for name in case.tracks if case.accept.get(name)]
     figures = [each for each in patterns if "{judged}" in each]  # the flight alone is in all cases of a machine
-    moved, beams = ("{motion}", tuple(beams_of(case.system))) if case.system.alone is None else ("{alone}", ())
-    figures += [each.replace(moved, name) for name in case.environments for each in patterns if moved in each]
-    figures += [each for each in patterns if not any(key in each for key in ("{motion}", "{alone}"))]
+    figures += [each.replace("{motion}", name) for name in case.environments for each in patterns if "{motion}" in each]
+    figures += [each for each in patterns if not any(key in each for key in ("{judged}", "{motion}"))]
+    if len(deforming) == 1:
+        figures = [each.replace(f"{BODIES}.{{body}}.", "") for each in figures]
     limits = ((name, limit) for name in case.tracks for limit in case.accept.get(name) or ("largest_load",))
     names_by_key: dict[str, Sequence[str]] = {
-        "{beam}": beams,
+        "{body}": deforming,
         "{machine}": tuple(case.tracks),
         "{limited}": limited,
         "{judged}": [f"{name}.verdict.{limit}" for name, limit in limits],
@@ -236,6 +237,7 @@ def _is_figure(value: Any) -> bool:
 HISTORY = "--history"
 TIMES = 501  # by default
 _LOADS = {"root_force": "N", "root_moment": "N m"}
+_OF_HUBS = {"hub.angle": "rad", "hub.rate": "rad/s"}
 
 
 @dataclass(frozen=True)
@@ -262,8 +264,8 @@ class History:
 
 
 def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History:
-    """Read a history of a case: ``flight.tip.z`` of a body alone on its base, of others a signal such as
-    ``strip.tip.place_z``; the motion's name and a dot may be left out where there is only one, or it is `chosen`.
+    """Read a history of a case, a signal of its responses such as ``flight.tip.z``; the motion's name and a dot may be
+    left out where there is only one, or it is `chosen`.
     """
     units, names = signals_of_case(case), list(case.environments)
     motion = next((name for name in names if text.startswith(f"{name}.") and text not in units), "")
@@ -273,18 +275,25 @@ def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None
         raise InputError(where, f"{text!r} names no motion", advise(first, names))
     if signal not in units:
         raise InputError(where, f"{text!r} is no history", advise(signal, units))
-    if not (motion or chosen) and len(names) > 1:
+    motion = motion or chosen or (names[0] if len(names) == 1 else "")
+    if not motion:
         raise InputError(where, f"{text!r} leaves the motion out", f"write {names[0]}.{text}")
-    return History(text, motion or chosen or names[0], signal, units[signal])
+    if signal in _OF_HUBS and (case.environments[motion] is None or case.motions[motion].kind != HUB):
+        raise InputError(where, f"has {text!r}, and {motion} is no hub", "leave it out")
+    return History(text, motion, signal, units[signal])
 
 
 def signals_of_case(case: Case) -> dict[str, str]:
-    """SI units of the signals that responses to a case have, by name."""
+    """SI units of the signals that responses to a case have, by name; those of a body that alone deforms are there
+    without its name too.
+    """
     from gbeam.mechanics.tree.signals import signals_of
 
-    beams, alone = beams_of(case.system), case.system.alone is not None
-    units = {f"{point}.{axis}": "m" for point in case.points for axis in "xyz"} if alone else signals_of(case.system)
-    for body in beams:
-        loads = _LOADS if alone else {f"{body}.{load}": unit for load, unit in _LOADS.items()}
-        units |= {f"{load}.{axis}": unit for load, unit in loads.items() for axis in "xyz"}
-    return units
+    units, system = signals_of(case.system), case.system
+    for name, body in system.flexible.items():
+        of_body = {f"{point}.{axis}": "m" for point in stations_of(body) for axis in "xyz"}
+        of_body |= {f"{load}.{axis}": unit for load, unit in _LOADS.items() for axis in "xyz"}
+        of_body |= {each.removeprefix(f"{name}."): unit for each, unit in units.items() if each.startswith(f"{name}.")}
+        units |= {f"{name}.{each}": unit for each, unit in of_body.items()}
+        units |= of_body if len(system.flexible) == 1 else {}
+    return units | (_OF_HUBS if any(motion.kind == HUB for motion in case.motions.values()) else {})

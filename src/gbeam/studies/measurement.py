@@ -6,7 +6,7 @@ import math
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,11 @@ from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity
 from gbeam.io.table import Table
+from gbeam.mechanics.assembly import model_of, remade, stations_asked
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.records.text import read_text
 from gbeam.printable import advise
+from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.study import Study
 from gbeam.structure.beam import fibre_strain
@@ -28,27 +30,19 @@ from gbeam.studies.figures import History, read_history
 OPTION = "--data"
 _TIME = ("time", "time_s", "t")
 _MODE = "mode"
-# Kind of each quantity of a history, but for strain.
-_KINDS = {
-    **{f"tip.{axis}": "length" for axis in "xyz"},
-    **{f"root_force.{axis}": "force" for axis in "xyz"},
-    **{f"root_moment.{axis}": "torque" for axis in "xyz"},
-    "hub.angle": "angle",
-    "hub.rate": "angular rate",
-}
-_STRAIN = re.compile(r"strain\.(-?[xyz])@(.+)")
+_STRAIN = re.compile(r"((?:\w+\.)*)strain\.(-?[xyz])@(.+)")
 _MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
 _USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # assumed noise, of the largest or of the value
 _LEAST = 1e-6  # of that: least noise, as of data that were computed
-_SIGNALS = "length", "angle", "speed", "angular rate", "acceleration", "force", "torque"  # kinds, of a system
+_SIGNALS = "length", "angle", "speed", "angular rate", "acceleration", "force", "torque"  # kinds of signals
 _KIND_OF = {KINDS[kind].unit: kind for kind in _SIGNALS}
 _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A column of the data: `values` (t,), SI, of a quantity such as ``tip.z`` of a motion; of a strain at `at`, m, on
-    `face`, or at a point of a solid along an axis.
+    """A column of the data: `values` (t,), SI, of a quantity such as ``tip.z`` of a motion; of a strain of a `body` at
+    `at`, m, on `face`, or at a point of a solid along an axis.
     """
 
     name: str
@@ -58,6 +52,7 @@ class Measured:
     unit: str
     at: float | str = math.nan
     face: str = ""
+    body: str = ""
 
 
 @dataclass(frozen=True)
@@ -82,7 +77,7 @@ class Measurement:
     @property
     def parts(self) -> dict[str, bool]:
         """Parts of a response, loads and axes, that the columns need."""
-        return {"loads": any(each.quantity.startswith(("root_", "strain")) for each in self.columns), "axes": False}
+        return {"loads": any("root_" in each.quantity or each.face for each in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
         """Reciprocals (m,) of the noise, estimated from residuals (m,) of a fit of `freed` values, or assumed for None.
@@ -103,9 +98,14 @@ class Measurement:
         return np.concatenate(weights)
 
     def instrumented(self, case: Case) -> Case:
-        """The case; of a beam alone with the positions of strain gauges among its stations."""
-        gauges = {at for each in self.columns if isinstance(at := each.at, float) and at > 0}
-        return case.remade(stations=sorted({*case.stations, *gauges})) if gauges else case
+        """The case, its beams with the positions of strain gauges among their stations."""
+        bodies = dict(case.system.bodies)
+        for each in self.columns:
+            if isinstance(each.at, float) and each.at > 0:
+                body = case.system.flexible[each.body]
+                at = {gauge.at for gauge in self.columns if gauge.body == each.body}
+                bodies[each.body] = remade(body, model_of(body), sorted({*stations_asked(body), *at} - {0.0}))
+        return replace(case, system=replace(case.system, bodies=bodies))
 
     def read(self, case: Case, answer: Any) -> Floats:
         """Values (m,) of the measured quantities in an answer to a case, in the order of `values`."""
@@ -179,30 +179,31 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion:
         if name not in _MODAL:
             raise InputError(OPTION, f"has the column {name!r}", advise(name, _MODAL))
         return Measured(name, motion or "", name, values * _factor(unit, _MODAL[name], name), _si(_MODAL[name]))
-    body = case.system.alone
-    if body is None:
-        signal = read_history(name, case, OPTION, motion)
-        factor = _factor(unit, _KIND_OF[signal.unit], name)
-        return Measured(name, signal.motion, signal.quantity, values * factor, signal.unit)
-    first, _, rest = name.partition(".")
-    run, quantity = (first, rest) if first in case.motions else (motion or _only_motion(case, name), name)
-    if run not in case.motions:
-        raise InputError("--motion", f"is {run!r}", f"the scenario has {', '.join(case.motions)}")
-    strain = _STRAIN.fullmatch(quantity)
-    if strain is not None and (body.source is None or not strain[1].endswith("x")):
-        factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
-        of_gauge = _gauged if body.source is None else _position
-        at: float | str = of_gauge(strain[2], strain[1], body)
-        return Measured(name, run, "strain", values * factor, unit="", at=at, face=strain[1])
-    point, _, axis = quantity.partition(".")
-    if axis in tuple("xyz") and point in case.points:
-        return Measured(name, run, quantity, values * _factor(unit, "length", name), _si("length"))
-    if quantity not in _KINDS:
-        raise InputError(OPTION, f"has the column {name!r}", advise(quantity, [*_KINDS, "strain.z@10 mm"]))
-    if quantity.startswith("hub.") and case.motions[run].kind != "hub":
-        raise InputError(OPTION, f"has the column {name!r}, and {run} is no hub", "leave it out")
-    kind = _KINDS[quantity]
-    return Measured(name, run, quantity, values * _factor(unit, kind, name), _si(kind))
+    if (strain := _STRAIN.fullmatch(name)) is not None:
+        return _gauge(name, unit, values, strain, case, motion)
+    signal = read_history(name, case, OPTION, motion)
+    factor = _factor(unit, _KIND_OF[signal.unit], name)
+    return Measured(name, signal.motion, signal.quantity, values * factor, signal.unit)
+
+
+def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Case, motion: str | None) -> Measured:
+    """A column of a strain gauge, ``flight.strip.strain.z@10 mm``: of a motion, and a body that deforms, whose names
+    may be left out where there is only one.
+    """
+    owners, (prefix, face, place) = case.system.flexible, strain.groups()
+    given = prefix.split(".")[:-1]
+    run = given.pop(0) if given and given[0] not in owners else motion or _only_motion(case, name)
+    if run not in case.environments:
+        raise InputError("--motion", f"is {run!r}", f"the scenario has {', '.join(case.environments)}")
+    owner = ".".join(given) or (next(iter(owners)) if len(owners) == 1 else "")
+    if owner not in owners:
+        raise InputError(OPTION, f"has the column {name!r}, which names no body", advise(owner, owners))
+    body = owners[owner]
+    if body.source is not None and face.endswith("x"):
+        raise InputError(OPTION, f"has the column {name!r}", "write strain.z@10 mm: the face is towards y or z")
+    factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
+    at: float | str = (_gauged if body.source is None else _position)(place, face, body)
+    return Measured(name, run, "strain", values * factor, unit="", at=at, face=face, body=owner)
 
 
 def _si(kind: str) -> str:
@@ -257,12 +258,13 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
     return float(modes[mode - 1][quantity])
 
 
-def _strain(case: Case, response: Any, column: Measured) -> Floats:
+def _strain(case: Case, response: Response, column: Measured) -> Floats:
     """History, at the response's own times, of the strain of a gauge."""
+    body, source = response.bodies[column.body], case.system.flexible[column.body].source
     if isinstance(column.at, str):
-        return response.strain_at(column.at, _way(column.face).tolist())
-    assert response.loads is not None
-    loads, gauge = response.loads, surface_gauge(case.beam, column.at, column.face)
-    k = int(np.argmin(np.abs(loads.stations - column.at)))
-    carried = loads.section_force[:, k], loads.section_moment[:, k]
-    return np.asarray(fibre_strain(case.beam, gauge.at, *carried, gauge.y, gauge.z))
+        return body.strain_at(column.at, _way(column.face).tolist())
+    assert source is not None and body.loads is not None
+    gauge = surface_gauge(source.beam, column.at, column.face)
+    k = int(np.argmin(np.abs(body.loads.stations - column.at)))
+    carried = body.loads.section_force[:, k], body.loads.section_moment[:, k]
+    return np.asarray(fibre_strain(source.beam, gauge.at, *carried, gauge.y, gauge.z))

@@ -151,9 +151,11 @@ class Histories:
 
     def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
         """Loads along a body in a state at times (t,) s, of a beam on a hub with the torque on it."""
-        subject = self.run.posed.subject
-        loads = loads_of(subject.system.flexible[name], state, time)
-        return about_the_hub(loads, subject.motion, state.base.alpha_WB_B) if name == subject.body else loads
+        subject, structure = self.run.posed.subject, self.run.posed.system.flexible[name]
+        loads = loads_of(structure, state, time)
+        if name != subject.body and subject.system.alone is not structure:
+            return loads
+        return about_the_hub(loads, subject.motion, state.base.alpha_WB_B)
 
     def _loads_between(self, name: str) -> Callable[[Indices], Loads]:
         """Function that returns the loads along a body at indices of all steps of the flight."""
@@ -180,18 +182,17 @@ class Histories:
 
     def hub(self, bodies: Mapping[str, BodyResponse]) -> HubResult | None:
         """Motion of the hub that carries the body; None without one."""
-        subject, over_time = self.run.posed.subject, self.over_time
-        motion: Any = subject.motion
+        over_time, time = self.over_time, self.time[self.kept]
+        motion: Any = self.run.posed.subject.motion
         if motion is None or motion.kind != "hub":
             return None
-        body, time = bodies[subject.body], self.time[self.kept]
         if motion.free:
             angle, rate = (over_time[key][self.kept][:, 0] for key in ("q", "qd"))
             acceleration = self.run.trajectory.at(self.steps[self.kept]).qdd[:, 0]
             fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
             return HubResult(angle, rate, acceleration, motion.torque(time), free=True, fastest=fastest)
-        axis, base = motion.mount.R_HB[2], body.base
-        torque = None if body.loads is None else body.loads.drive_torque
+        axis, base = motion.mount.R_HB[2], motion.base(time)
+        torque = next((each.loads.drive_torque for each in bodies.values() if each.loads is not None), None)
         return HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque)
 
     @property

@@ -83,8 +83,8 @@ class Solution:
                     carried_pieces.append(carried(self.system, state, name, acting))
         out: dict[Quantity, Floats] = {PLACE: np.concatenate(places)}
         for name, carried_pieces in along.items():
-            body, state = self.system.flexible[name], Carried.joined(carried_pieces)
-            loads, q = loads_of(body, state, of.time), state.q
+            body, moved = self.system.flexible[name], Carried.joined(carried_pieces)
+            loads, q = loads_of(body, moved, of.time), moved.q
             sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
             stress = loads.stress.max(axis=1)
             if body.recovery is not None:
