@@ -10,7 +10,6 @@ from gbeam.report.blocks import (
     Block,
     Blocks,
     Cell,
-    Column,
     Columns,
     Facts,
     Items,
@@ -135,7 +134,7 @@ def _stress_table(solids: Facts, row_of: str) -> Blocks:
         yield Items(tuple(set(remarks.values()) if alike else (f"{name}: {each}" for name, each in remarks.items())))
 
 
-_READ: dict[str, Column] = {
+_READ: Columns = {
     "accelerometer reads, g": "sensor.size.max_abs",
     "von Mises, MPa": "solid.von_mises",
     "strain along x, µm/m": "solid.strain",
@@ -153,9 +152,9 @@ def _read(motion: Facts, body: str, point: str) -> Facts:
 def points_table(motion: Facts) -> Block:
     """Table of the largest motions of the points of several bodies, with what is read there."""
     residual = f"residual from {known(motion.get('residual_from')):g} s, m"
-    cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
+    moved = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
     rows = [each | _read(motion, *each["name"].split(".", 1)) for each in named(motion["points"])]
-    return table(rows, cells | _READ | {residual: "residual_size"}, optional=(*_READ, residual))
+    return table(rows, {**moved, **_READ, residual: "residual_size"}, optional=(*_READ, residual))
 
 
 def stations_table(bodies: Facts) -> Block:
@@ -232,9 +231,13 @@ def _judged(motion: Facts) -> tuple[str, ...]:
 
 
 def errors_by_body(errors: Facts) -> Block:
-    """Table of the errors that every body brings."""
+    """Table of the errors that each of several bodies brings."""
     count = len(errors.get("beams", ()))
-    rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
+    rows = (
+        []
+        if count < 2
+        else [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
+    )
     shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
     shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
