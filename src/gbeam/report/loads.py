@@ -231,13 +231,9 @@ def _judged(motion: Facts) -> tuple[str, ...]:
 
 
 def errors_by_body(errors: Facts) -> Block:
-    """Table of the errors that each of several bodies brings."""
+    """Table of the errors that every body brings."""
     count = len(errors.get("beams", ()))
-    rows = (
-        []
-        if count < 2
-        else [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
-    )
+    rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
     shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
     shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
