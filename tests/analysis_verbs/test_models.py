@@ -54,7 +54,7 @@ def test_tlam_beyond_its_critical_speed_says_so_in_its_row(call):
 def test_a_step_too_coarse_is_said_of_exact(call):
     status, rows, _ = call("response.step=0.2 s")
     assert status == 0
-    assert any("above the tolerance" in warning for warning in rows["exact"]["warnings"])
+    assert any("wrong by an estimated" in warning for warning in rows["exact"]["warnings"])
 
 
 def test_models_that_do_not_fit_the_scenario_do_not_end_the_study(call):

@@ -173,11 +173,6 @@ class Errors(Part):
         """Largest error of the theory of slender beams, of displacement, loads and stress."""
         return largest_known(*(each.beam_theory for each in (self.displacement, self.loads, self.stress)))
 
-    def above(self, tolerance: float) -> dict[str, ErrorEstimate]:
-        """Return the errors whose total is above a tolerance, by what they are of, in words."""
-        estimates = {"tip's displacement": self.displacement, "root's loads": self.loads, "stress": self.stress}
-        return {name: each for name, each in estimates.items() if each.total > tolerance}
-
     def __repr__(self) -> str:
         lines = [f"displacement: {self.displacement}"]
         if repr(self.place) not in (repr(self.displacement), repr(ErrorEstimate())):

@@ -6,6 +6,7 @@ import math
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
+from operator import itemgetter
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -33,18 +34,27 @@ def cure_of_theory(theory: str) -> str:
     return 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
 
 
-def cause_and_cure(errors: ErrorEstimate, theory: str) -> tuple[str, str]:
-    """Words for the largest of four errors (too few shapes, model, mesh, beam theory), and advice against it."""
-    shapes, model = errors.shapes, errors.model
-    if errors.mesh > np.nanmax([shapes, model, errors.beam_theory, 0.0]):
-        return ROUGH_MESH
-    if errors.beam_theory > max(shapes, model):
-        return f"the theory of slender beams ({theory})", cure_of_theory(theory)
-    if math.isnan(errors.beam_theory) and not math.isnan(shapes):  # of a solid
-        return BENT_FAR if model > shapes else FEW_MODES
-    if not shapes >= model:
-        return "the model", 'check with model.kind = "exact"'
-    return "too few shapes", "raise model.modes, or leave them out: then there are enough for the lowest six"
+Cause = tuple[float, str, str]  # an error, its cause in words, and advice against it
+
+
+def causes(errors: ErrorEstimate, theory: str, *, several: bool = False) -> list[Cause]:
+    """Errors by too few shapes, model, beam theory and mesh, the largest first; those of no size are left out. Of
+    `several` bodies the advice is on one of them.
+    """
+    of_solid = math.isnan(errors.beam_theory) and not math.isnan(errors.shapes)
+    few = "too few shapes", "raise model.modes, or leave them out: then there are enough for the lowest six"
+    bent = "the model", 'check with model.kind = "exact"'
+    if of_solid:
+        few, bent = FEW_MODES, BENT_FAR
+    if several:
+        few = few[0], MORE_SHAPES
+    every = [
+        (errors.shapes, *few),
+        (errors.model, *bent),
+        (errors.beam_theory, f"the theory of slender beams ({theory})", cure_of_theory(theory)),
+        (errors.mesh, *ROUGH_MESH),
+    ]
+    return sorted((each for each in every if each[0] > 0), key=itemgetter(0), reverse=True)
 
 
 def fuller(errors: ErrorEstimate) -> str:
@@ -56,8 +66,15 @@ def fuller(errors: ErrorEstimate) -> str:
 
 def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
     """Warning that a quantity of a steady state is wrong by a `size` in words, with the largest cause and its cure."""
-    cause, cure = cause_and_cure(errors, theory)
-    return f"{what} is wrong by an estimated {size}: {cause}; {cure}"
+    return f"{what} is wrong by an estimated {size}: {in_words(causes(errors, theory)[:1])}"
+
+
+def in_words(causes: list[Cause], of: str = "") -> str:
+    """Causes with advice against each; the size of each where there are several, and the body `of` which most is."""
+    if len(causes) == 1:
+        ((_, cause, cure),) = causes
+        return f"{cause}{of}; {cure}"
+    return ", ".join(f"{percent(size)} from {cause} ({cure})" for size, cause, cure in causes) + of
 
 
 def apart(value: float, reference: float) -> float:

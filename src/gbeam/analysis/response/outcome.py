@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import BENT_FAR, FEW_MODES, ROUGH_MESH, cure_of_theory, percent
 from gbeam.analysis.response.loss import holds, worst_loss
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
@@ -156,41 +155,12 @@ def stressed_and_bent(run: Run, bodies: Mapping[str, BodyResponse]) -> tuple[str
 
 def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
     """Warn of estimated errors above the tolerance, with causes and cures, or that no error could be estimated."""
-    subject, settings = run.posed.subject, run.posed.settings
-    if not subject.body:
-        return doubts(errors, settings.tolerance)
-    structure = subject.structure
+    settings = run.posed.settings
     if not settings.estimate:
         return ()
-    if math.isnan(errors.displacement.step):
+    if math.isnan(errors.displacement.step) and not run.missed:
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
-    if not (above := errors.above(settings.tolerance)):
-        return ()
-    name, worst = max(above.items(), key=lambda item: item[1].total)
-    cures = {
-        "model": 'check with model.kind = "exact"',
-        "shapes": "raise model.modes, or leave them out",
-        "step": _cure_of_step(settings),
-        "beam_theory": f"{errors.causes}; {cure_of_theory(errors.causes)}",
-        "mesh": ROUGH_MESH[1],
-    }
-    names = {"shapes": "too few shapes", "beam_theory": "the theory of slender beams"}
-    if structure.richer is not None:
-        (names["shapes"], cures["shapes"]), (names["model"], cures["model"]) = FEW_MODES, BENT_FAR
-    parts = [(getattr(worst, part), part, cure) for part, cure in cures.items()]
-    causes = [
-        f"{percent(size)} from {names.get(part, f'the {part}')} ({cure})"
-        for size, part, cure in sorted(parts, reverse=True)
-        if size > settings.tolerance / 10
-    ]
-    peaks = [error.peak for error in above.values() if not math.isnan(error.peak)]
-    of_peaks = f" at an instant and {percent(max(peaks))} of peaks of loads and stress" if peaks else ""
-    return (
-        f"the estimated error of the {', of the '.join(above)}, {percent(worst.total)} of the largest"
-        f"{f' (of the {name})' if len(above) > 1 else ''}{of_peaks}, is above "
-        f"the tolerance {percent(settings.tolerance)}: "
-        f"{', '.join(causes)}{f'; {errors.note}' if errors.note else ''}",
-    )
+    return doubts(errors, settings.tolerance, _cure_of_step(settings))
 
 
 def _cure_of_step(settings: ResponseSettings) -> str:
@@ -198,8 +168,8 @@ def _cure_of_step(settings: ResponseSettings) -> str:
     if settings.step is not None:
         return 'give a smaller step, or "auto"'
     if settings.integrator == "gauss":
-        return "vibration too fast for automatic steps: give a smaller step"
-    return 'vibration too fast for automatic steps: response.integrator = "gauss" follows it in fewer'
+        return "give a smaller step than automatic ones, or damp it"
+    return 'response.integrator = "gauss" follows it in fewer steps, or damp it'
 
 
 def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...]:

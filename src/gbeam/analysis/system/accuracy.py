@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import itemgetter
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -21,10 +22,10 @@ import numpy as np
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
 from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, RESOLVED, Departures, Quantity, Reading, State, Within
 from gbeam.analysis.accuracy.estimate import (
-    MORE_SHAPES,
     UNMOVED,
     Judgement,
-    cause_and_cure,
+    causes,
+    in_words,
     negligible,
     of_bodies,
     percent,
@@ -65,11 +66,12 @@ TOGETHER = "with more shapes of the same models the system does not follow: too 
 UNKNOWN = "errors by the theory of slender beams are not known: "
 BENT_FAR = UNKNOWN + "thick beams do not follow"
 LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
-CREEPS = f"friction is smooth below {' and '.join(SLIPS)}, so that what it holds creeps; rate = 0 holds a joint"
+CREEPS = f"friction, smooth below {' and '.join(SLIPS)}, so that what it holds creeps", "rate = 0 holds a joint"
 UNSMOOTHED = (
     "the error of the smooth law of friction is not known: runs with half and twice its rate fail; give a smaller step"
 )
-STEPS = "the steps do not resolve what vibrates; give a smaller step, or damp it"
+STEPS, SMALLER = "steps that do not resolve what vibrates", "give a smaller step, or damp it"
+SHARE = 0.1  # of an error: causes of less are not named
 LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 
 
@@ -324,8 +326,8 @@ def _missed(rings: _Rings, known: _Known, errors: Errors, fastest: float) -> flo
     return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
 
 
-def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
-    """Warnings of errors above a tolerance, with cause and cure, and of answers that are not judged."""
+def doubts(errors: Errors, tolerance: float, cure_of_steps: str = SMALLER) -> tuple[str, ...]:
+    """Warnings of errors above a tolerance, with causes and cures, and of answers that are not judged."""
     warnings = [errors.note] if errors.note else []
     for what, size, error, by_beam in (
         ("deflections are", "a body's largest", errors.displacement, errors.displacement_by_beam),
@@ -333,7 +335,6 @@ def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
         ("loads are", "the largest of them", errors.loads, errors.loads_by_beam),
         ("stress is", "its largest", errors.stress, errors.stress_by_beam),
     ):
-        parts = error.step, error.shapes, error.model, error.beam_theory, error.mesh, error.friction
         one, other = errors.displacement, errors.place
         if what == "deflections are" and one is other:
             continue
@@ -342,21 +343,15 @@ def doubts(errors: Errors, tolerance: float) -> tuple[str, ...]:
         stated = largest_known(error.total, error.step)
         if not stated > tolerance:
             continue
-        share = percent(stated)
         if not math.isnan(error.peak):
             size += f" at an instant, and in the peak by {percent(error.peak)}"
-        if error.step == np.nanmax(parts):
-            warnings.append(f"{what} wrong by an estimated {share} of {size}: {STEPS}")
-            continue
-        if error.friction == np.nanmax(parts):
-            warnings.append(f"{what} wrong by an estimated {share} of {size}: {CREEPS}")
-            continue
-        worst_beam = int(np.nan_to_num(by_beam).argmax())
-        cause, cure = cause_and_cure(error, errors.theory[worst_beam])
-        if error.shapes == np.nanmax(parts):
-            cure = MORE_SHAPES
-        most_of = f", most of {errors.beams[worst_beam]}" if len(errors.beams) > 1 else ""
-        warnings.append(f"{what} wrong by an estimated {share} of {size}: {cause}{most_of}; {cure}")
+        worst_beam, several = int(np.nan_to_num(by_beam).argmax()) if len(by_beam) else 0, len(errors.beams) > 1
+        every = causes(error, errors.theory[worst_beam] if errors.theory else "", several=several)
+        of_body = f", most of {errors.beams[worst_beam]}" if every and several else ""
+        every += [(error.step, STEPS, cure_of_steps), (error.friction, *CREEPS)]
+        every = sorted((each for each in every if each[0] > SHARE * stated), key=itemgetter(0), reverse=True)
+        share = percent(stated)
+        warnings.append(f"{what} wrong by an estimated {share} of {size}: {in_words(every, of_body)}")
     return tuple(warnings)
 
 
