@@ -15,6 +15,7 @@ import xarray as xr
 import gbeam as gb
 from gbeam.figures import figure_names, figures_of
 from gbeam.report.facts import facts, json_schema_of_results, reference_of_results
+from gbeam.report.page.document import VERBS
 from gbeam.report.page.result import report_of_file
 from gbeam.report.words import as_json
 from gbeam.results.facts import paths_of, tree_of
@@ -108,6 +109,10 @@ def _held(value: Any, schema: dict[str, Any], place: str) -> None:
     if isinstance(value, list) and "items" in schema:
         for each in value:
             _held(each, schema["items"], f"{place}[i]")
+
+
+def test_every_kind_of_json_has_a_page() -> None:
+    assert {*VERBS} == {*KINDS} - {"Response"}  # which is a study of one
 
 
 def test_the_page_of_results_is_up_to_date() -> None:

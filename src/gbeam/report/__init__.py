@@ -38,12 +38,7 @@ def blocks_of(
         return _unnamed(facts, words)
     name = re.sub(r"(?<!^)(?=[A-Z])", "_", kind).lower()
     blocks: Iterable[Block] = getattr(import_module(f"gbeam.report.{module}"), name)(facts, **(options or {}))
-    if "form" in facts:
-        return blocks
-    try:
-        return list(blocks)
-    except LookupError:  # of 0.2, which did not yet say all that is told now
-        return _unnamed(facts, words)
+    return blocks
 
 
 def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:

@@ -157,10 +157,9 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
 def machine_plan(facts: Facts) -> Blocks:
     """Plan of every machine: limits, tracking, stretches without a target, and the verdict."""
     for name, plan in facts["motions"].items():
-        state = plan.get("state", plan["outcome"])  # files of 0.2 have none
         tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
-        title = f"{name} ({plan['arm']:g} m{tracks}): {in_capitals(state)}"
-        tone = "good" if state in GOOD else "bad"
+        title = f"{name} ({plan['arm']:g} m{tracks}): {in_capitals(plan['state'])}"
+        tone = "good" if plan["state"] in GOOD else "bad"
         message = (Sentence(plan["message"], "bad"),) if plan["message"] else ()
         yield Section(title, message or (Sentence(""),), titled=True, tone=tone)
         yield Section("Machine", tuple(_planned(plan)), verbose=True)
@@ -217,18 +216,16 @@ def comparison(facts: Facts) -> Blocks:
 def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
     """Section for a page, of the verdict on an imitation and its tables; `names` are those of flight and machine."""
     tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
-    yield Section("Verdict", (Sentence(judged["verdict"], "verdict"), Items(_findings(judged)), *tables), detail=True)
-
-
-def _findings(judged: Facts) -> tuple[str, ...]:
-    return tuple(judged.get("findings", ()))  # which files of 0.3 lack
+    yield Section(
+        "Verdict", (Sentence(judged["verdict"], "verdict"), Items(tuple(judged["findings"])), *tables), detail=True
+    )
 
 
 def said(judged: Facts, name: str = "") -> Blocks:
     """Sections of the verdict, with a `name` in front where there are several, and of what it rests on."""
     tone = "bad" if not all(each["passed"] for each in judged["criteria"]) else "verdict"
     title = f"{name}: {judged['verdict']}" if name else sentence(judged["verdict"])
-    yield Section(title, (Items(_findings(judged)),), titled=True, folded="Verdict in words", tone=tone)
+    yield Section(title, (Items(tuple(judged["findings"])),), titled=True, folded="Verdict in words", tone=tone)
     lines = (Items(tuple(judged["lines"])),)
     yield Section("What the verdict rests on", lines, titled=True, folded="In detail", verbose=True)
 

@@ -95,10 +95,10 @@ def fit(facts: Facts) -> Blocks:
         if facts["correlation"][k][j] is not None
     ]
     values = table(named(facts["parameters"]), _VALUE | sigma | {"95 %": _interval("interval")} | _UNIT)
-    residuals = {"column": "name", "residual": "noise", "data": "data"}  # which files of 0.3 do not count
+    residuals = {"column": "name", "residual": "noise", "data": "data"}
     yield Section("Values", (Sentence(f"fitted to {facts['data']}", "faint"), values))
     yield pairs(correlated, "correlation of the errors of")
-    yield table(named(facts["columns"]), residuals | _UNIT, "standard deviation of the residual", optional=("data",))
+    yield table(named(facts["columns"]), residuals | _UNIT, "standard deviation of the residual")
     yield Section("", (_searches(facts),))
     yield Section("Data and fit", (FIGURES,))
 

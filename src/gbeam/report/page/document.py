@@ -8,7 +8,7 @@ import json
 import tomllib
 from collections.abc import Mapping
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 from gbeam.errors import InputError
 from gbeam.figures import Describe
@@ -23,48 +23,26 @@ from gbeam.report.page.scene import scene, shapes
 from gbeam.report.words import as_json
 from gbeam.results.result import Result
 
-
-class Page(NamedTuple):
-    """Page of a kind of result: its verb, and keys by which files of 0.2, which name no kind, are known."""
-
-    verb: str
-    keys: tuple[str, ...]
-    of_motions: tuple[str, ...] = ()
-
-
-PAGES = {
-    "Study": Page("run", ("motions", "comparisons")),
-    "Comparison": Page("run", ("verdict", "flight", "centrifuge")),
-    "ModelStudy": Page("models", ("reference", "rows")),
-    "StateSpace": Page("linearize", ("states", "inputs", "outputs")),
-    "Rest": Page("static", ("motions",), ("points", "coordinates", "ground_force")),
-    "MachinePlan": Page("plan", ("motions",), ("limits", "tracks")),
-    "Modes": Page("modes", ("modes", "instabilities")),
-    "Campbell": Page("campbell", ("tracks", "crossings")),
-    "Critical": Page("critical-speed", ("quantity", "searched_to", "reason")),
-    "CriticalMap": Page("critical-speed --masses", ("mass", "position", "critical_speed")),
-    "Placement": Page("place", ("fraction_of_length", "options")),
-    "SolidStress": Page("run", ("worst", "singular_depth")),
-    "SpecimenLoads": Page("run", ("corners", "bolts", "largest_load")),
-    "Sweep": Page("sweep", ("parameters", "measures")),
-    "Fit": Page("fit", ("covariance", "columns")),
-    "Optimum": Page("optimize", ("minimise", "subject_to")),
-    "Sensitivity": Page("sensitivity", ("measures", "run_error")),
-    "ShapedCommand": Page("shape", ("commands", "coefficients")),
+VERBS = {  # of kinds that have a page
+    "Study": "run",
+    "Comparison": "run",
+    "SolidStress": "run",
+    "SpecimenLoads": "run",
+    "ModelStudy": "models",
+    "StateSpace": "linearize",
+    "Rest": "static",
+    "MachinePlan": "plan",
+    "Modes": "modes",
+    "Campbell": "campbell",
+    "Critical": "critical-speed",
+    "CriticalMap": "critical-speed --masses",
+    "Placement": "place",
+    "Sweep": "sweep",
+    "Fit": "fit",
+    "Optimum": "optimize",
+    "Sensitivity": "sensitivity",
+    "ShapedCommand": "shape",
 }
-
-
-def _kind(facts: Mapping[str, Any]) -> str | None:
-    """Kind of a result, by its form, or by its keys if it is of 0.2; None of what is no result."""
-    if "form" in facts:
-        return str(facts["form"]["kind"])
-    motions = facts.get("motions", {}).values()
-    if "outcome" not in facts:  # as of gbeam check, which computes nothing
-        return None
-    for name, page in PAGES.items():
-        if facts.keys() >= set(page.keys) and all(motion.keys() >= set(page.of_motions) for motion in motions):
-            return name
-    return None
 
 
 def html(
@@ -75,16 +53,16 @@ def html(
 ) -> str:
     """Return a whole page; `figures` are read from `facts` and `variables` where they are not given."""
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
-    kind = _kind(facts)
-    if kind is None:
-        fix = f"give the result of {', '.join(dict.fromkeys(f'gbeam {page.verb}' for page in PAGES.values()))}"
+    kind = facts.get("form", {}).get("kind", "")
+    if kind not in VERBS:
+        fix = f"give the result of {', '.join(dict.fromkeys(f'gbeam {verb}' for verb in VERBS.values()))}"
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
-    verb = PAGES[kind].verb if kind in PAGES else (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
+    verb = VERBS[kind]
     header |= viewer(kind, facts, variables or {}, numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
     warned, noted = remarks_of(facts)

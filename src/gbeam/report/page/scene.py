@@ -63,7 +63,7 @@ def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tup
     few = surface["sizes"][:: max(1, len(surface["sizes"]) // 100)]
     displacement = np.einsum("ts,sva->tva", few, surface["shapes"])
     by_vertex = von_mises(np.einsum("ts,sva->tva", few, surface["stress"])).max(axis=0)
-    judged = np.broadcast_to(surface.get("judged", True), by_vertex.shape).astype(bool)  # older files do not say
+    judged = surface["judged"].astype(bool)
     largest = float(by_vertex[judged].max(initial=0.0) if stress is None else np.max(stress))
     vertex = (displacement**2).sum(axis=-1).max(axis=0).argmax()
     header = {key: numbers.add(surface[key]) for key in SURFACE} | {"largest": largest}
