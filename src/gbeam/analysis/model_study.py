@@ -201,7 +201,7 @@ def _tip_of(response: Response, point: str | None) -> _Tip:
     owner, _, name = point.partition(".")
     body, left, hub = response.bodies.get(owner), response.residual_amplitude, response.hub
     residual = np.full(3, np.nan) if left is None else left[k]
-    angle = float("nan") if hub is None or not hub.free else float(hub.angle[-1])
+    angle = float("nan") if hub is None or response.base is not None else float(hub.angle[-1])  # that turns freely
     if body is not None and name in body.points and body.peaks.displacement is not None:
         moved, peaks = body.at(name), body.peaks.displacement[body.points.index(name)].components
         return _Tip(response, point, moved, peaks.value, peaks.time, residual, response.residual_from, angle)

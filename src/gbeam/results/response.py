@@ -53,7 +53,6 @@ class HubResult(Part):
         note="None where the rate is prescribed and the hub's inertia not known",
         default=None,
     )
-    free: bool = internal("", "whether the hub's motion is a result, not prescribed", default=False)
     fastest: float = internal("rad/s", "largest size of the rate at all steps", default=0.0)
 
     @declared("rad", "angle at the end", name=None)

@@ -192,7 +192,7 @@ class Histories:
             angle, rate = (over_time[key][self.kept][:, 0] for key in ("q", "qd"))
             acceleration = self.run.trajectory.at(self.steps[self.kept]).qdd[:, 0]
             fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
-            return HubResult(angle, rate, acceleration, motion.torque(time), free=True, fastest=fastest)
+            return HubResult(angle, rate, acceleration, motion.torque(time), fastest=fastest)
         axis, base = motion.mount.R_HB[2], motion.base(time)
         torque = next((each.loads.drive_torque for each in bodies.values() if each.loads is not None), None)
         return HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque)

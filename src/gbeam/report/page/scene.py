@@ -136,7 +136,8 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
             offset = offset + parent_turn.apply(np.where(np.abs(bent) > 1e-9 * np.abs(place).max(), bent, 0.0))
         frames[body] = turn, origin, offset
         frame = np.concatenate([origin, attitude, offset], axis=-1)
-        part: dict[str, Any] = {"frame": numbers.add(frame)}
+        moved = bool(np.any(frame - BASE))
+        part: dict[str, Any] = {"frame": numbers.add(frame)} if moved else {}
         reach = np.zeros((0, 3))
         if body in beams:
             part["beam"] = _beam(inner, index, numbers)
@@ -149,8 +150,8 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
             surface["sizes"] = np.stack(
                 [np.interp(times, surface["time"], each) for each in surface["sizes"].T], axis=1
             )
-            part["surface"], moved = _surface(surface, inner.get("solid_von_mises"), numbers)
-            deflected = moved if _largest(moved) > _largest(deflected) else deflected
+            part["surface"], farthest = _surface(surface, inner.get("solid_von_mises"), numbers)
+            deflected = farthest if _largest(farthest) > _largest(deflected) else deflected
             reach = surface["vertices"].min(axis=0) + CORNERS * np.ptp(surface["vertices"], axis=0)
         elif "specimen_corner_place" in inner:
             bolts = inner.get("specimen_bolt_place", reach)
@@ -170,7 +171,7 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     largest = max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)])
     header = _header(name, environment, parts, numbers.add(times), largest)
     header["length"] = max((_length(under(f"{body}_", v)) for body in beams), default=2 * radius)
-    if len(parts) > 1 or corners or np.any(frame - BASE):  # more than one straight beam on its base
+    if len(parts) > 1 or corners or moved:  # more than one straight beam on its base
         header |= {"middle": numbers.add(middle), "radiusShown": radius}
     at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
     header |= carrier | _carried(v, index, at_start, numbers)
