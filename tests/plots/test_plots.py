@@ -20,7 +20,9 @@ from gbeam.figures import bodies, figures_of, imitation, machine, response, stea
 from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
+from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.comparison import Comparison, MachinePlan
+from gbeam.results.declared import declarations
 from gbeam.results.equilibrium import BodyRest, Rest
 from gbeam.results.machine import LimitUse
 from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
@@ -146,6 +148,55 @@ def test_tip(study: Study) -> None:
     np.testing.assert_array_equal(z_off.get_lines()[0].get_ydata(), 1e3 * study.comparisons[0].difference[:, 2])
     spans = {"spin-up": [(0.0, 0.1)], "below idle": [(0.5, 0.8)], "spin-down": [(1.9, 2.0)]}
     assert _shaded(z) == spans == {key[1:]: each for key, each in _shaded(x_off).items()}
+
+
+def _with_two_bodies(response: Response) -> Response:
+    """The same with two bodies, of which the first alone has loads."""
+    left = with_body(response, loads=replace(_loads(response.time, 2), yield_strength=None)).body
+    right = with_body(response, displacement=2 * response.displacement).body
+    points = tuple(f"{name}.{point}" for name in ("left", "right") for point in ("tip", "root"))
+    twice = [
+        replace(of, points=points, **{
+            name: np.concatenate([getattr(of, name)] * 2, axis=each.dims.index("point"))
+            for name, each in declarations(type(of))
+            if "point" in each.dims and isinstance(getattr(of, name), np.ndarray) and name != "residual_size"
+        })
+        for of in (response.maxima, response)
+    ]  # fmt: skip
+    return replace(twice[1], bodies={"left": left, "right": right}, maxima=twice[0])
+
+
+def test_figures_follow_from_what_a_response_holds(study: Study) -> None:
+    flight, slew = (study.responses[name] for name in ("flight", "slew"))
+    assert [*figures_of(flight)] == ["tip", "base"]
+    assert [*figures_of(slew)] == ["tip", "base", "hub"]
+    turning = replace(slew, base=None, coordinates=("hinge.angle", "beam.q1", "beam.q2"), units=("rad", "", ""))
+    assert [*figures_of(turning)] == ["tip", "base", "hub"]  # which shows the hinge's angle
+    jointed = replace(turning, hub=None)
+    assert [*figures_of(jointed)] == ["tip", "coordinates"]
+    two = _with_two_bodies(flight)
+    names = [*figures_of(two)]
+    assert [name for name in names if name not in ("points", "base")] == ["tip left", "tip right", "loads left"]
+    (z, _, _) = figures_of(two)["tip right"]().panels
+    np.testing.assert_array_equal(z.lines[0].y, 2e3 * flight.tip[:, 2])
+    assert "tip displacement of right relative to its root" in figures_of(two)["tip right"]().heading
+
+
+def test_a_difference_stands_with_the_tip_that_it_is_of(study: Study) -> None:
+    both = {name: _with_two_bodies(each) for name, each in study.responses.items()}
+    (compared,) = study.comparisons
+    of = replace(study, responses=both, comparisons=(replace(compared, point="right.tip"),))
+    shown = {name: [panel.y for panel in figures_of(of)[f"tip {name}"]().panels] for name in ("left", "right")}
+    assert not any("difference" in label for label in shown["left"]) and "difference in z, mm" in shown["right"]
+    assert "comparison spin" not in figures_of(of)
+    apart = replace(of, comparisons=(replace(compared, point="left.root"),))
+    assert "comparison spin" in figures_of(apart)  # a figure of its own
+
+
+def test_bodies_in_a_file_keep_their_loads_apart(study: Study, tmp_path: Path) -> None:
+    two = Study("", {"flight": _with_two_bodies(study.responses["flight"])}, ())
+    two.save(tmp_path / "result.nc")
+    assert report_of_file(tmp_path) == report_of(two)
 
 
 def test_a_direction_that_hardly_moves_is_named(study: Study) -> None:
