@@ -103,8 +103,6 @@ def draw(
     """Figures by their names, which each kind of result has of its own."""
     response.plot().figure.savefig("tip.png")
     response.plot("axes_rate", title="The rates of the axes")
-    response.plot("tipp")  # type: ignore[arg-type]
-    response.plot("modes")  # type: ignore[arg-type]
     comparison.plot("parts y")
     comparison.plot("part y")  # type: ignore[arg-type]
     gb.static(structure).plot("loads")

@@ -22,7 +22,7 @@ from .scenarios import FAST, FREE_HUB
 
 RESULTS = {
     "Comparison", "Fit", "Modes", "Optimum", "Response", "Rest", "Sensitivity", "ShapedCommand", "StateSpace", "Study",
-    "Sweep", "SystemResponse",
+    "Sweep",
 }  # fmt: skip
 NO_FUNCTIONS = {
     "GbeamError",

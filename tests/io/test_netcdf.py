@@ -21,12 +21,13 @@ from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
 from gbeam.results.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
-from gbeam.results.parts import Base, Loads
+from gbeam.results.parts import Base, Loads, Peaks
 from gbeam.results.provenance import Provenance
-from gbeam.results.response import HubResult, Peaks, Response
+from gbeam.results.response import HubResult, Response
 from gbeam.results.study import Failure, Study
 
 from ..files import opened
+from ..responses import of_beam, with_body
 from ..specimens import hub_beam
 
 T, N = 11, 4
@@ -74,24 +75,18 @@ def _random(*shape: int) -> np.ndarray:
 
 
 def _response(name: str, environment: str) -> Response:
-    return Response(
-        name=name,
-        environment=environment,
-        model="FOAM",
-        outcome="done",
-        message="",
+    return of_beam(
+        name,
+        environment,
+        TIME,
+        Base(_random(T, 3), _random(T, 3), _random(T, 3)),
+        _random,
+        size=N,
         warnings=("one", "two"),
-        time=TIME,
         stations=np.array([0.1, 0.3]),
         displacement=_random(T, 2, 3),
-        q=_random(T, N),
-        qd=_random(T, N),
-        base=Base(_random(T, 3), _random(T, 3), _random(T, 3)),
         peaks=Peaks(_random(3), _random(3), np.full(3, np.nan)),
         integrator="newmark",
-        step=0.1,
-        steps=10,
-        error_estimate=float("nan"),
         residual_from=float("nan"),
     )
 
@@ -108,7 +103,7 @@ def study() -> Study:
     responses = {
         "flight": _response("flight", "flight"),
         "spin": replace(_response("spin", "centrifuge"), axes=axes),
-        "slew": replace(_response("slew", "hub"), hub=hub, model="exact", loads=loads),
+        "slew": replace(with_body(_response("slew", "hub"), model="exact", loads=loads), hub=hub),
     }
     sizes = (Sizes(*(abs(_random(2, 3)) for _ in range(3))) for _ in range(3))
     split = Statistics(np.array([0.1, 0.3]), 18.0, *sizes, *(_random(T, 3) for _ in range(4)))
@@ -138,7 +133,8 @@ def tree(file: Path) -> xr.DataTree:
 
 def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
     flight, spin = (tree[f"motions/{name}"] for name in ("flight", "spin"))
-    np.testing.assert_array_equal(flight["displacement"].sel(axis="y"), study.responses["flight"].displacement[:, :, 1])
+    along_y = flight["beam_displacement"].sel(axis="y")
+    np.testing.assert_array_equal(along_y, study.responses["flight"].displacement[:, :, 1])
     assert list(spin["not_followed_reason"].values) == ["below idle"]
     assert "hub_angle" not in flight and "not_followed_reason" not in flight
     np.testing.assert_array_equal(tree["comparisons/spin/difference"], study.comparisons[0].difference)
@@ -160,19 +156,22 @@ def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
     assert float(compared["not_followed_to"][0]) == 1.0
 
 
+BASE = {"root_acceleration": "a_WO_B", "angular_velocity": "w_WB_B", "angular_acceleration": "alpha_WB_B"}
+OF_WHOLE = ("place", "velocity", "acceleration", "attitude", "angular_velocity", "q", "effort", "ground_force")
 RESPONSE = {
-    "displacement": "displacement",
-    "coordinates": "q",
-    "coordinate_rates": "qd",
-    "root_acceleration": "base.a_WO_B",
-    "angular_velocity": "base.w_WB_B",
-    "angular_acceleration": "base.alpha_WB_B",
-    "tip_max_abs": "peaks.max_abs",
-    "tip_time_of_max": "peaks.time_of_max",
+    "beam_displacement": "body.displacement",
+    "beam_coordinates": "body.q",
+    "beam_coordinate_rates": "body.qd",
+    **{f"beam_{name}": f"body.base.{field}" for name, field in BASE.items()},
+    "beam_tip_max_abs": "body.peaks.max_abs",
+    "beam_tip_time_of_max": "body.peaks.time_of_max",
+    **{name: name for name in OF_WHOLE},
+    "rates": "qd",
+    **{f"ground_{name}": f"base.{field}" for name, field in BASE.items()},
 }
 OF_HUB = {f"hub_{name}": f"hub.{name}" for name in ("angle", "rate", "acceleration")}
 OF_LOADS = {
-    name: f"loads.{name}"
+    f"beam_{name}": f"body.loads.{name}"
     for name in (
         *("section_force", "section_moment", "acceleration", "stress", "stress_tension", "stress_compression"),
         *("beam_torque", "drive_torque"),
@@ -207,8 +206,10 @@ def test_what_is_called_a_rate_is_one(tmp_path: Path) -> None:
     for rate, whole in (
         ("hub_rate", "hub_angle"),
         ("hub_acceleration", "hub_rate"),
-        ("angular_acceleration", "angular_velocity"),
-        ("coordinate_rates", "coordinates"),
+        ("beam_angular_acceleration", "beam_angular_velocity"),
+        ("ground_angular_acceleration", "ground_angular_velocity"),
+        ("beam_coordinate_rates", "beam_coordinates"),
+        ("rates", "q"),
     ):
         values, wanted = answer[rate].values, answer[whole].values
         sums = cumulative_trapezoid(values, time, axis=0, initial=0.0)
@@ -235,14 +236,14 @@ def test_stress_cycles(tree: xr.DataTree) -> None:
     assert float(spin["damage_ratio"]) == pytest.approx((4**3 + 2 * 3**3) / (3**3 + 0.5 * 2**3))
 
 
-def test_one_name_for_the_torque_of_a_drive(study: Study) -> None:
-    """It is given on a free hub, and follows from the loads where the rate is prescribed."""
+def test_the_torque_of_a_drive_is_the_hubs(study: Study) -> None:
+    """It is given on a free hub; what follows from the loads where the rate is prescribed is the body's, too."""
     slew = study.responses["slew"]
-    arguments = _random(T)
-    free = replace(slew, hub=replace(slew.hub, drive_torque=arguments)).to_xarray()
-    np.testing.assert_array_equal(free["drive_torque"], arguments)
-    np.testing.assert_array_equal(slew.to_xarray()["drive_torque"], slew.loads.drive_torque)
-    assert "hub_torque" not in free
+    torque = _random(T)
+    free = replace(slew, hub=replace(slew.hub, drive_torque=torque)).to_xarray()
+    np.testing.assert_array_equal(free["drive_torque"], torque)
+    np.testing.assert_array_equal(free["beam_drive_torque"], slew.loads.drive_torque)
+    assert "drive_torque" not in slew.to_xarray()
 
 
 def test_what_is_written_is_what_xarray_gets(study: Study, tree: xr.DataTree, tmp_path: Path) -> None:
@@ -308,18 +309,20 @@ def test_every_number_says_what_it_is(tree: xr.DataTree) -> None:
             if variable.dtype.kind == "f":
                 assert variable.attrs["units"] and variable.attrs["long_name"], name
             if "axis" in variable.dims and name != "axis":
-                frame = "S: axes of the deformed section" if name.startswith("section_") else "B: base axes"
-                assert variable.attrs["frame"].startswith(frame), name
+                frame = "S: axes of the deformed section" if name.startswith("beam_section_") else "B: base axes"
+                stated = {"acceleration": "axes of the point", "angular_velocity": "axes of the point"}
+                stated |= dict.fromkeys(("place", "velocity", "ground_force", "ground_moment"), "ground")
+                assert variable.attrs["frame"].startswith(stated.get(name, frame)), name
     # The exact model's coordinates are angles and strains.
-    assert tree["motions/slew/coordinates"].attrs["units"] == "1"
-    assert tree["motions/slew/coordinate_rates"].attrs["units"] == "s-1"
-    assert tree["motions/flight/coordinate_rates"].attrs["units"] == "m s-1"
+    assert tree["motions/slew/beam_coordinates"].attrs["units"] == "1"
+    assert tree["motions/slew/beam_coordinate_rates"].attrs["units"] == "s-1"
+    assert tree["motions/flight/beam_coordinate_rates"].attrs["units"] == "m s-1"
 
 
 def test_h5py_reads_it(study: Study, file: Path) -> None:
     with h5py.File(file) as opened:
         group = opened["motions/spin"]
-        np.testing.assert_array_equal(group["displacement"][:], study.responses["spin"].displacement)
+        np.testing.assert_array_equal(group["beam_displacement"][:], study.responses["spin"].displacement)
         assert [each.decode() for each in group["axis"]] == ["x", "y", "z"]
         np.testing.assert_array_equal(group["not_followed"][:], study.responses["spin"].axes.not_followed)
         # Attributes that MATLAB reads: text and numbers, nothing else.
@@ -330,7 +333,8 @@ def test_h5py_reads_it(study: Study, file: Path) -> None:
 
 def test_a_group_opens_alone(file: Path) -> None:
     with xr.open_dataset(file, group="motions/flight", engine="h5netcdf") as flight:
-        assert dict(flight.sizes) == {"time": T, "station": 2, "axis": 3, "coordinate": N}
+        whole = {"time": T, "point": 2, "axis": 3, "euler": 4, "coordinate": N}
+        assert dict(flight.sizes) == whole | {"beam_station": 2, "beam_coordinate": N}
 
 
 def test_a_file_is_replaced_whole_or_not_at_all(
@@ -380,3 +384,17 @@ def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -
             carried = [[float(row[f"root_section_force_{axis}_N"]) for axis in "xyz"] for row in lines]
             np.testing.assert_allclose(carried, response.loads.section_force[:, 0], rtol=1e-8, atol=1e-300)
             assert float(lines[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])
+
+
+def test_histories_as_text_name_bodies_where_there_are_several(study: Study, tmp_path: Path) -> None:
+    slew = study.responses["slew"]
+    bodies = {name: with_body(slew, displacement=_random(T, 2, 3)).body for name in ("left", "right")}
+    bodies["right"] = replace(bodies["right"], loads=None)
+    Study("", {"slew": replace(slew, bodies=bodies)}, ()).save(tmp_path / "x.nc")
+    rows = list(csv.DictReader(csv_of(read_stored(tmp_path / "x.nc")).splitlines()))
+    for name, body in bodies.items():
+        tip = [[float(row[f"{name}_tip_{axis}_m"]) for axis in "xyz"] for row in rows]
+        np.testing.assert_allclose(tip, body.tip, rtol=1e-8, atol=1e-300)
+    assert float(rows[3]["left_stress_Pa"]) == pytest.approx(slew.loads.stress[3, 0])
+    assert rows[3]["right_stress_Pa"] == rows[3]["right_root_section_force_x_N"] == ""
+    assert "tip_x_m" not in rows[0]

@@ -11,9 +11,11 @@ from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
 from gbeam.results.comparison import Comparison
 from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.parts import Base
-from gbeam.results.response import HubResult, Peaks, Response
+from gbeam.results.parts import Base, Peaks
+from gbeam.results.response import HubResult, Response
 from gbeam.results.study import Study
+
+from ..responses import of_beam
 
 TIME = np.linspace(0, 2, 201)
 
@@ -21,19 +23,13 @@ TIME = np.linspace(0, 2, 201)
 def _response(name: str, environment: str, turning: float) -> Response:
     wave = 1e-3 * np.sin(np.outer(2 * np.pi * TIME, [1, 2, 3])) * [0.1, 0.2, 1.0]
     zero = np.zeros((len(TIME), 3))
-    return Response(
-        name=name,
-        environment=environment,
-        model="FOAM",
-        outcome="done",
-        message="",
-        warnings=(),
-        time=TIME,
+    return of_beam(
+        name,
+        environment,
+        TIME,
+        Base(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
         stations=np.array([0.3]),
         displacement=wave[:, None],
-        q=zero,
-        qd=zero,
-        base=Base(zero + np.array([0, 0, 60.0]), zero + np.array([0, turning, 0]), zero),
         peaks=Peaks(np.abs(wave).max(axis=0), TIME[np.abs(wave).argmax(axis=0)], np.array([0.0, 1e-4, 2e-4])),
         integrator="newmark",
         step=1e-3,

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam import InputError
-from gbeam.figures import figures_of, imitation, response, steady
+from gbeam.figures import bodies, figures_of, imitation, machine, response, steady
 from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
@@ -25,16 +25,26 @@ from gbeam.results.equilibrium import BodyRest, Rest
 from gbeam.results.machine import LimitUse
 from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
 from gbeam.results.parts import Base, Loads
+from gbeam.results.response import Response
 from gbeam.results.study import Study
+
+from ..responses import with_body
 
 
 def _drawing(describe: Callable[..., Described]) -> Callable[..., Figure]:
     return lambda *args: draw(describe(*args))
 
 
-plot_axes, plot_base, plot_hub = map(_drawing, (response.axes_of, response.base, response.hub))
-plot_loads, plot_tip, plot_tracking = map(_drawing, (response.loads, response.tip, response.tracking))
-plot_shock, plot_static = map(_drawing, (imitation.shock, steady.static))
+plot_axes, plot_tracking, plot_hub = map(_drawing, (machine.axes_of, machine.tracking, response.hub))
+plot_loads, plot_shock, plot_static = map(_drawing, (bodies.loads, imitation.shock, steady.static))
+
+
+def plot_tip(study: Study) -> Figure:
+    return draw(response.tip(study, "beam"))
+
+
+def plot_base(of: Response, title: str = "") -> Figure:
+    return draw(response.base(of, of.base, title))
 
 
 def plot_comparison(compared: Comparison, title: str = "") -> Figure:
@@ -141,7 +151,7 @@ def test_tip(study: Study) -> None:
 def test_a_direction_that_hardly_moves_is_named(study: Study) -> None:
     flight = study.responses["flight"]
     wave = flight.displacement * [0.05, 1.0, 1.0]  # x: 5 µm of 1 mm
-    still = replace(flight, displacement=wave, peaks=replace(flight.peaks, max_abs=np.abs(wave[:, 0]).max(axis=0)))
+    still = with_body(flight, displacement=wave, peaks=replace(flight.peaks, max_abs=np.abs(wave[:, 0]).max(axis=0)))
     figure = plot_tip(Study("", {"flight": still}, ()))
     assert [panel.get_ylabel() for panel in figure.axes] == ["z, mm", "y, mm"]
     assert figure.get_suptitle().endswith("(not drawn: x by 5 µm at most)\nestimated error: 0.001 %")
@@ -159,7 +169,7 @@ def test_flight_is_seen_below_what_imitates_it(study: Study) -> None:
 
 def test_a_constant_is_seen_at_its_size(study: Study) -> None:
     flight = study.responses["flight"]
-    constant = replace(flight, displacement=np.full_like(flight.displacement, -1.7e-3))
+    constant = with_body(flight, displacement=np.full_like(flight.displacement, -1.7e-3))
     panel = plot_tip(Study("", {"flight": constant}, ())).axes[0]
     low, high = panel.get_ylim()
     assert low < -1.7 and high > 0
@@ -293,7 +303,7 @@ def test_loads_have_the_signs_of_the_comparison(study: Study) -> None:
     """Of the section, in both: positive where the fibre is stretched."""
     spin = study.responses["spin"]
     loads = _loads(spin.time, 2)
-    force, moment, stress = plot_loads(spin, loads).axes
+    force, moment, stress = plot_loads(with_body(spin, loads=loads), "beam").axes
     assert [panel.get_ylabel() for panel in (force, moment, stress)] == ["force, N", "moment, N m", "stress, MPa"]
     for panel, names, values in (
         (force, ("axial N", "shear V_y", "shear V_z"), loads.section_force),

@@ -12,6 +12,8 @@ from gbeam.report import as_json, text
 from gbeam.report.facts import facts as to_json
 from gbeam.results.study import Study
 
+from ..responses import with_body
+
 
 def test_summary_names_what_matters(study: Study) -> None:
     said = text(study)
@@ -35,7 +37,8 @@ def test_summary_of_a_failure(study: Study) -> None:
 def test_rounding_is_not_a_displacement(study: Study) -> None:
     response = study.responses["flight"]
     peaks = replace(response.peaks, max_abs=np.array([1e-20, 0.0, 1e-3]))
-    rows = [line.split() for line in text(Study("", {"flight": replace(response, peaks=peaks)}, ())).splitlines()]
+    said = text(Study("", {"flight": with_body(response, peaks=peaks)}, ()))
+    rows = [line.split() for line in said.splitlines()]
     assert [row[1] for row in rows if row[:1] == ["flight"]] == ["z"]
 
 

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
-from gbeam.figures.response import carried_at_root
+from gbeam.figures.bodies import carried_at_root
 from gbeam.numerics.samples import thinned
 from gbeam.report.facts import facts
 from gbeam.report.page import parts as page_parts
@@ -33,6 +33,9 @@ from gbeam.results.parts import Outline
 from gbeam.results.result import Result
 from gbeam.results.searches import CommandRun, FittedColumn, Requirement
 from gbeam.results.study import Study
+from gbeam.results.system import Assembly
+
+from ..responses import with_body
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 
@@ -228,11 +231,16 @@ def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
         np.array([0.0, 0.3]), np.full(2, 0.02), np.full(2, 0.004), False, np.empty((0, 2)), flight.time[::50],
         np.zeros((5, 2, 3)),
     )  # fmt: skip
-    shown = replace(study, responses={**study.responses, "flight": replace(flight, outline=outline)})
+    still, unknown = np.zeros((1, 3)), np.full((1, 3), np.nan)
+    clamped = Assembly(("beam",), ("ground",), ("fixed",), still, np.zeros((2, 3)), unknown, unknown, unknown[None])
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(flight.time), 2, 1))
+    held = replace(with_body(flight, outline=outline), assembly=clamped, attitude=upright)
+    shown = replace(study, responses={**study.responses, "flight": held})
     scene = header_of(report_of(shown))["scene"]
     (motion,) = scene["motions"]  # type: ignore[index]
     (part,) = motion["parts"]
     assert motion["name"] == "flight" and part["beam"]["points"] == [0, 0.3] and motion["time"]["shape"] == [5]
+    assert "middle" not in motion  # it is seen from its base
     assert "scene" not in header_of(report_of(study))
 
 
@@ -259,7 +267,7 @@ def test_thinned_keeps_the_least_and_the_largest(count: int, seed: int) -> None:
 def test_values_beyond_all_bounds_are_drawn_as_gaps(study: Study, tmp_path: Path) -> None:
     study.save(tmp_path / "result.nc")
     with h5py.File(tmp_path / "result.nc", "r+") as file:
-        for name in ("displacement", "root_acceleration"):
+        for name in ("place", "beam_displacement", "ground_root_acceleration"):
             file[f"motions/flight/{name}"][3] = 1e300
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -352,8 +360,11 @@ def test_numbers_of_a_system_have_units_and_rounding_is_zero() -> None:
         assert "<td>step</td><td>0.05000</td><td>s</td>" in page and ">at the end, m or rad<" in page
     assert ">at rest, m or rad<" in report_of(gb.static(system))
     spun = gb.simulate(gb.assemble(BEAM, "FOAM", axial=1, y=1, z=1), gb.Hub(radius=0.5, rate=10.0), duration=0.1)
-    row = report_of(spun).partition("root moment, N m")[2].partition("</tbody>")[0]
-    assert spun.loads is not None and 0 < np.abs(spun.loads.root_moment).max() < 1e-12
+    loads = spun.peaks.loads
+    assert loads is not None and np.abs(loads.moment.size.value).max() < 1e-12
+    tiny = replace(loads.moment, size=replace(loads.moment.size, value=np.full(2, 1e-15)))
+    rounded = with_body(spun, peaks=replace(spun.peaks, loads=replace(loads, moment=tiny)))
+    row = report_of(rounded).partition("root moment, N m")[2].partition("</tbody>")[0]
     assert '<td class="number">0</td>' in row
 
 

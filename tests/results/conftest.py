@@ -61,7 +61,7 @@ def every() -> dict[str, Any]:
         ),
         "placement": Placement("flight", "arm", {"tip": 1.0}, 0.3, options[0], options, 0.15, values),
         "models": ModelStudy("title", "exact", {"slew": "z"}, rows),
-        **{type(each).__name__: each for each in _of_a_system(structure)},
+        **dict(zip(("Rest", "Modes", "ground"), _of_a_system(structure), strict=True)),
         "response": gb.simulate(structure, flight, duration=0.05, step=1e-3, name="flight"),
     }  # fmt: skip
 
@@ -82,9 +82,7 @@ def matrix(every: dict[str, Any]) -> dict[str, Any]:
     response = every["response"]
     named = {type(each).__name__: each for each in every.values()}
     return named | {
-        "Study": gb.Study(
-            "title", {"flight": response, "ground": named["SystemResponse"]}, (gb.compare(response, response),)
-        ),
+        "Study": gb.Study("title", {"flight": response, "ground": every["ground"]}, (gb.compare(response, response),)),
         "Comparison": gb.compare(response, response),
         **_searched(),
     }

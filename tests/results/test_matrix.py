@@ -124,19 +124,15 @@ def test_what_may_be_measured_is_known_before_anything_is_computed() -> None:
 
 def test_figures_have_the_names_that_type_checkers_know(matrix: dict[str, Any]) -> None:
     """All that there are, and no other, of every kind whose figures have fixed names."""
-    response, comparison, plan = (matrix[kind] for kind in ("Response", "Comparison", "MachinePlan"))
+    comparison, plan = (matrix[kind] for kind in ("Comparison", "MachinePlan"))
     axes = replace(plan.axes, jerk=plan.axes.rate)
     wide = [replace(comparison, shock=True, peak_flight=1.0 + np.eye(3)[i]) for i in range(3)]
     several = {
-        "Response": [
-            replace(response, axes=axes, readings=True, hub=True, solid=True),
-            replace(response, specimen=True),
-        ],
         "MachinePlan": [replace(plan, axes=axes)],
         "Comparison": [replace(each, peak_centrifuge=np.ones(3)) for each in wide],
     }
     named = {kind: figure_names(type(each)) for kind, each in matrix.items() if isinstance(each, Figured)}
-    open_names = {"Study", "SystemResponse", "Rest", "Sweep", "Sensitivity"}
+    open_names = {"Study", "Response", "Rest", "Sweep", "Sensitivity"}
     assert {kind for kind, names in named.items() if not names} == open_names
     for kind, names in named.items():
         if names:

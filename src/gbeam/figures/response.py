@@ -16,6 +16,7 @@ from gbeam.figures.description import (
     Dash,
     Figure,
     Line,
+    Marks,
     Panel,
     Span,
     components,
@@ -118,7 +119,7 @@ def _displacement(study: Study, moved: Mapping[str, BodyResponse], axis: int, *,
     lines = []
     for name, each in moved.items():
         time = study.responses[name].time
-        marks = "joined" if len(time) == 1 else ""  # a run that diverged at once is no line
+        marks: Marks = "joined" if len(time) == 1 else ""  # a run that diverged at once is no line
         lines.append(Line(time, scale * each.tip[:, axis], name, marks=marks, **looks(study)[name]))
     return Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=named)
 

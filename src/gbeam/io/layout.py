@@ -195,8 +195,10 @@ def completed(group: Group) -> Group:
     for dim, (first, meaning) in _NUMBERED.items():
         if dim in sizes and dim not in group.coordinates:
             group.coordinates.update(coordinate(dim, np.arange(first, first + sizes[dim]), "1", meaning))
-    filled = {name: each for name, each in group.variables.items() if each.values.size}  # a length of zero is unlimited
-    return Group(filled, group.coordinates, known_attrs(group.attrs))
+    # A length of zero is unlimited.
+    filled, along = ({name: each for name, each in columns.items() if each.values.size}
+                     for columns in (group.variables, group.coordinates))  # fmt: skip
+    return Group(filled, along, known_attrs(group.attrs))
 
 
 def in_files(unit: str) -> str:

@@ -311,14 +311,12 @@ def _rows(stored: Stored, name: str, vectors: Iterable[str], stresses: Iterable[
     """Lines of one motion: its name, the time, components of vectors at the tip or the root, stress of the root."""
     place = f"motions/{name}/"
     time = stored.variables[f"{place}time"]
-    known = {each: stored.variables.get(f"{place}{each}") for each in (*vectors, *stresses)}
     columns = []
     for each in vectors:
-        array = known[each]
-        array = np.full((len(time), 3), np.nan) if array is None else array
+        array = stored.variables.get(f"{place}{each}", np.full((len(time), 3), np.nan))
         station = -1 if each.endswith("_displacement") else 0
         columns.append(array[:, station] if array.ndim == 3 else array)
-    columns += [np.full((len(time), 1), np.nan) if known[each] is None else known[each][:, :1] for each in stresses]
+    columns += [stored.variables.get(f"{place}{each}", np.full((len(time), 1), np.nan))[:, :1] for each in stresses]
     quoted = f'"{name}"' if "," in name or '"' in name else name
     for t, row in zip(time, np.concatenate(columns, axis=1), strict=True):
         yield f"{quoted},{t:.9g}," + ",".join("" if np.isnan(each) else f"{each:.9g}" for each in row)

@@ -6,7 +6,19 @@ import math
 
 import numpy as np
 
-from gbeam.report.blocks import Block, Blocks, Cell, Columns, Facts, Items, Sentence, Value, named, numbered, table
+from gbeam.report.blocks import (
+    Block,
+    Blocks,
+    Cell,
+    Columns,
+    Facts,
+    Items,
+    Sentence,
+    Value,
+    named,
+    numbered,
+    table,
+)
 from gbeam.report.words import known, number, percent, tidy
 from gbeam.results.declared import declarations
 from gbeam.results.errors import ErrorEstimate
@@ -140,9 +152,9 @@ def _read(motion: Facts, body: str, point: str) -> Facts:
 def points_table(motion: Facts) -> Block:
     """Table of the largest motions of the points of several bodies, with what is read there."""
     residual = f"residual from {known(motion.get('residual_from')):g} s, m"
-    cells: Columns = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
+    moved = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
     rows = [each | _read(motion, *each["name"].split(".", 1)) for each in named(motion["points"])]
-    return table(rows, cells | _READ | {residual: "residual_size"}, optional=(*_READ, residual))
+    return table(rows, {**moved, **_READ, residual: "residual_size"}, optional=(*_READ, residual))
 
 
 def stations_table(bodies: Facts) -> Block:

@@ -140,7 +140,9 @@ class Histories:
             influence=influence(structure)
             if isinstance(motion, Centrifuge) and alone and straight and not traced
             else None,
-            outline=outline_of(structure, motion if alone else None, time, kept.q) if drawn else None,
+            outline=outline_of(structure, motion if name == posed.subject.body else None, time, kept.q)
+            if drawn
+            else None,
             masses=np.empty((0, 3)) if traced or source is None else source.beam.body_centres,
             **(self._recovered(name, state, peaks) if drawn else {}),
         )

@@ -37,7 +37,8 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
     for name, environment in motions.items():
         v = under(f"motions/{name}/", variables)
         if "hangs_on" in v:
-            shown.append(motion(name, environment, _at_once(v) if v["place"].ndim == 2 else v, numbers))
+            seen = _at_once(v) if v["place"].ndim == 2 else _on_hub(v)
+            shown.append(motion(name, environment, seen, numbers))
     if not shown:
         return None
     _, time, displacement = shown[0]
@@ -168,7 +169,7 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
     largest = max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)])
     header = _header(name, environment, parts, numbers.add(times), largest)
-    header["length"] = max((float(v[f"{body}_point"][-1]) for body in beams), default=radius)
+    header["length"] = max((_length(under(f"{body}_", v)) for body in beams), default=2 * radius)
     if len(parts) > 1 or corners or np.any(frame - BASE):  # more than one straight beam on its base
         header |= {"middle": numbers.add(middle), "radiusShown": radius}
     at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
@@ -178,9 +179,14 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     return header, times, deflected
 
 
+def _length(beam: Variables) -> float:
+    """Length of a beam, of one on a line the largest distance from its root."""
+    return float(beam["point"][-1]) if "outline_place" not in beam else _largest(beam["outline_place"])
+
+
 def _carrier(inner: Variables, v: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
     """Header of the turning of what carries a beam, as its outline has it: its attitude in flight, or the hub's."""
-    header = {"attitude": numbers.add(inner["attitude"])} if "attitude" in inner else {}
+    header: dict[str, Any] = {"attitude": numbers.add(inner["attitude"])} if "attitude" in inner else {}
     if "hub_radius" in inner:
         header |= {"radius": float(inner["hub_radius"]), "mounting": np.ravel(inner["hub_mounting"]).tolist()}
         header["angle"] = numbers.add(v["hub_angle"][index])
@@ -215,6 +221,20 @@ def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> di
 def _at_once(v: Variables) -> Variables:
     """Return the variables of a system at rest as those of one time."""
     return {**v, "time": np.zeros(1), **{name: v[name][None] for name in _PLACED if name in v}}
+
+
+def _on_hub(v: Variables) -> Variables:
+    """Return the variables of a body on a hub that turns freely as those of the body alone in axes of its root, which
+    turn with the hub; others as they are.
+    """
+    bodies = [body for body in v["body"] if f"{body}_hub_radius" in v]
+    if not bodies or GROUND in v:
+        return v
+    (body,), times = bodies, len(v["time"])
+    still = {"hangs_on": ["ground"], "joint_kind": ["fixed"], "undeformed": np.zeros((1, 3))}
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (times, 1, 1))
+    placed = {"point": [f"{body}.root"], "place": np.zeros((times, 1, 3)), "attitude": upright}
+    return {**v, "body": bodies, **still, **placed, GROUND: v[f"{body}_root_acceleration"]}
 
 
 def _in_mode(surface: Mapping[str, Any], k: int) -> float:
