@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
 import numpy as np
 
 from gbeam import Beam, Material, Model, Response, Section, Structure, assemble
+from gbeam.results.body_response import BodyResponse
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Base
-from gbeam.results.response import Peaks
+from gbeam.results.parts import Base, Peaks
 
 LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)
@@ -33,9 +34,24 @@ def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None
     axes: Any = None
     if held is not None:
         axes = AxesResult(none, none, none, none, none, held, ())
-    return Response(
-        name=name, environment="flight", model="FOAM", outcome="done", message="", warnings=(), time=time,
-        stations=np.array([LENGTH]), displacement=tip[:, None, :], q=np.zeros((n, 1)), qd=np.zeros((n, 1)),
-        base=Base(none, none, none), peaks=Peaks(np.abs(tip).max(0), np.zeros(3), np.full(3, np.nan)),
-        integrator="newmark", step=0.1, steps=n - 1, error_estimate=0.0, residual_from=np.nan, axes=axes,
+    base = Base(none, none, none)
+    peaks = Peaks(np.abs(tip).max(0), np.zeros(3), np.full(3, np.nan))
+    body = BodyResponse(
+        model="FOAM", base=base, stations=np.array([LENGTH]), points=("tip",), displacement=tip[:, None, :],
+        q=np.zeros((n, 1)), qd=np.zeros((n, 1)), peaks=peaks,
     )  # fmt: skip
+    place = np.stack([[LENGTH, 0.0, 0.0] + tip, none], axis=1)
+    still, turned = np.zeros((n, 2, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (n, 2, 1))
+    return Response(
+        name=name, environment="flight", outcome="done", message="", warnings=(), time=time,
+        points=("beam.tip", "beam.root"), coordinates=("beam.q1",), units=("",), place=place, velocity=still,
+        acceleration=still, attitude=turned, angular_velocity=still, q=body.q, qd=body.qd, effort=np.zeros((n, 1)),
+        ground_force=none, ground_moment=none, bodies={"beam": body}, base=base, integrator="newmark", step=0.1,
+        steps=n - 1, error_estimate=0.0, axes=axes,
+    )  # fmt: skip
+
+
+def with_body(response: Response, **changes: Any) -> Response:
+    """The response with other fields of its only body."""
+    ((name, body),) = response.bodies.items()
+    return replace(response, bodies={name: replace(body, **changes)})

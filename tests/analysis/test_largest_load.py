@@ -111,7 +111,7 @@ def test_a_response_knows_its_bodies_off_the_axis() -> None:
     body = PointMass(0.2, 0.01, offset=(0.0, 0.1, 0.0))
     beam = Beam(LENGTH, SECTION, ALUMINIUM, [body], damping_ratio=0.01)
     response = simulate(assemble(beam, "FOAM", z=1), InFlight(z=constant(G)), duration=0.02, step=1e-3)
-    np.testing.assert_array_equal(response.bodies, [[0.2, 0.1, 0.0]])
+    np.testing.assert_array_equal(response.body.masses, [[0.2, 0.1, 0.0]])
     spun = replace(response, base=replace(response.base, w_WB_B=0 * response.base.w_WB_B + 10 * ALONG_X))
     pair = compare(response, spun).peaks["largest_load"]
     assert (pair.place_machine, pair.machine) == ("the body at 200 mm", pytest.approx(np.hypot(G, 100 * 0.1)))

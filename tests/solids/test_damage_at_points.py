@@ -12,6 +12,7 @@ from scipy.signal import lsim
 
 import gbeam as gb
 from gbeam.analysis.imitation.fatigue import cyclic_at
+from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.report.study import comparison_lines
 from gbeam.solids.stress import ranging
 
@@ -168,7 +169,7 @@ def test_every_section_has_its_fibre() -> None:
     assert all(a > b for a, b in pairwise(sizes[[0, 1]])) and sizes[0] == pytest.approx(
         loads.stress[:, 0].max(), rel=1e-9
     )
-    cyclic = cyclic_at(flight, "half")
+    cyclic = cyclic_at(Quantities.of("flight", flight), "half")
     assert cyclic is not None and cyclic.exponent == 4.0
 
 

@@ -150,9 +150,16 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
     )
     base: Base | None = part("motion of the ground", "time", name="ground_", note="None where it rests", default=None)
     invariants: Invariants | None = part(
-        "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
+        "momentum and energy",
+        key="invariants",
+        name=INSIDE,
+        optional=True,
+        note="None on a base that moves",
+        default=None,
     )
-    loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
+    loop: Loop | None = part(
+        "controllers", key="loop", name=INSIDE, optional=True, note="None without any", default=None
+    )
     hub: HubResult | None = part("motion of a hub", optional=True, default=None)
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
     assembly: Assembly | None = part(

@@ -52,10 +52,10 @@ class Study(Figured[str]):
     )
 
     @property
-    def _specimens(self) -> dict[str, SpecimenLoads]:
-        """Loads of a rigid specimen by the motion's name."""
-        specimens = {name: each.specimen for name, each in self.responses.items() if isinstance(each, Response)}
-        return {name: specimen for name, specimen in specimens.items() if specimen is not None}
+    def _specimens(self) -> list[tuple[str, SpecimenLoads]]:
+        """Loads of rigid specimens, each with the motion's name."""
+        bodies = ((name, body) for name, each in self.responses.items() for body in each.bodies.values())
+        return [(name, body.specimen) for name, body in bodies if body.specimen is not None]
 
     @property
     def exceeding(self) -> Mapping[str, str]:
@@ -66,7 +66,9 @@ class Study(Figured[str]):
     @property
     def not_accepted(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
-        reasons = {name: specimen.refusal for name, specimen in self._specimens.items()}
+        reasons = dict[str, str]()
+        for name, specimen in self._specimens:
+            reasons[name] = ", ".join(filter(None, (reasons.get(name, ""), specimen.refusal)))
         for comparison in self.comparisons:
             name = comparison.centrifuge
             refusal = comparison.refusal if comparison.decision == NOT_ACCEPTED else ""
@@ -86,7 +88,7 @@ class Study(Figured[str]):
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
-        kept = [each.within_limit for each in self._specimens.values()]
+        kept = [specimen.within_limit for _, specimen in self._specimens]
         return state_of(self.outcome, self.comparisons, exceeded=exceeded, kept=kept)
 
     def __repr__(self) -> str:
