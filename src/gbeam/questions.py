@@ -360,7 +360,7 @@ def plan(
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     limits = {name: judging(case.accept.get(name, {}), response=False) for name in machines}
     return tuple(
-        plan(name, prepared(case, name), case.tracks[name], **case.extent, **limits[name]) for name in machines
+        plan(name, prepared(case, name), case.tracks[name], specimen=case.system, **limits[name]) for name in machines
     )
 
 
@@ -377,9 +377,9 @@ def place(case: Case, motion: str | None = None, at: float | None = None, needs:
     from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
-    structure, names = case.subject, (case.tracks[name], name)
-    choice = choice_of(current, turns=usual_turns(structure))
-    return place(structure, current.flight, choice, case.over_time, usual(structure), current=current, names=names)
+    system, names = case.system, (case.tracks[name], name)
+    choice = choice_of(current, turns=usual_turns(system))
+    return place(system, current.flight, choice, case.over_time, usual(system), current=current, names=names)
 
 
 @question(

@@ -194,6 +194,9 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         note="of which this is a part; None where it is all of it", default=None,
     )  # fmt: skip
     scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
+    ends: Mapping[str, Floats] = internal(
+        "m", "places on the undeformed bodies, by name, at one of which the load is largest", default_factory=dict
+    )
     kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
     felt_at_steps: tuple[Floats, Floats] | None = internal(
         "", "times (t,) s of all steps of the flight, and accelerations (t, p, 3) m/s² of the points there; None "

@@ -33,7 +33,7 @@ def fatigue(flight: Quantities, machine: Quantities, at: str | None = None) -> F
         place = max(candidates, key=lambda name: np.ptp(candidates[name].stress), default="")
         in_flight, on_machine = candidates.get(place), places_of(machine.response).get(place)
     else:
-        place, in_flight, on_machine = f"at {at}", cyclic_at(flight, at), _cyclic_at(machine, at)
+        place, in_flight, on_machine = f"at {at}", cyclic_at(flight, at), cyclic_at(machine, at)
     if in_flight is None or on_machine is None:
         return None
     if not np.array_equal(in_flight.exponent, on_machine.exponent, equal_nan=True):
