@@ -22,6 +22,12 @@ EA = 7e10 * 0.02 * 0.004
 OMEGA = 1.875104068711961**2 * np.sqrt(EI / (LINE * LENGTH**4))  # of the first mode, rad/s
 
 
+def with_body(response: Response, **changes: Any) -> Response:
+    """The response with other fields of its only body."""
+    ((name, body),) = response.bodies.items()
+    return replace(response, bodies={name: replace(body, **changes)})
+
+
 @cache
 def strip(kind: str = "FOAM", counts: tuple[int, int, int] = (0, 0, 2), damping_ratio: float = 0.0) -> Structure:
     beam = Beam(LENGTH, SECTION, ALUMINIUM, damping_ratio=damping_ratio, rotary_inertia=False)
@@ -49,9 +55,3 @@ def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None
         ground_force=none, ground_moment=none, bodies={"beam": body}, base=base, integrator="newmark", step=0.1,
         steps=n - 1, error_estimate=0.0, axes=axes,
     )  # fmt: skip
-
-
-def with_body(response: Response, **changes: Any) -> Response:
-    """The response with other fields of its only body."""
-    ((name, body),) = response.bodies.items()
-    return replace(response, bodies={name: replace(body, **changes)})

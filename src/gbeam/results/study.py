@@ -53,7 +53,7 @@ class Study(Figured[str]):
 
     @property
     def _specimens(self) -> list[tuple[str, SpecimenLoads]]:
-        """Loads of rigid specimens, each with the motion's name."""
+        """Names of motions, each with the loads of a rigid specimen."""
         bodies = ((name, body) for name, each in self.responses.items() for body in each.bodies.values())
         return [(name, body.specimen) for name, body in bodies if body.specimen is not None]
 
@@ -88,7 +88,7 @@ class Study(Figured[str]):
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
-        kept = [specimen.within_limit for _, specimen in self._specimens]
+        kept = [each.within_limit for _, each in self._specimens]
         return state_of(self.outcome, self.comparisons, exceeded=exceeded, kept=kept)
 
     def __repr__(self) -> str:
