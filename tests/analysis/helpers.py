@@ -46,12 +46,12 @@ def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None
         model="FOAM", base=base, stations=np.array([LENGTH]), points=("tip",), displacement=tip[:, None, :],
         q=np.zeros((n, 1)), qd=np.zeros((n, 1)), peaks=peaks,
     )  # fmt: skip
-    place = np.stack([[LENGTH, 0.0, 0.0] + tip, none], axis=1)
+    place = np.stack([np.array([LENGTH, 0.0, 0.0]) + tip, none], axis=1)
     still, turned = np.zeros((n, 2, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (n, 2, 1))
     return Response(
         name=name, environment="flight", outcome="done", message="", warnings=(), time=time,
         points=("beam.tip", "beam.root"), coordinates=("beam.q1",), units=("",), place=place, velocity=still,
         acceleration=still, attitude=turned, angular_velocity=still, q=body.q, qd=body.qd, effort=np.zeros((n, 1)),
         ground_force=none, ground_moment=none, bodies={"beam": body}, base=base, integrator="newmark", step=0.1,
-        steps=n - 1, error_estimate=0.0, axes=axes,
+        steps=n - 1, error_estimate=0.0, axes=axes, ends={"the root": np.zeros(3), "the tip": place[0, 0]},
     )  # fmt: skip

@@ -115,7 +115,9 @@ def test_a_bracket_with_a_corner_is_flown_and_spun_as_two_beams_at_right_angles(
         assert (one.flight, one.machine) == pytest.approx((other.flight, other.machine), rel=5e-4), name
     np.testing.assert_allclose(compared.difference, of_tree.difference, atol=2e-3 * compared.peaks["tip"].flight)
     largest = compared.peaks["largest_load"]
-    growth = gb.plan("spun", MACHINE, beam=bracket).peaks["largest_load"]
+    growth = gb.plan("spun", MACHINE, specimen=gb.assemble(bracket, "FOAM", axial=0, y=1, z=1, twist=1)).peaks[
+        "largest_load"
+    ]
     assert (
         compared.mismatch is None
         and spun.influence is None
