@@ -53,5 +53,5 @@ def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None
         points=("beam.tip", "beam.root"), coordinates=("beam.q1",), units=("",), place=place, velocity=still,
         acceleration=still, attitude=turned, angular_velocity=still, q=body.q, qd=body.qd, effort=np.zeros((n, 1)),
         ground_force=none, ground_moment=none, bodies={"beam": body}, base=base, integrator="newmark", step=0.1,
-        steps=n - 1, error_estimate=0.0, axes=axes, ends={"the root": np.zeros(3), "the tip": place[0, 0]},
+        steps=n - 1, error_estimate=0.0, axes=axes, ends={"the root": np.zeros(3), "the tip": np.array([LENGTH, 0.0, 0.0])},
     )  # fmt: skip

@@ -120,7 +120,7 @@ def test_a_bracket_with_a_corner_is_flown_and_spun_as_two_beams_at_right_angles(
     ]
     assert (
         compared.mismatch is None
-        and spun.influence is None
+        and spun.body.influence is None
         and growth.machine == pytest.approx(largest.machine, rel=1e-3)
     )
     outline = spun.outline
