@@ -17,6 +17,7 @@ LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)
 ALUMINIUM = Material(2700.0, 7e10)
 LINE = 2700.0 * 0.02 * 0.004  # kg/m
+TIP = np.array([LENGTH, 0.0, 0.0])
 EI = 7e10 * 0.02 * 0.004**3 / 12  # N m², bending along z
 EA = 7e10 * 0.02 * 0.004
 OMEGA = 1.875104068711961**2 * np.sqrt(EI / (LINE * LENGTH**4))  # of the first mode, rad/s
@@ -53,5 +54,5 @@ def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None
         points=("beam.tip", "beam.root"), coordinates=("beam.q1",), units=("",), place=place, velocity=still,
         acceleration=still, attitude=turned, angular_velocity=still, q=body.q, qd=body.qd, effort=np.zeros((n, 1)),
         ground_force=none, ground_moment=none, bodies={"beam": body}, base=base, integrator="newmark", step=0.1,
-        steps=n - 1, error_estimate=0.0, axes=axes, ends={"the root": np.zeros(3), "the tip": np.array([LENGTH, 0.0, 0.0])},
+        steps=n - 1, error_estimate=0.0, axes=axes, ends={"the root": 0 * TIP, "the tip": TIP},
     )  # fmt: skip

@@ -105,12 +105,14 @@ def test_points_of_beams_in_a_system_are_those_of_the_beam() -> None:
     pair = runs(system)
     for at in (None, "half"):
         theirs = gb.compare(*of_beam(), damage_at=at).fatigue
-        ours = gb.compare(*pair, damage_at=None if at is None else f"strip.{at}").fatigue
+        ours = gb.compare(*pair, damage_at=at).fatigue
         assert ours is not None and theirs is not None
         assert ours.flight.largest == pytest.approx(theirs.flight.largest, rel=1e-4)
         assert ours.damage_ratio == pytest.approx(theirs.damage_ratio, rel=1e-3)
-    with pytest.raises(gb.InputError, match=r"damage_at is 'half'; choose from strip"):
-        gb.compare(*pair, damage_at="half")
+        named = gb.compare(*pair, damage_at=None if at is None else f"strip.{at}").fatigue
+        assert named is not None and named.damage_ratio == ours.damage_ratio
+    with pytest.raises(gb.InputError, match=r"damage_at is 'knee'; choose from half, tip"):
+        gb.compare(*pair, damage_at="knee")
 
 
 def test_spectra_at_the_corner_of_a_rigid_box() -> None:

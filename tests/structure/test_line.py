@@ -123,12 +123,12 @@ def test_a_bracket_with_a_corner_is_flown_and_spun_as_two_beams_at_right_angles(
         and spun.body.influence is None
         and growth.machine == pytest.approx(largest.machine, rel=1e-3)
     )
-    outline = spun.outline
+    outline = spun.body.outline
     assert outline is not None and outline.place is not None and outline.across is not None
     np.testing.assert_allclose(outline.place[[0, -1]], [[0, 0, 0], [leg, 0, leg]], atol=1e-12)
     np.testing.assert_allclose(outline.across, np.tile([0.0, 1.0, 0.0], (len(outline.points), 1)), atol=1e-12)
     np.testing.assert_allclose(outline.displacement[-1, -1], spun.tip[-1], atol=1e-6 * np.abs(spun.tip).max())
-    assert flight.outline is not None and not len(beam().envelope)
+    assert flight.body.outline is not None and not len(beam().envelope)
 
 
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "exact"])

@@ -417,7 +417,7 @@ def linearize(
     subject.require_coordinates()
     structure.require_damping("the state-space model")
     for i, gauge in enumerate(gauges):
-        if gauge.body:
+        if gauge.body not in ("", subject.body):
             raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
     if rate is None:
         drive = subject.drive(time)

@@ -113,6 +113,9 @@ class Plant:
     @staticmethod
     def of(system: System, coordinate: str, point: str | None) -> Plant:
         """The drive of a system's coordinate, with the tip of the only flexible body as point if none is named."""
+        if not movable(system):
+            problem = f"is {coordinate!r}, and no joint moves {', '.join(system.order)}"
+            raise InputError("hub", problem, "give a Hub, which carries a body alone")
         choice("joint", coordinate, movable(system))
         tips = [f"{name}.tip" for name in system.flexible]
         if point is None and len(tips) != 1:

@@ -319,7 +319,7 @@ def _weights(control: Mapping[str, float] | None, run: Quantities) -> dict[str, 
     weights = {} if control is None else control
     for name, weight in weights.items():
         positive(f"control.{name}", weight, "(a weight)")
-        run.index(f"control.{name}", name)
+        run.index("control", name)
     return {name: weight / sum(weights.values()) for name, weight in weights.items()}
 
 
