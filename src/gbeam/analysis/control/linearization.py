@@ -383,7 +383,7 @@ def linearize(
     """
     tell(progress, "equilibrium and slopes", 0.0)
     subject = subject_of(structure, motion)
-    if not subject.body:
+    if not subject.body or structure is subject.system:  # signals of a system are named by its bodies
         if rate is not None:
             raise InputError(
                 "rate", "is of a hub, and a system turns on its joints", "give a time, or a joint its rate"
@@ -417,7 +417,7 @@ def linearize(
     subject.require_coordinates()
     structure.require_damping("the state-space model")
     for i, gauge in enumerate(gauges):
-        if gauge.body not in ("", subject.body):
+        if gauge.body:
             raise InputError(f"gauges[{i}].body", f"is {gauge.body!r}, and there is one structure", "leave it out")
     if rate is None:
         drive = subject.drive(time)
