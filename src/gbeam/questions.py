@@ -19,6 +19,7 @@ from gbeam.printable import advise
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
+    from gbeam.mechanics.tree.system import System
     from gbeam.results.comparison import MachinePlan
     from gbeam.results.equilibrium import Critical, Rest
     from gbeam.results.modal import Campbell, Modes
@@ -199,20 +200,24 @@ def reduced(case: Case, needs: Needs) -> Case:
     """
     if needs.errors or case.automatic:
         return case
-    compared = case.subject is case.system and case.tracks  # whose comparisons read the loads of its beams
+    compared = case.system.alone is None and case.tracks  # whose comparisons read the loads of its beams
     loads = case.over_time.loads and bool(needs.loads or compared)
     return replace(case, response=replace(case.over_time, estimate=False, loads=loads))
 
 
-def _subject(case: Case, needs: Needs) -> Any:
+def _subject(case: Case, needs: Needs) -> System:
     """Argument of the analyses; if no errors are needed, without what a steady state would judge them by."""
     if case.only_beam is None:
-        return case.subject
+        return case.system
     if needs.shapes:
         length = case.beam.length
         case = case.remade(stations=[length * i / (STATIONS - 1) for i in range(STATIONS)])
-    body = case.require_beam()
-    return body if needs.errors else replace(body, source=None, richer=None, coarser=None)
+    if needs.errors:
+        return case.system
+    bodies = {
+        name: replace(body, source=None, richer=None, coarser=None) for name, body in case.system.flexible.items()
+    }
+    return replace(case.system, bodies=bodies)
 
 
 def _time(case: Case, at: float | None) -> float:
@@ -360,7 +365,7 @@ def plan(
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     limits = {name: judging(case.accept.get(name, {}), response=False) for name in machines}
     return tuple(
-        plan(name, prepared(case, name), case.tracks[name], **case.extent, **limits[name]) for name in machines
+        plan(name, prepared(case, name), case.tracks[name], specimen=case.system, **limits[name]) for name in machines
     )
 
 
@@ -377,9 +382,9 @@ def place(case: Case, motion: str | None = None, at: float | None = None, needs:
     from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
-    structure, names = case.subject, (case.tracks[name], name)
-    choice = choice_of(current, turns=usual_turns(structure))
-    return place(structure, current.flight, choice, case.over_time, usual(structure), current=current, names=names)
+    system, names = case.system, (case.tracks[name], name)
+    choice = choice_of(current, turns=usual_turns(system))
+    return place(system, current.flight, choice, case.over_time, usual(system), current=current, names=names)
 
 
 @question(
@@ -415,7 +420,7 @@ def campbell(
     options |= {"orders": range(1, orders + 1), "time": _time(case, at), "name": name, "progress": progress}
 
     def ask(case: Case) -> Campbell:
-        return campbell.campbell(case.subject, base, **options)
+        return campbell.campbell(case.system, base, **options)
 
     return sufficient(case, ask, lambda diagram: [diagram.errors])[1]
 

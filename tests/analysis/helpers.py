@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -16,9 +17,16 @@ LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)
 ALUMINIUM = Material(2700.0, 7e10)
 LINE = 2700.0 * 0.02 * 0.004  # kg/m
+TIP = np.array([LENGTH, 0.0, 0.0])
 EI = 7e10 * 0.02 * 0.004**3 / 12  # N m², bending along z
 EA = 7e10 * 0.02 * 0.004
 OMEGA = 1.875104068711961**2 * np.sqrt(EI / (LINE * LENGTH**4))  # of the first mode, rad/s
+
+
+def with_body(response: Response, **changes: Any) -> Response:
+    """The response with other fields of its only body."""
+    ((name, body),) = response.bodies.items()
+    return replace(response, bodies={name: replace(body, **changes)})
 
 
 @cache
@@ -39,12 +47,12 @@ def of_tip(name: str, time: np.ndarray, tip: np.ndarray, held: np.ndarray | None
         model="FOAM", base=base, stations=np.array([LENGTH]), points=("tip",), displacement=tip[:, None, :],
         q=np.zeros((n, 1)), qd=np.zeros((n, 1)), peaks=peaks,
     )  # fmt: skip
-    place = np.stack([[LENGTH, 0.0, 0.0] + tip, none], axis=1)
+    place = np.stack([np.array([LENGTH, 0.0, 0.0]) + tip, none], axis=1)
     still, turned = np.zeros((n, 2, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (n, 2, 1))
     return Response(
         name=name, environment="flight", outcome="done", message="", warnings=(), time=time,
         points=("beam.tip", "beam.root"), coordinates=("beam.q1",), units=("",), place=place, velocity=still,
         acceleration=still, attitude=turned, angular_velocity=still, q=body.q, qd=body.qd, effort=np.zeros((n, 1)),
         ground_force=none, ground_moment=none, bodies={"beam": body}, base=base, integrator="newmark", step=0.1,
-        steps=n - 1, error_estimate=0.0, axes=axes,
+        steps=n - 1, error_estimate=0.0, axes=axes, ends={"the root": 0 * TIP, "the tip": TIP},
     )  # fmt: skip

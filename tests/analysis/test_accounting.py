@@ -18,7 +18,7 @@ from gbeam.results.facts import facts_of
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.parts import Base
 
-from .helpers import LENGTH, of_tip
+from .helpers import LENGTH, of_tip, with_body
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
 G = 9.80665
@@ -273,16 +273,16 @@ def test_spin_up_is_not_the_flight(pair: tuple[Response, Response]) -> None:
     axes = arm.axes
     assert axes is not None
     parts = {name: longer(getattr(axes, name)) for name in ("angle", "rate", "acceleration", "reference", "actual")}
+    moved = longer(arm.displacement) * np.where(time < 0, 9.0, 1.0)[:, None, None]
     whole = replace(
-        arm,
+        with_body(arm, displacement=moved),
         time=time,
-        displacement=longer(arm.displacement) * np.where(time < 0, 9.0, 1.0)[:, None, None],
         base=each_leaf(longer, arm.base),
         axes=replace(axes, not_followed=longer(axes.not_followed), **parts),
     )
     # A peak between the steps of the spin-up is none of the flight's.
     early = replace(whole.peaks, max_size=1.0, time_of_max_size=-1.0)
-    one, two = compare(flight, arm), compare(flight, replace(whole, peaks=early))
+    one, two = compare(flight, arm), compare(flight, with_body(whole, peaks=early))
     assert two.verdict == one.verdict
     np.testing.assert_array_equal(two.time, TIME)
     np.testing.assert_array_equal(two.difference, one.difference)

@@ -9,7 +9,7 @@ import pytest
 
 from gbeam import Beam, Comparison, InputError, PointMass, Response, assemble, compare, constant, simulate
 from gbeam import Flight as InFlight
-from gbeam.analysis.imitation.accounting import largest_load, points_of
+from gbeam.analysis.imitation.accounting import largest_load
 from gbeam.results.parts import Base
 
 from .helpers import ALUMINIUM, LENGTH, SECTION, of_tip
@@ -85,7 +85,9 @@ def test_no_point_of_the_specimen_carries_more() -> None:
     for _ in range(20):
         base = Base(*(random.normal(size=(50, 3)) * size for size in (10.0, 5.0, 20.0)))
         bodies = random.normal(size=(2, 3)) * 0.2 + [0.15, 0, 0]
-        value, when, place = largest_load(np.arange(50.0), base, points_of(LENGTH, bodies))
+        named = {"the root": np.zeros(3), "the tip": LENGTH * ALONG_X}
+        named |= {f"the body at {1e3 * body[0]:.4g} mm": body for body in bodies}
+        value, when, place = largest_load(np.arange(50.0), base, named)
         along = np.linspace(0, LENGTH, 31)[:, None] * ALONG_X
         everywhere = np.concatenate([along, *(np.linspace(point, body, 9) for point in along for body in bodies)])
         w, al = base.w_WB_B[:, None], base.alpha_WB_B[:, None]
@@ -93,8 +95,6 @@ def test_no_point_of_the_specimen_carries_more() -> None:
         sizes = np.linalg.norm(loads, axis=-1)
         assert value == pytest.approx(sizes.max()) and when == np.unravel_index(sizes.argmax(), sizes.shape)[0]
         far = everywhere[sizes.max(axis=0).argmax()]
-        named = {"the root": np.zeros(3), "the tip": LENGTH * ALONG_X}
-        named |= {f"the body at {1e3 * body[0]:.4g} mm": body for body in bodies}
         np.testing.assert_allclose(named[place], far, atol=1e-12)
 
 
@@ -103,7 +103,7 @@ def test_points_are_counted_from_the_root_wherever_the_base_is_known() -> None:
     rate = 3.0 + np.sin(TIME)
     arm = on_an_arm(rate, 0.2).base
     at_c = replace(arm, a_WO_B=-(rate**2 * RADIUS)[:, None] * ALONG_X + 0.2 * arm.alpha_WB_B[:, [0, 2, 1]])
-    points = points_of(LENGTH, np.empty((0, 3)))
+    points = {"the root": np.zeros(3), "the tip": LENGTH * ALONG_X}
     assert largest_load(TIME, at_c, points, 0.2) == pytest.approx(largest_load(TIME, arm, points))
 
 
@@ -111,7 +111,8 @@ def test_a_response_knows_its_bodies_off_the_axis() -> None:
     body = PointMass(0.2, 0.01, offset=(0.0, 0.1, 0.0))
     beam = Beam(LENGTH, SECTION, ALUMINIUM, [body], damping_ratio=0.01)
     response = simulate(assemble(beam, "FOAM", z=1), InFlight(z=constant(G)), duration=0.02, step=1e-3)
-    np.testing.assert_array_equal(response.body.masses, [[0.2, 0.1, 0.0]])
+    assert list(response.ends) == ["the root", "the tip", "the body at 200 mm"]
+    np.testing.assert_array_equal(response.ends["the body at 200 mm"], [0.2, 0.1, 0.0])
     spun = replace(response, base=replace(response.base, w_WB_B=0 * response.base.w_WB_B + 10 * ALONG_X))
     pair = compare(response, spun).peaks["largest_load"]
     assert (pair.place_machine, pair.machine) == ("the body at 200 mm", pytest.approx(np.hypot(G, 100 * 0.1)))

@@ -10,8 +10,10 @@ import pytest
 
 from gbeam import Flight, Response, Sine, compare, simulate
 from gbeam.analysis.imitation.fatigue import fatigue, stress_cycles
+from gbeam.analysis.imitation.quantities import Quantities
+from gbeam.results.measures import Fatigue
 
-from ..analysis.helpers import strip
+from ..analysis.helpers import strip, with_body
 
 
 def test_cycles_of_the_standards_example() -> None:
@@ -32,24 +34,28 @@ def test_cycles_of_an_oscillation() -> None:
     assert cycles.equivalent_range(4.0) == pytest.approx(6.0 * 9.5**0.25, rel=2e-3)
 
 
+def damage(flight: Response, machine: Response) -> Fatigue | None:
+    return fatigue(Quantities.of("flight", flight), Quantities.of("centrifuge", machine))
+
+
 def flown(amplitude: float) -> Response:
     return simulate(strip("FOAM", (0, 0, 2), 0.05), Flight(z=Sine(amplitude, 0.1)), duration=0.4, step=1e-3)
 
 
 def test_damage_grows_with_the_power_of_the_stress() -> None:
     once, twice = flown(50.0), flown(100.0)
-    same, more = fatigue(once, once), fatigue(once, twice)
+    same, more = damage(once, once), damage(once, twice)
     assert same is not None and more is not None
     assert same.exponent == 5.0 and same.damage_ratio == pytest.approx(1.0)
     assert more.damage_ratio == pytest.approx(2.0**5, rel=1e-3)
-    beside_rounding = fatigue(flown(1e-70), once)
+    beside_rounding = damage(flown(1e-70), once)
     assert beside_rounding is not None and beside_rounding.damage_ratio == math.inf
     assert once.loads is not None
-    gentle, twice_as_much = (replace(each, loads=replace(each.loads, fatigue_exponent=3.0)) for each in (once, twice))
-    milder = fatigue(gentle, twice_as_much)
+    gentle, twice_as_much = (with_body(each, loads=replace(each.loads, fatigue_exponent=3.0)) for each in (once, twice))
+    milder = damage(gentle, twice_as_much)
     assert milder is not None and milder.damage_ratio == pytest.approx(2.0**3, rel=1e-3)
-    assert fatigue(gentle, twice) is None  # of another material
-    assert fatigue(once, replace(twice, loads=None)) is None
+    assert damage(gentle, twice) is None  # of another material
+    assert damage(once, with_body(twice, loads=None)) is None
 
 
 def test_no_cycles_no_damage() -> None:
@@ -57,8 +63,8 @@ def test_no_cycles_no_damage() -> None:
     still = flown(1.0)
     assert still.loads is not None
     steady = 1e7 * (1 + 1e-15 * np.random.default_rng(0).normal(size=len(still.time)))
-    still = replace(still, loads=replace(still.loads, fibre=steady[:, None]))
-    none = fatigue(still, still)
+    still = with_body(still, loads=replace(still.loads, fibre=steady[:, None]))
+    none = damage(still, still)
     assert none is not None and none.flight.total == 0 and np.isnan(none.damage_ratio)
 
 

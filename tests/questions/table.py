@@ -274,7 +274,7 @@ def _stations(scenario: Scenario) -> Any:
     if beams_of(scenario.alone.system):
         text = text.replace('kind = "beam"\n', 'kind = "beam"\nstations = ["50 mm"]\n')
     response = response_of(scenario.case(text))
-    assert kind.point in response.points
+    response.point("point", kind.point)
     return response
 
 
@@ -290,7 +290,7 @@ def _sensors(scenario: Scenario) -> Any:
 @asked("loads of the root and the sections")
 def _loads(scenario: Scenario) -> Any:
     response = response_of(scenario.alone)
-    loads = response.beams[scenario.kind.last].loads if scenario.kind.joints else response.loads
+    loads = (response.bodies[scenario.kind.last] if scenario.kind.joints else response.body).loads
     assert np.isfinite(loads.root_force).all() and np.abs(loads.root_force).max() > 0
     return loads
 
@@ -300,7 +300,7 @@ def _stress(scenario: Scenario) -> Any:
     """As a limit of acceptance on it, which is refused where there is none; of the satellite, what its panel bears."""
     kind = scenario.kind
     if not kind.held:
-        return response_of(scenario.alone).beams[kind.last].loads.stress
+        return response_of(scenario.alone).bodies[kind.last].loads.stress
     text = kind.moved(FLIGHT, MACHINE + '[motion.machine.accept]\nstress = "50 %"\n')
     (comparison,) = gb.study(scenario.case(text)).comparisons
     assert comparison.decision

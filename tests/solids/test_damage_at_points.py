@@ -12,6 +12,7 @@ from scipy.signal import lsim
 
 import gbeam as gb
 from gbeam.analysis.imitation.fatigue import cyclic_at
+from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.report.study import comparison_lines
 from gbeam.solids.stress import ranging
 
@@ -104,12 +105,14 @@ def test_points_of_beams_in_a_system_are_those_of_the_beam() -> None:
     pair = runs(system)
     for at in (None, "half"):
         theirs = gb.compare(*of_beam(), damage_at=at).fatigue
-        ours = gb.compare(*pair, damage_at=None if at is None else f"strip.{at}").fatigue
+        ours = gb.compare(*pair, damage_at=at).fatigue
         assert ours is not None and theirs is not None
         assert ours.flight.largest == pytest.approx(theirs.flight.largest, rel=1e-4)
         assert ours.damage_ratio == pytest.approx(theirs.damage_ratio, rel=1e-3)
-    with pytest.raises(gb.InputError, match=r"damage_at is 'half'; choose from strip"):
-        gb.compare(*pair, damage_at="half")
+        named = gb.compare(*pair, damage_at=None if at is None else f"strip.{at}").fatigue
+        assert named is not None and named.damage_ratio == ours.damage_ratio
+    with pytest.raises(gb.InputError, match=r"damage_at is 'knee'; choose from half, tip"):
+        gb.compare(*pair, damage_at="knee")
 
 
 def test_spectra_at_the_corner_of_a_rigid_box() -> None:
@@ -168,7 +171,7 @@ def test_every_section_has_its_fibre() -> None:
     assert all(a > b for a, b in pairwise(sizes[[0, 1]])) and sizes[0] == pytest.approx(
         loads.stress[:, 0].max(), rel=1e-9
     )
-    cyclic = cyclic_at(flight, "half")
+    cyclic = cyclic_at(Quantities.of("flight", flight), "half")
     assert cyclic is not None and cyclic.exponent == 4.0
 
 

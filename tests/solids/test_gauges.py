@@ -43,7 +43,7 @@ def flown() -> tuple[gb.Response, gb.Response]:
 def test_a_gauge_on_a_solid_beam_reads_the_beams_strain() -> None:
     """Over time, in flight and on the machine: M z/EI half-way on the face towards +z."""
     for ours, theirs in zip(flown(), runs(beam()), strict=True):
-        k = theirs.points.index("half") + 1
+        k = theirs.body.points.index("half") + 1
         assert theirs.loads is not None
         carried = theirs.loads.section_force[:, k], theirs.loads.section_moment[:, k]
         source = beam().source
@@ -277,7 +277,7 @@ def test_a_run_says_what_is_at_its_points(
     sensor = f'{joint}[sensors."{at}"]\nfrequency = "20 Hz"\n[motion'
     scenario.write_text(scenario.read_text(encoding="utf-8").replace("[motion", sensor), encoding="utf-8")
     run = gb.study(gb.read_scenario(scenario)).responses["flight"]
-    stress = run.solids["bar"] if system else run.solid
+    stress = run.bodies["bar"].solid
     read, strain = run.readings.acceleration[:, 0] / 9.80665, 1e6 * np.abs(stress.strain_at("gauge")).max()
     assert main(["run", str(scenario), "--out", str(tmp_path / "out")]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]

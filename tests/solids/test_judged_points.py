@@ -35,7 +35,7 @@ def test_a_point_of_a_beam_and_of_its_solid_is_judged_alike() -> None:
         assert any(each.startswith("Half: ") for each in one.findings) and "Tip" not in str(one)
         assert one.peak_flight[2] == pytest.approx(other.peak_flight[2], rel=1e-2)
         assert one.max_difference[2] == pytest.approx(other.max_difference[2], rel=2e-2)
-    station = of_beam()[0].points.index("half")
+    station = of_beam()[0].body.points.index("half")
     assert theirs.peak_flight[2] == np.abs(of_beam()[0].displacement[:, station, 2])[theirs.covered].max()
     assert theirs.peaks["tip"].flight < 0.4 * whole.peaks["tip"].flight
     assert theirs.criteria[0].value == theirs.peaks["tip"].ratio - 1 != whole.criteria[0].value

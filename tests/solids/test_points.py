@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -11,6 +10,7 @@ import pytest
 
 import gbeam as gb
 
+from ..analysis.helpers import with_body
 from .test_matrices import frame
 
 
@@ -50,9 +50,10 @@ def test_points_of_matrices_feel_the_base_and_their_own_motion() -> None:
     hub = gb.Hub(radius=0.4, rate=rate, setting_angle=np.pi / 2)
     step = 1e-4
     response = gb.simulate(strip(), hub, duration=0.3, step=step, integrator="gauss", estimate=False)
-    assert response.points == ("middle", "tip")
-    read = response.reading_at("middle")
-    place = np.array([0.25, 0, 0]) + response.at("middle")
+    assert response.body.points == ("middle", "tip")
+    assert response.body.acceleration is not None
+    read = response.body.acceleration[:, 0]
+    place = np.array([0.25, 0, 0]) + response.body.at("middle")
     speed, push = np.gradient(place, step, axis=0), np.gradient(np.gradient(place, step, axis=0), step, axis=0)
     w, alpha = response.base.w_WB_B, response.base.alpha_WB_B
     whole = response.base.a_WO_B + np.cross(alpha, place) + np.cross(w, np.cross(w, place))
@@ -90,7 +91,7 @@ def test_spectra_of_control_points_are_their_weighted_mean() -> None:
     weights = {"middle": 3.0, "tip": 1.0}
     by_sensor = gb.compare(*pair(), control=weights, sensors={"middle": sensor, "tip": sensor}).shock
     heard = [
-        replace(each, point_acceleration=np.stack([each.reading_at(name, sensor) for name in each.points], axis=1))
+        with_body(each, acceleration=np.stack([each.reading_at(name, sensor) for name in each.body.points], axis=1))
         for each in pair()
     ]
     wanted = gb.compare(*heard, control=weights).shock
@@ -107,6 +108,6 @@ def test_spectra_of_control_points_are_their_weighted_mean() -> None:
     ):
         with pytest.raises(gb.InputError, match=words):
             gb.compare(*pair(), sensors=read)
-    for control, words in (({"nose": 1.0}, "is no point; choose from middle, tip"), ({"tip": 0.0}, "is 0")):
+    for control, words in (({"nose": 1.0}, "control is 'nose'; choose from middle, tip"), ({"tip": 0.0}, "is 0")):
         with pytest.raises(gb.InputError, match=words):
             gb.compare(*pair(), control=control)

@@ -300,7 +300,7 @@ def test_few_shapes_hold_what_the_surface_does() -> None:
     model = solid(block("hexahedron20", (4, 1, 1), SIZE)).reduced(modes=4, damping_ratio=0.02)
     turn = gb.Flight(z=gb.trapezoid(78.5, jerk=400.0, start=0.1, hold=0.2))
     response = gb.simulate(model.structure, turn, duration=1.0, step=1e-3, integrator="gauss", estimate=False)
-    surface = response.surface
+    surface = response.body.surface
     assert surface is not None and len(surface.shapes) < model.structure.size / 2
     moved = np.einsum("ts,sva->tva", surface.sizes, surface.shapes)
     tip = np.linalg.norm(surface.vertices - mesh_tip(model), axis=1).argmin()

@@ -115,18 +115,20 @@ def test_a_bracket_with_a_corner_is_flown_and_spun_as_two_beams_at_right_angles(
         assert (one.flight, one.machine) == pytest.approx((other.flight, other.machine), rel=5e-4), name
     np.testing.assert_allclose(compared.difference, of_tree.difference, atol=2e-3 * compared.peaks["tip"].flight)
     largest = compared.peaks["largest_load"]
-    growth = gb.plan("spun", MACHINE, beam=bracket).peaks["largest_load"]
+    growth = gb.plan("spun", MACHINE, specimen=gb.assemble(bracket, "FOAM", axial=0, y=1, z=1, twist=1)).peaks[
+        "largest_load"
+    ]
     assert (
         compared.mismatch is None
-        and spun.influence is None
+        and spun.body.influence is None
         and growth.machine == pytest.approx(largest.machine, rel=1e-3)
     )
-    outline = spun.outline
+    outline = spun.body.outline
     assert outline is not None and outline.place is not None and outline.across is not None
     np.testing.assert_allclose(outline.place[[0, -1]], [[0, 0, 0], [leg, 0, leg]], atol=1e-12)
     np.testing.assert_allclose(outline.across, np.tile([0.0, 1.0, 0.0], (len(outline.points), 1)), atol=1e-12)
     np.testing.assert_allclose(outline.displacement[-1, -1], spun.tip[-1], atol=1e-6 * np.abs(spun.tip).max())
-    assert flight.outline is not None and not len(beam().envelope)
+    assert flight.body.outline is not None and not len(beam().envelope)
 
 
 @pytest.mark.parametrize("kind", ["TLAM", "FOAM", "CFOAM", "exact"])

@@ -64,7 +64,11 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
     """The batch of a case that raises is halved until that one is alone; every other has its own figures."""
     computed: list[int] = []
     whole = Inquiry(
-        ScenarioTemplate(load(fast)), "run", None, keys=(("motions", "flight", "tip", "z", "max_abs"),), together=True
+        ScenarioTemplate(load(fast)),
+        "run",
+        None,
+        keys=(("motions", "flight", "bodies", "beam", "tip", "z", "max_abs"),),
+        together=True,
     )
     tasks = [(k, (*FIXED, f"{LEVEL}={2 + k / 2} g", f"beam.length={200 + k} mm")) for k in range(11)]
     alone = [next(iter(rows(whole, [task]))) for task in tasks]
@@ -88,7 +92,7 @@ def test_each_case_of_a_batch_that_fails_is_computed_once(fast: Path, monkeypatc
 
 
 def test_what_no_measure_needs_changes_no_digit(fast: Path) -> None:
-    tip, error = ("motions", "flight", "tip", "z", "max_abs"), ("motions", "flight", "error_estimate")
+    tip, error = ("motions", "flight", "bodies", "beam", "tip", "z", "max_abs"), ("motions", "flight", "error_estimate")
     plain = Inquiry(ScenarioTemplate(load(fast)), "run", None, keys=(tip,))
     judged = replace(plain, keys=(tip, error))
     (bare,), (whole,) = (rows(each, [(0, ())]) for each in (plain, judged))
@@ -124,7 +128,7 @@ def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> N
             ScenarioTemplate(load(fast, arguments)),
             "run",
             None,
-            keys=(("motions", "flight", "tip", "z", "max_abs"),),
+            keys=(("motions", "flight", "bodies", "beam", "tip", "z", "max_abs"),),
             together=True,
         )
         case = inquiry.case(())
@@ -187,7 +191,7 @@ def test_a_study_costs_little_more_than_a_batch_by_hand(
     and no loads of sections, which no figure is taken from.
     """
     steps, judged = [0], [0]
-    integrate_together, section_forces = side_by_side.integrate_together, record.section_forces
+    integrate_together, loads_of = side_by_side.integrate_together, record.loads_of
 
     def integrated(runs: Any) -> Any:
         steps[0] += len(runs) * max(len(run.steps) for run in runs)
@@ -195,10 +199,10 @@ def test_a_study_costs_little_more_than_a_batch_by_hand(
 
     def carried(*state: Any, **more: Any) -> Any:
         judged[0] += 1
-        return section_forces(*state, **more)
+        return loads_of(*state, **more)
 
     monkeypatch.setattr(side_by_side, "integrate_together", integrated)
-    monkeypatch.setattr(record, "section_forces", carried)
+    monkeypatch.setattr(record, "loads_of", carried)
     swept = gb.sweep(panel("slewed"), {path: np.linspace(*values, 128).tolist()}, ["tip.y.max_abs", "steps"])
     assert set(swept.outcome) == {"done"}
     # Beside them: runs by which a step is known to be enough, and places of batches that stay empty; 4.5 and 4.9.

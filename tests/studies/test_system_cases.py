@@ -173,8 +173,8 @@ def test_a_system_has_figures_that_are_meant_where_none_is_named() -> None:
     of_case = gb.sweep(satellite(), [f"{by[0]}=100"])
     assert tuple(of_case.measures) == of_file.measures and np.isfinite(of_file.figures).all()
     assert of_file.measures[:2] == (
-        "motions.ground.points.right.tip.displacement_max",
-        "motions.ground.points.left.tip.displacement_max",
+        "motions.ground.bodies.right.tip.size.max_abs",
+        "motions.ground.bodies.left.tip.size.max_abs",
     )
     assert of_file.units == ("m", "m", "N m", "N m")
 

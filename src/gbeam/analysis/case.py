@@ -216,11 +216,6 @@ class Case(OneBody, Value):
             raise InputError("response", "duration is missing", 'no record gives one: add duration = "16 s"')
         return self.response
 
-    @property
-    def extent(self) -> dict[str, Any]:
-        """Argument of :func:`gbeam.plan` that says where the specimen is."""
-        return extent_of(self.system)
-
     def require_motion(self) -> None:
         """Raise InputError where a body is held by a base that nothing moves."""
         if not self.motions and self.system.alone is not None:
@@ -280,13 +275,3 @@ def _refuse_unstressed(system: System, where: str, point: str) -> None:
     if recovery is not None:
         with naming(where):
             recovery.strain(system.points_of(name)[on], (1.0, 0.0, 0.0))
-
-
-def extent_of(system: System) -> dict[str, Any]:
-    """Argument of :func:`gbeam.plan` for the extent of what is undeformed; none for matrices, which have none."""
-    body = system.alone
-    if body is None:
-        return {"envelope": system.undeformed}
-    if body.source is not None:
-        return {"beam": body.source.beam}
-    return {} if body.recovery is None else {"envelope": body.recovery.envelope}

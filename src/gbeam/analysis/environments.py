@@ -122,7 +122,6 @@ def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | N
 
 def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:
     """Responses by environment, and the failures of those that have no start to run from."""
-    structure: Any = case.subject
 
     def answer(name: str) -> Response:
         motion = case.environments[name]
@@ -130,7 +129,7 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, 
         def report(what: str, share: float) -> None:
             tell(progress, f"{name}: {what}", share)
 
-        response = simulate(structure, motion, case.over_time, name=name, progress=report)
+        response = simulate(case.system, motion, case.over_time, name=name, progress=report)
         return replace(response, provenance=case.provenance)
 
     responses: dict[str, Any] = {}

@@ -6,7 +6,7 @@ import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple, get_args
+from typing import NamedTuple, get_args
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -95,7 +95,7 @@ def compare_models(
         if kind not in KINDS:
             raise InputError("kinds", f"has {kind!r}", f"choose from {', '.join(KINDS)}")
     _refuse(case, point)
-    case.subject.require_damping("the response")
+    case.system.require_damping("the response")
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
     answers: dict[tuple[str, str], tuple[_Tip | Failure, float]] = {}
     for i, kind in enumerate(chosen):
@@ -169,9 +169,8 @@ def _answer(
     """Displacement by one model, or the reason why there is none."""
     if isinstance(case, Failure):
         return case
-    subject: Any = case.subject
     try:
-        response = simulate(subject, motion, settings, name=name, progress=progress)
+        response = simulate(case.system, motion, settings, name=name, progress=progress)
     except InputError as error:
         return Failure("cannot", str(error))
     except ComputationError as error:

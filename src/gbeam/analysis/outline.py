@@ -1,4 +1,4 @@
-"""Outlines of beams and systems at rest, for pictures of what they do."""
+"""Outlines of beams and systems at rest, for pictures of what they do, and the ends of what they take up."""
 
 from __future__ import annotations
 
@@ -32,6 +32,34 @@ def assembly_of(system: System) -> Assembly:
         box_centre=centre,
         box_rotation=rotation,
     )
+
+
+def ends_of(system: System) -> dict[str, Floats]:
+    """Places (3,) m, by name, at one of which the load on the undeformed bodies is largest: corners of convex hulls, or
+    ends and bodies off the axis of beams; points and centres of mass of rigid bodies, and points of matrices.
+    """
+    several, ends = len(system.bodies) > 1, dict[str, Floats]()
+    for name, root in zip(system.order, system.at_start.roots, strict=True):
+        for end, place in _ends(system.bodies[name]).items():
+            ends[f"{end} of {name}" if several else end] = np.asarray(root.p + root.R @ place)
+    return ends
+
+
+def _ends(body: RigidBody | Structure) -> dict[str, Floats]:
+    """The same of one body, from its root, its own axes."""
+    if isinstance(body, RigidBody):
+        points = {f"the point {name}": np.asarray(point.at, dtype=float) for name, point in body.points.items()}
+        return {"the root": np.zeros(3)} | points | {"the centre of mass": np.asarray(body.centre, dtype=float)}
+    beam = None if body.source is None else body.source.beam
+    hull = body.recovery.envelope if body.recovery is not None else np.empty((0, 3)) if beam is None else beam.envelope
+    if len(hull):
+        return {"({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * corner)): corner for corner in hull}
+    if beam is None:
+        names = body.points or tuple(f"point {k + 1}" for k in range(len(body.stations)))
+        return {"the root": np.zeros(3)} | dict(zip(names, np.asarray(body.station_places.r0), strict=True))
+    off = [each for each in beam.body_centres if np.any(each[1:] != 0) or not 0 <= each[0] <= beam.length]
+    ends = {"the root": np.zeros(3), "the tip": np.array([beam.length, 0.0, 0.0])}
+    return ends | {f"the body at {1e3 * each[0]:.4g} mm": each for each in off}
 
 
 def _place_at_rest(system: System, on: str) -> Floats:

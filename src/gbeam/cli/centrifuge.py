@@ -49,11 +49,11 @@ def plan(
     """
     folder = output.folder(scenario)
 
-    from gbeam.scenario import build_extent, build_machines, load_environments, provenance, schema
+    from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
 
     with Watch(f"planning the machines of {scenario}"):
         environments = load_environments(scenario, output.overrides)
-        machines, extent = build_machines(environments), build_extent(environments)
+        machines, specimen = build_machines(environments), build_specimen(environments)
     if not machines:
         raise InputError("motion", "has no centrifuge to plan", "add a motion of kind centrifuge")
     interval = None if sample is None else number("--sample", sample, "time")
@@ -69,7 +69,7 @@ def plan(
         plans = tuple(
             replace(
                 analysis.plan(
-                    name, machines[name], table.tracks, **extent, title=environments.heading(), progress=watch,
+                    name, machines[name], table.tracks, specimen=specimen, title=environments.heading(), progress=watch,
                     **judging(table.limits_of_acceptance, response=False),
                 ),
                 provenance=origin,
@@ -163,15 +163,15 @@ def place(
     from gbeam.analysis.imitation import place as analysis
     from gbeam.analysis.imitation.place_measures import choice_of
 
-    structure = loaded.case.subject
-    weights = analysis.usual(structure) if weights is None else weights
+    system = loaded.case.system
+    weights = analysis.usual(system) if weights is None else weights
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
-        ways = turn or analysis.usual_turns(structure)
+        ways = turn or analysis.usual_turns(system)
         choice = choice_of(current, widths, limited=not ignore_limits, turns=ways)
     with Watch() as watch, loaded.placing(measure="--measure", along="--along"):
         placement = analysis.place(
-            structure,
+            system,
             current.flight,
             choice,
             loaded.case.over_time,

@@ -68,13 +68,6 @@ class BodyResponse(Part):
     outline: Outline | None = part(
         "shape of a beam at some of the times, and what carries it", key=None, note="None of other bodies", default=None
     )
-    masses: Floats = internal(
-        "m", "centres of mass of what is fixed to the undeformed beam, from the root", "mass axis", empty=True
-    )
-    envelope: Floats = internal(
-        "m", "corners of the convex hull of a body that is no straight beam, undeformed, from the root", "corner axis",
-        empty=True,
-    )  # fmt: skip
     solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)
     surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
     specimen: SpecimenLoads | None = part(

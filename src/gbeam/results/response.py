@@ -149,9 +149,16 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
     )
     base: Base | None = part("motion of the ground", "time", name="ground_", note="None where it rests", default=None)
     invariants: Invariants | None = part(
-        "momentum and energy", key="invariants", name=INSIDE, note="None on a base that moves", default=None
+        "momentum and energy",
+        key="invariants",
+        name=INSIDE,
+        optional=True,
+        note="None on a base that moves",
+        default=None,
     )
-    loop: Loop | None = part("controllers", key="loop", name=INSIDE, note="None without any", default=None)
+    loop: Loop | None = part(
+        "controllers", key="loop", name=INSIDE, optional=True, note="None without any", default=None
+    )
     hub: HubResult | None = part("motion of a hub", optional=True, default=None)
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)
     assembly: Assembly | None = part(
@@ -188,6 +195,9 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         note="of which this is a part; None where it is all of it", default=None,
     )  # fmt: skip
     scale: float | None = fact("level factor of the flight's loads; None of 1", optional=True, default=None)
+    ends: Mapping[str, Floats] = internal(
+        "m", "places on the undeformed bodies, by name, at one of which the load is largest", default_factory=dict
+    )
     kept_every: int = internal("", "how many samples of the histories make one in a file", default=1)
     felt_at_steps: tuple[Floats, Floats] | None = internal(
         "", "times (t,) s of all steps of the flight, and accelerations (t, p, 3) m/s² of the points there; None "

@@ -5,8 +5,8 @@ explain and placing put every error at its line; template is for those who write
 """
 
 from gbeam.scenario.build import build as build
-from gbeam.scenario.build import build_extent as build_extent
 from gbeam.scenario.build import build_machines as build_machines
+from gbeam.scenario.build import build_specimen as build_specimen
 from gbeam.scenario.build import read_scenario as read_scenario
 from gbeam.scenario.load import load as load
 from gbeam.scenario.load import load_environments as load_environments

@@ -141,17 +141,15 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}
 
 
-def build_extent(scenario: schema.Environments) -> dict[str, Any]:
-    """Keyword of :func:`gbeam.plan` with the extent of the specimen of a scenario; empty if it has no specimen."""
-    from gbeam.analysis.case import extent_of
-
+def build_specimen(scenario: schema.Environments) -> System | None:
+    """System of a scenario; None if it has no specimen."""
     if type(scenario) is schema.Environments:
-        return {}
+        return None
     parts = Collector()
     system = _system(parts, scenario)
     if parts.errors or system is None:
         raise placed(scenario, parts.errors)
-    return extent_of(system)
+    return system
 
 
 def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, Acceptance]:

@@ -120,11 +120,11 @@ class Neighbourhood:
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
         case = self.case
-        return Grid.of(case.subject, case.environments[name], case.over_time, self.done(name))
+        return Grid.of(case.system, case.environments[name], case.over_time, self.done(name))
 
     def _differentiated(self, name: str, grid: Grid) -> Differentiated:
         motion, settings = self.case.environments[name], self.case.over_time
-        self._by_motion[name] = Differentiated(self.case.subject, motion, settings, grid, name, **self.parts)
+        self._by_motion[name] = Differentiated(self.case.system, motion, settings, grid, name, **self.parts)
         return self._by_motion[name]
 
     def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
@@ -224,7 +224,7 @@ class Neighbourhood:
     def _variant(self, case: Case, k: int, name: str) -> Variant:
         of_motions = [place.startswith("motion.") for place in self.parameters[k].places]
         motion = case.environments[name] if any(of_motions) else None
-        return None if all(of_motions) else case.subject, motion
+        return None if all(of_motions) else case.system, motion
 
 
 class Quantities:
@@ -316,11 +316,10 @@ def _differentiable(system: System) -> bool:
 
 def _runs(case: Case, steps: Mapping[str, float]) -> Study:
     """Study of the motions in `steps`, run by these time steps, s, without estimates of errors."""
-    subject: Any = case.subject
     responses = dict[str, Any]()
     for name, step in steps.items():
         settings = replace(case.over_time, step=step, estimate=False)
-        responses[name] = simulate(subject, case.environments[name], settings, name=name)
+        responses[name] = simulate(case.system, case.environments[name], settings, name=name)
     return study_of(case, responses)
 
 

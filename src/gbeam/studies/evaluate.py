@@ -241,7 +241,7 @@ def _responses(
     """Response, or exception, of each pair of a case's index in `posed` and a motion, in any order."""
     left = dict.fromkeys(pairs)
     try:
-        cases = ((posed[k][1].subject, posed[k][1].environments[name]) for k, name in pairs)
+        cases = ((posed[k][1].system, posed[k][1].environments[name]) for k, name in pairs)
         for k, response in simulate_batch(cases, settings, one_structure=one_structure):
             case, name = pairs[k]
             del left[case, name]

@@ -278,7 +278,8 @@ def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None
     motion = motion or chosen or (names[0] if len(names) == 1 else "")
     if not motion:
         raise InputError(where, f"{text!r} leaves the motion out", f"write {names[0]}.{text}")
-    if signal in _OF_HUBS and (case.environments[motion] is None or case.motions[motion].kind != HUB):
+    moved = case.environments[motion]
+    if signal in _OF_HUBS and HUB not in case.system.joints and (moved is None or moved.kind != HUB):
         raise InputError(where, f"has {text!r}, and {motion} is no hub", "leave it out")
     return History(text, motion, signal, units[signal])
 
@@ -289,11 +290,11 @@ def signals_of_case(case: Case) -> dict[str, str]:
     """
     from gbeam.mechanics.tree.signals import signals_of
 
-    units, system = signals_of(case.system), case.system
-    for name, body in system.flexible.items():
-        of_body = {f"{point}.{axis}": "m" for point in stations_of(body) for axis in "xyz"}
-        of_body |= {f"{load}.{axis}": unit for load, unit in _LOADS.items() for axis in "xyz"}
-        of_body |= {each.removeprefix(f"{name}."): unit for each, unit in units.items() if each.startswith(f"{name}.")}
-        units |= {f"{name}.{each}": unit for each, unit in of_body.items()}
-        units |= of_body if len(system.flexible) == 1 else {}
-    return units | (_OF_HUBS if any(motion.kind == HUB for motion in case.motions.values()) else {})
+    owners, units = case.system.flexible, dict[str, str]()
+    for name, body in owners.items():
+        units |= {f"{name}.{point}.{axis}": "m" for point in stations_of(body) for axis in "xyz"}
+        units |= {f"{name}.{load}.{axis}": unit for load, unit in _LOADS.items() for axis in "xyz"}
+    units |= signals_of(case.system)
+    only = [f"{name}." for name in owners if len(owners) == 1]
+    short = {each.removeprefix(of): unit for of in only for each, unit in units.items() if each.startswith(of)}
+    return short | units | _OF_HUBS

@@ -74,7 +74,8 @@ def in_words(causes: list[Cause], of: str = "") -> str:
     if len(causes) == 1:
         ((_, cause, cure),) = causes
         return f"{cause}{of}; {cure}"
-    return ", ".join(f"{percent(size)} from {cause} ({cure})" for size, cause, cure in causes) + of
+    advised = (f"{cause[:-1]}; {cure})" if cause.endswith(")") else f"{cause} ({cure})" for _, cause, cure in causes)
+    return ", ".join(f"{percent(size)} from {each}" for (size, *_), each in zip(causes, advised, strict=True)) + of
 
 
 def apart(value: float, reference: float) -> float:

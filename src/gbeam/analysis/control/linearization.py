@@ -383,7 +383,7 @@ def linearize(
     """
     tell(progress, "equilibrium and slopes", 0.0)
     subject = subject_of(structure, motion)
-    if not subject.body:
+    if not subject.body or structure is subject.system:  # signals of a system are named by its bodies
         if rate is not None:
             raise InputError(
                 "rate", "is of a hub, and a system turns on its joints", "give a time, or a joint its rate"

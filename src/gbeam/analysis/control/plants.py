@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.response.peaks import half_ranges
 from gbeam.analysis.response.posed import pose, prepared
 from gbeam.analysis.response.settings import ResponseSettings
@@ -23,7 +22,6 @@ from gbeam.guards.checks import choice
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import accelerations, slopes
 from gbeam.integrate.tangent import tangent
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.one_body import HINGE, on_hub
 from gbeam.mechanics.tree.system import System, stations_of
@@ -97,16 +95,27 @@ class Plant:
     point: str  # whose vibration is made least
 
     @staticmethod
-    def on_hub(structure: Structure, hub: Hub) -> Plant:
-        """The drive of a hub that carries a beam, whose tip is to rest; InputError if it is rigid or turns already."""
-        structure.require_coordinates()
+    def on_hub(system: System, hub: Hub, point: str | None) -> Plant:
+        """The drive of a hub that carries the only body, whose tip is to rest; InputError if it is rigid or turns
+        already, or there are other bodies.
+        """
+        body = system.alone
+        if body is None:
+            raise InputError("hub", "is a hub, and carries a system", 'name what moves, such as "joint.angle"')
+        if point is not None:
+            fix = "leave it out: the tip of the only body is to rest"
+            raise InputError("point", f"is {point!r}, and the hub carries {system.order[0]}", fix)
+        body.require_coordinates()
         if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
             raise InputError("rate", "is not zero: the hub turns already", "leave it out")
-        return Plant(on_hub(structure, hub), f"{HINGE}.angle", f"{BEAM}.tip")
+        return Plant(on_hub(body, hub, system.order[0]), f"{HINGE}.angle", f"{system.order[0]}.tip")
 
     @staticmethod
     def of(system: System, coordinate: str, point: str | None) -> Plant:
         """The drive of a system's coordinate, with the tip of the only flexible body as point if none is named."""
+        if not movable(system):
+            problem = f"is {coordinate!r}, and no joint moves {', '.join(system.order)}"
+            raise InputError("hub", problem, "give a Hub, which carries a body alone")
         choice("joint", coordinate, movable(system))
         tips = [f"{name}.tip" for name in system.flexible]
         if point is None and len(tips) != 1:

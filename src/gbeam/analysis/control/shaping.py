@@ -17,6 +17,7 @@ import numpy as np
 from gbeam.analysis.control.commands import Commands, Vibration, check_goal, usual
 from gbeam.analysis.control.plants import DRIVES, Goal, Plant, Ran
 from gbeam.analysis.response.settings import ResponseSettings
+from gbeam.analysis.steady.subject import subject_of
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
@@ -41,10 +42,10 @@ _BETTER = 0.9  # of the vibration before: a step that leaves more is the last
 
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
     """True if an effort drives, and if what is driven slides."""
-    structure, hub = (arguments.get(name) for name in ("structure", "hub"))
-    if isinstance(hub, Hub) or not isinstance(structure, System):
-        return isinstance(hub, Hub) and hub.free, False
-    driven = Plant(structure, str(hub), "")
+    hub = arguments.get("hub")
+    if isinstance(hub, Hub):
+        return hub.free, False
+    driven = Plant(subject_of(arguments["structure"], None).system, str(hub), "")
     return driven.free, driven.slides
 
 
@@ -245,15 +246,8 @@ def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
 
 def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
     """The plant of a command, a hub with its beam or a joint of a system; InputError if they do not go together."""
-    if isinstance(structure, System):
-        if not isinstance(hub, str):
-            raise InputError("hub", "is a hub, and carries a system", 'name what moves, such as "joint.angle"')
-        return Plant.of(structure, hub, point)
-    if not isinstance(hub, Hub):
-        raise InputError("hub", f"is {hub!r}, and the structure is one beam", "give a Hub")
-    if point is not None:
-        raise InputError("point", f"is {point!r}, and the structure is one beam", "leave it out: its tip is to rest")
-    return Plant.on_hub(structure, hub)
+    system = subject_of(structure, None).system
+    return Plant.on_hub(system, hub, point) if isinstance(hub, Hub) else Plant.of(system, hub, point)
 
 
 def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -> Floats:

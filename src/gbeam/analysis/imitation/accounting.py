@@ -30,7 +30,7 @@ Codes = Indices
 @dataclass(frozen=True)
 class History:
     """Loads (t, 3) m/s² of an environment on a rigid specimen: `load` at the control point (in flight, root); `root`
-    and its `growth` (t, 3, 3) 1/s² give the loads at the other `ends` (p, 3) m, the tip or corners.
+    and its `growth` (t, 3, 3) 1/s² give the loads at the other `ends` (p, 3) m.
     """
 
     load: Floats
@@ -230,15 +230,10 @@ def times_between(first: float, last: float) -> Floats:
     return np.linspace(first, last, min(int(np.ceil((last - first) / _GRID)), _MOST) + 1)
 
 
-def points_of(length: float, bodies: Floats, envelope: Floats | None = None) -> dict[str, Floats]:
-    """Points (3,), m, by name, at one of which the load is largest: corners (c, 3) of an envelope, or the ends of a
-    beam and its bodies (b, 3) off it.
-    """
-    if envelope is not None and len(envelope):
-        return {"({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * corner)): corner for corner in envelope}
-    ends = {"the root": np.zeros(3), "the tip": np.array([length, 0.0, 0.0])}
-    off = [body for body in np.asarray(bodies) if np.any(body[1:] != 0) or not 0 <= body[0] <= length]
-    return ends | {f"the body at {1e3 * body[0]:.4g} mm": body for body in off}
+def beside_root(ends: Mapping[str, Floats]) -> Floats:
+    """Places (p, 3) m, among the ends of a specimen, that are not its root; NaN where there is none."""
+    places = np.array([place for place in ends.values() if np.any(place)]).reshape(-1, 3)
+    return places if len(places) else np.full((1, 3), np.nan)
 
 
 def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: float = 0.0) -> Largest:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import History, account_of, gradients, largest_load, largest_pair
+from gbeam.analysis.imitation.accounting import History, account_of, beside_root, gradients, largest_load, largest_pair
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.quantities import Peak, Quantities, largest
 from gbeam.arrays.types import Flags, Floats
@@ -37,7 +37,7 @@ def peak_pairs(flight: Quantities, machine: Quantities, during: slice, tip: int)
     ``largest_load`` of the machine is over all of its run. NaN stands for a size that a run lacks.
     """
     in_flight, on_machine = flight.peaks(_until(flight, machine, during), tip), machine.peaks(during, tip)
-    loads = (largest_load(run.response.time, run.base, machine.ends) for run in (flight, machine))
+    loads = (largest_load(run.response.time, run.base, machine.response.ends) for run in (flight, machine))
     pairs = {name: PeakPair(a, on_machine[name][0], t, on_machine[name][1]) for name, (a, t) in in_flight.items()}
     return {"largest_load": largest_pair(*loads)} | pairs
 
@@ -185,6 +185,7 @@ def compare(
     growth = in_flight(gradients(flown.base.w_WB_B, flown.base.alpha_WB_B))
     turning = gradients(spun.base.w_WB_B[during], spun.base.alpha_WB_B[during])
     root_load, machine_root = in_flight(flown.base.a_WO_B), spun.base.a_WO_B[during]
+    ends = beside_root(centrifuge.ends)
     margins = [margin for margin in (flown.margin, spun.margin) if margin is not None]
     return Comparison(
         flight=names[0],
@@ -199,8 +200,8 @@ def compare(
         peaks=peak_pairs(flown, spun, during, tip)
         | ({} if stress_at is None else {STRESS_AT: _stresses_at(stress_at, flown, spun, during)}),
         accounting=account_of(
-            time, History(root_load, root_load, growth, spun.corners),
-            History(machine_root if axes is None else axes.actual[during], machine_root, turning, spun.corners),
+            time, History(root_load, root_load, growth, ends),
+            History(machine_root if axes is None else axes.actual[during], machine_root, turning, ends),
             axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
         ),
         accept=limits,
@@ -318,7 +319,7 @@ def _weights(control: Mapping[str, float] | None, run: Quantities) -> dict[str, 
     weights = {} if control is None else control
     for name, weight in weights.items():
         positive(f"control.{name}", weight, "(a weight)")
-        run.index(f"control.{name}", name)
+        run.index("control", name)
     return {name: weight / sum(weights.values()) for name, weight in weights.items()}
 
 

@@ -33,7 +33,7 @@ def fatigue(flight: Quantities, machine: Quantities, at: str | None = None) -> F
         place = max(candidates, key=lambda name: np.ptp(candidates[name].stress), default="")
         in_flight, on_machine = candidates.get(place), places_of(machine.response).get(place)
     else:
-        place, in_flight, on_machine = f"at {at}", _cyclic_at(flight, at), _cyclic_at(machine, at)
+        place, in_flight, on_machine = f"at {at}", cyclic_at(flight, at), cyclic_at(machine, at)
     if in_flight is None or on_machine is None:
         return None
     if not np.array_equal(in_flight.exponent, on_machine.exponent, equal_nan=True):
@@ -59,7 +59,7 @@ def places_of(response: Response) -> dict[str, Cyclic]:
     return places
 
 
-def _cyclic_at(run: Quantities, at: str) -> Cyclic | None:
+def cyclic_at(run: Quantities, at: str) -> Cyclic | None:
     """Normal stress and exponent at a named point; None if the point is of no beam or mesh."""
     solid, loads, k = run.stressed("damage_at", at)
     if solid is not None:

@@ -20,13 +20,13 @@ from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, 
 from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
+from gbeam.analysis.steady.subject import subject_of
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.arrays.types import Floats
 from gbeam.constants import Measure
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
-from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
@@ -64,7 +64,7 @@ class _Carried:
 
 
 def verify(
-    structure: Structure | System,
+    system: System,
     flight: Flight,
     machines: Mapping[str, Centrifuge],
     settings: ResponseSettings,
@@ -79,14 +79,13 @@ def verify(
         def report(doing: str, share: float) -> None:
             tell(progress, f"checking {what}: {doing}", share)
 
-        response = simulate(structure, motion, settings, progress=report)
+        response = simulate(system, motion, settings, progress=report)
         if response.outcome != "done":
             raise ComputationError(response.outcome, f"a run that verifies the places is no answer: {response.message}")
         return response
 
     in_flight = simulated(flight, "flight")
-    point = answers.tip or None if isinstance(structure, System) else None
-    tip = Quantities.of("flight", in_flight).index("point", point or "")
+    tip = Quantities.of("flight", in_flight).index("point", answers.tip)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
     carried: dict[int, Response] = {}  # by axis motions
     responses: dict[tuple[int, bytes], Response] = {}  # by axis motions and control point
@@ -98,7 +97,7 @@ def verify(
             responses[motion, key] = simulated(machine, name)
         response = responses[motion, key]
         of_tip = Quantities.of(name, response).displacement[:, tip]
-        comparison = compare(in_flight, response, point=point)
+        comparison = compare(in_flight, response, point=answers.tip or None)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         vibration, moved = np.nan, np.nan
         step = float(response.time[1] - response.time[0])
@@ -192,9 +191,11 @@ def place(
     220 mm from the root
     """
     check_weights(weights)
+    subject = subject_of(structure, None)
+    system = subject.system
     if check or "vibration" in weights:
         structure.require_damping("the vibration")
-    trials = _Trials(structure, flight, choice, settings, weights, along, np.asarray(current.place), progress)
+    trials = _Trials(system, flight, choice, settings, weights, along, np.asarray(current.place), progress)
     for width in reversed(choice.widths):  # the widest first, see Answers
         for turn in choice.turns or (None,):
             for mounting in choice.mountings:
@@ -228,31 +229,26 @@ def place(
         values=values,
         totals=totals,
         before=before.candidate,
-        verifications=verify(structure, flight, machines, settings, trials.answers, progress)
-        if check and allowed
-        else (),
+        verifications=verify(system, flight, machines, settings, trials.answers, progress) if check and allowed else (),
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
         outcome="done" if allowed else BROKEN,
-        warnings=input_warnings(structure, flight, name=names[0], span=trials.span)
-        if isinstance(structure, Structure)
-        else structure.warnings
-        + tuple(f"friction of {name} is left out: its joint moves freely" for name in structure.rubbing),
-        point=trials.answers.tip if isinstance(structure, System) else "",
+        warnings=replace(subject, motion=flight).doubts(names[0], span=trials.span)
+        + tuple(f"friction of {name} is left out: its joint moves freely" for name in system.rubbing),
+        point=trials.answers.tip if len(system.bodies) > 1 else "",
         straight=specimen.straight,
     )
 
 
-def usual(structure: Structure | System) -> dict[Measure, float]:
+def usual(system: System) -> dict[Measure, float]:
     """Weights by default: the tip's displacement or, if nothing can be displaced, the load."""
-    free = structure.size if isinstance(structure, Structure) else len(structure.tree.free)
-    return {"tip" if free else "load": 1.0}
+    return {"tip" if len(system.tree.free) else "load": 1.0}
 
 
-def usual_turns(structure: Structure | System) -> Ways:
+def usual_turns(system: System) -> Ways:
     """Ways round by default: a beam's own, with its mountings, and right angles for other specimens."""
-    beam = isinstance(structure, Structure) and structure.source is not None
-    return "own" if beam else "right-angles"
+    beams = [body for body in system.flexible.values() if body.source is not None]
+    return "own" if beams and len(system.bodies) == 1 else "right-angles"
 
 
 def _written(at: Floats) -> Any:
@@ -275,7 +271,7 @@ class _Trials:
 
     def __init__(
         self,
-        structure: Structure | System,
+        system: System,
         flight: Flight,
         choice: Choice,
         settings: ResponseSettings,
@@ -286,7 +282,7 @@ class _Trials:
     ) -> None:
         self.progress = progress
         tell(progress, "flight", 0.0)
-        self.answers, self.flight = Answers(structure, flight, settings), flight
+        self.answers, self.flight = Answers(system, flight, settings), flight
         self.answers.refuse_unfelt(weights)
         self.choice, self.weights = choice, weights
         self.span = settings.start, settings.start + settings.duration

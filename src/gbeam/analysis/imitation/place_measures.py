@@ -19,7 +19,6 @@ from gbeam.constants import Measure, Mounting
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
-from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
@@ -218,9 +217,9 @@ class Answers:
     all: begin with the widest smoothing, which holds longest.
     """
 
-    def __init__(self, structure: Structure | System, flight: Flight, settings: ResponseSettings) -> None:
+    def __init__(self, system: System, flight: Flight, settings: ResponseSettings) -> None:
         span = np.linspace(settings.start, settings.start + settings.duration, SAMPLES)
-        self.specimen, flown = Specimen.of(structure, span), flight.base(span)
+        self.specimen, flown = Specimen.of(system, span), flight.base(span)
         loads = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
         displacement, modes, self.tip, self.mode = self.specimen.displacement, self.specimen.modes, "", None
         if modes is not None:

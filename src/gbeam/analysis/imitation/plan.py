@@ -7,17 +7,20 @@ import numpy as np
 from gbeam.analysis.imitation.accounting import (
     History,
     account_of,
+    beside_root,
     gradients,
     largest_load,
     largest_pair,
-    points_of,
     times_between,
 )
-from gbeam.arrays.types import Floats
+from gbeam.analysis.outline import ends_of
+from gbeam.analysis.steady.subject import subject_of
 from gbeam.constants import ToleranceOf
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
 from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
 from gbeam.motion.protocol import implausible_motion
@@ -26,7 +29,6 @@ from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import MachinePlan
 from gbeam.results.criteria import BROKEN, KINDS_OF_LIMITS, Limits, checked_limits
 from gbeam.results.machine import Commands
-from gbeam.structure.beam import Beam
 
 _FINE = 1e-3  # s: the angle of axis 1 is integrated on times no further apart
 
@@ -38,8 +40,7 @@ def plan(
     motion: Centrifuge,
     tracks: str = "",
     *,
-    beam: Beam | None = None,
-    envelope: Floats | None = None,
+    specimen: Structure | System | None = None,
     tolerance: float = TOLERANCE,
     tolerance_of: ToleranceOf = "peak",
     accept: Limits | None = None,
@@ -56,10 +57,8 @@ def plan(
         With the span of the flight that it tracks.
     tracks : str
         Name of the flight.
-    beam : Beam, optional
-        The specimen, whose size the load along it depends on.
-    envelope : (c, 3), optional
-        Of another specimen the corners of its convex hull, from the root, m.
+    specimen : Structure or System, optional
+        Whose size the load along it depends on.
     tolerance, tolerance_of, accept
         As for :func:`gbeam.compare`; limits that need a response are not judged.
     title : str
@@ -83,8 +82,7 @@ def plan(
     'done'
     """
     limits = checked_limits(accept)
-    if beam is not None and beam.line is not None:
-        envelope = beam.envelope
+    ends = {} if specimen is None else ends_of(subject_of(specimen, None).system)
     tell(progress, "axis motions", 0.0)
     first, last = (float(end) for end in motion.extent)
     time = times_between(first, last)
@@ -96,16 +94,10 @@ def plan(
     during = slice(*np.searchsorted(time, (span[0], np.nextafter(span[1], np.inf))))
     tell(progress, "what the flight and the machine make", 0.5)
     flown, machine = motion.flight.base(time[during]), motion.base(time)
-    tip = np.array([[np.nan if beam is None else beam.length, 0.0, 0.0]])
-    ends = tip if envelope is None else envelope
     growth = gradients(flown.w_WB_B, flown.alpha_WB_B), gradients(machine.w_WB_B, machine.alpha_WB_B)[during]
-    largest, points = PeakPair(), dict[str, Floats]()
-    if envelope is not None:
-        points = points_of(0.0, envelope, envelope)
-    elif beam is not None:
-        points = points_of(beam.length, beam.body_centres)
-    if points:
-        largest = largest_pair(largest_load(time[during], flown, points), largest_load(time, machine, points))
+    largest = PeakPair()
+    if ends:
+        largest = largest_pair(largest_load(time[during], flown, ends), largest_load(time, machine, ends))
     return MachinePlan(
         name=name,
         tracks=tracks,
@@ -116,8 +108,8 @@ def plan(
         axes=axes,
         accounting=account_of(
             time[during],
-            History(flown.a_WO_B, flown.a_WO_B, growth[0], ends),
-            History(axes.actual[during], machine.a_WO_B[during], growth[1], ends),
+            History(flown.a_WO_B, flown.a_WO_B, growth[0], beside_root(ends)),
+            History(axes.actual[during], machine.a_WO_B[during], growth[1], beside_root(ends)),
             axes,
             during,
             tolerance=tolerance,

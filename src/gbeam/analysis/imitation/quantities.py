@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import points_of
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of
@@ -28,8 +27,7 @@ UNKNOWN = math.nan, math.nan
 class Quantities:
     """Displacements (t, p, 3) m of a specimen's points from their undeformed places relative to the base, absolute
     accelerations (t, p, 3) m/s² of them, and force and moment (t, 3) of the `root` on the base, in the base's axes;
-    None where a run has no loads. `ends` are the places (3,) m, by name, at one of which the load is largest, `corners`
-    (c, 3) those beside the root. `body` is the only one, where the base holds it by its root.
+    None where a run has no loads. `body` is the only one, where the base holds it by its root.
     """
 
     response: Response
@@ -38,8 +36,6 @@ class Quantities:
     displacement: Floats
     acceleration: Floats | None
     root: tuple[Floats, Floats] | None
-    ends: Mapping[str, Floats]
-    corners: Floats
     body: BodyResponse | None = None
 
     @classmethod
@@ -54,7 +50,6 @@ class Quantities:
         if response.several or jointed:
             return cls._of_points(response, response.base)
         body, loads = response.body, response.body.loads
-        length = float(body.stations[-1])
         return cls(
             response,
             response.base,
@@ -62,8 +57,6 @@ class Quantities:
             body.displacement,
             body.acceleration,
             None if loads is None else (loads.section_force[:, 0], loads.section_moment[:, 0]),
-            points_of(length, body.masses, body.envelope),
-            body.envelope if len(body.envelope) else np.array([[length, 0.0, 0.0]]),
             body,
         )
 
@@ -73,17 +66,15 @@ class Quantities:
         from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of one body needs
 
         assert response.assembly is not None
-        undeformed, turns = response.assembly.undeformed, np.roll(response.attitude, -1, axis=-1)
+        turns = np.roll(response.attitude, -1, axis=-1)
         felt = Rotation.from_quat(turns.reshape(-1, 4)).apply(response.acceleration.reshape(-1, 3))
         return cls(
             response,
             base,
             response.points,
-            response.place - undeformed,
+            response.place - response.assembly.undeformed,
             felt.reshape(response.acceleration.shape),
             (response.ground_force, response.ground_moment),
-            points_of(0.0, np.empty((0, 3)), undeformed),
-            undeformed,
         )
 
     @property

@@ -12,15 +12,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import points_of
+from gbeam.analysis.outline import ends_of
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.steady import Drive, steady
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import PAIRS, rest_modes
-from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.numerics.eigen import RIGID, symmetric
 
 ALIKE = 1e-3  # of the displacement by a mode: two modes that differ by less count as equal
@@ -84,13 +83,32 @@ class Specimen:
     displacement: Mapping[str, Answer]
     modes: Modes | None
     ends: Mapping[str, Floats]
-    straight: bool = False
-    corners: Callable[[float], Floats] = lambda step: np.empty(0)
+    straight: bool
+    corners: Callable[[float], Floats]
 
     @classmethod
-    def of(cls, structure: Structure | System, times: Floats) -> Specimen:
-        """Answers of a structure, or of a system that rests at all times (t,), s; InputError if it moves."""
-        return of_system(structure, times) if isinstance(structure, System) else of_structure(structure)
+    def of(cls, system: System, times: Floats) -> Specimen:
+        """Answers of a system about its equilibrium on a ground at rest; InputError if it moves at times (t,), s."""
+        _refuse_moved(system, times)
+        state = steady(system, Drive(time=float(times[0])))
+        local, stiffness = state.local, state.linear.stiffness
+        forces, force, moment = _answers(local)
+        displacement, modes, free = dict[str, Answer](), None, len(local.y)
+        if free:
+            square, shapes = np.linalg.eigh(symmetric(stiffness))
+            if not square[0] > RIGID**2 * square[-1]:
+                loose = state.names[int(np.abs(shapes[:, 0]).argmax())]
+                fix = "give it a spring, or hold it, while a place is searched for"
+                raise InputError("joints", f"leave {loose} held by nothing that resists a load at rest", fix)
+            judged = _judged(system)
+            moved = state.slopes_of_points[[system.points.index(name) for name in judged]]
+            by_load = np.linalg.solve(stiffness, moved.reshape(-1, free).T).reshape(free, -1, 3)
+            displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(judged)}
+            mass, damping, stiffness = (symmetric(matrix) for matrix in state.linear[:3])
+            modes = _modes(mass, damping, stiffness, forces, moved)
+        beams = [None if body.source is None else body.source.beam for body in system.flexible.values()]
+        straight = len(system.bodies) == 1 and any(beam is not None and beam.line is None for beam in beams)
+        return cls(force, moment, displacement, modes, ends_of(system), straight, system.corners)
 
     @property
     def extent(self) -> Floats:
@@ -99,31 +117,12 @@ class Specimen:
         return np.stack([ends.min(axis=0), ends.max(axis=0)])
 
 
-def of_structure(structure: Structure) -> Specimen:
-    """Answers of one structure about its place at rest."""
-    c, beam = structure.coefficients, None if structure.source is None else structure.source.beam
-    envelope = None if beam is None else beam.envelope
-    if structure.recovery is not None:
-        envelope = structure.recovery.envelope
-    ends = points_of(structure.length, np.empty((0, 3)) if beam is None else beam.body_centres, envelope)
-    if beam is None and structure.recovery is None:  # of matrices and particles only the points are known
-        names = structure.points or tuple(f"point {k + 1}" for k in range(len(structure.stations)))
-        ends = {"the root": np.zeros(3), **dict(zip(names, np.asarray(structure.station_places.r0), strict=True))}
-    (mass, *first), second = c.rigid[:4], np.empty((3, 3))
-    for (i, j), value in zip(PAIRS, c.rigid[4:], strict=True):
-        second[i, j] = second[j, i] = value
-    eye = np.eye(3)
-    force = Answer(-mass * eye, -np.einsum("ik,j->ijk", eye, first))
-    moment = Answer(np.cross(eye, first), np.cross(eye[:, None], second[None]))
-    displacement, modes = dict[str, Answer](), None
-    if structure.size:
-        forces = Answer.of(c.f_a, c.f_al, c.f_ww)
-        moved = structure.station_places.first[-1]
-        displacement["tip"] = forces.onto(np.linalg.solve(c.stiffness, moved.T))
-        modes = _modes(c.mass, c.damping, c.stiffness, forces, moved[None])
-    history = structure.history
-    corners = Specimen.corners if history is None else history.corners
-    return Specimen(force, moment, displacement, modes, ends, beam is not None and beam.line is None, corners)
+def _judged(system: System) -> list[str]:
+    """Names of the points whose displacement is judged: the tip of the only body, else all."""
+    tips = [
+        f"{name}.{max(points := stations_of(body), key=points.__getitem__)}" for name, body in system.flexible.items()
+    ]
+    return tips if len(system.bodies) == len(tips) == 1 else [*system.points]
 
 
 def _modes(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, moved: Floats) -> Modes:
@@ -131,34 +130,6 @@ def _modes(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, mov
     frequency, modes = rest_modes(mass, stiffness)
     ratio = np.einsum("nk,nm,mk->k", modes, damping, modes) / (2 * frequency)
     return Modes(frequency, ratio, forces.onto(modes), moved @ modes)
-
-
-def of_system(system: System, times: Floats) -> Specimen:
-    """Answers of a system about its equilibrium on a ground at rest."""
-    _refuse_moved(system, times)
-    state = steady(system, Drive(time=float(times[0])))
-    local, stiffness = state.local, state.linear.stiffness
-    forces, force, moment = _answers(local)
-    displacement, modes, free = dict[str, Answer](), None, len(local.y)
-    if free:
-        square, shapes = np.linalg.eigh(symmetric(stiffness))
-        if not square[0] > RIGID**2 * square[-1]:
-            loose = state.names[int(np.abs(shapes[:, 0]).argmax())]
-            fix = "give it a spring, or hold it, while a place is searched for"
-            raise InputError("joints", f"leave {loose} held by nothing that resists a load at rest", fix)
-        moved = state.slopes_of_points
-        by_load = np.linalg.solve(stiffness, moved.reshape(-1, free).T).reshape(free, -1, 3)
-        displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(system.points)}
-        mass, damping, stiffness = (symmetric(matrix) for matrix in state.linear[:3])
-        modes = _modes(mass, damping, stiffness, forces, moved)
-    ends = dict(zip(system.points, system.undeformed, strict=True))
-    for name, root in zip(
-        system.order, local.tree.motion(local.y, local.yd, local.ydd, local.inputs).roots, strict=True
-    ):
-        body = system.bodies[name]
-        if isinstance(body, RigidBody):
-            ends[f"the centre of mass of {name}"] = np.asarray(root.p + root.R @ np.asarray(body.centre, dtype=float))
-    return Specimen(force, moment, displacement, modes, ends, corners=system.corners)
 
 
 def _refuse_moved(system: System, times: Floats) -> None:

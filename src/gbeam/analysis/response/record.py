@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.outline import assembly_of, outline_of
+from gbeam.analysis.outline import assembly_of, ends_of, outline_of
 from gbeam.analysis.response.outcome import effort, ending_of, inaccuracies, stressed_and_bent
 from gbeam.analysis.response.peaks import displacement_peaks, half_ranges, load_peaks, maxima_of
 from gbeam.analysis.response.posed import begun_in_words
@@ -119,7 +119,7 @@ class Histories:
             acceleration = loads.acceleration[:, 1:] if structure.sections is not None else accelerations(
                 structure, state.base, *state[:3]
             )  # fmt: skip
-        straight = source is None or source.beam.line is None
+        straight = structure.recovery is None and (source is None or source.beam.line is None)
         drawn = settings.loads and not traced
         time = self.time[self.kept]
         return BodyResponse(
@@ -140,10 +140,9 @@ class Histories:
             influence=influence(structure)
             if isinstance(motion, Centrifuge) and alone and straight and not traced
             else None,
-            outline=outline_of(structure, motion if name == posed.subject.body else None, time, kept.q)
+            outline=outline_of(structure, motion if alone or name == posed.subject.body else None, time, kept.q)
             if drawn
             else None,
-            masses=np.empty((0, 3)) if traced or source is None else source.beam.body_centres,
             **(self._recovered(name, state, peaks) if drawn else {}),
         )
 
@@ -173,14 +172,14 @@ class Histories:
         """Fields that only the responses of curved beams, solids and rigid specimens have, by name."""
         structure, motion = self.run.posed.system.flexible[name], self.run.posed.subject.motion
         if structure.recovery is None:
-            return {} if structure.source is None else {"envelope": structure.source.beam.envelope}
+            return {}
         names = {"motion": self.name, "model": structure.kind, "environment": kind_of(motion)}
         parts = structure.recovery.parts(self.time, state.base, state.q, **names)
         if "specimen" in parts:
             parts["specimen"] = replace(parts["specimen"], root=peaks.loads)
         if "solid" in parts and self.every < self.run.stride:
             parts["solid"] = parts["solid"].sampled(self.kept)
-        return {"envelope": structure.recovery.envelope, **parts}
+        return parts
 
     def hub(self, bodies: Mapping[str, BodyResponse]) -> HubResult | None:
         """Motion of the hub that carries the body; None without one."""
@@ -286,6 +285,7 @@ def response_of(
         maxima=None if traced else maxima_of(system, read.time[read.flown], _during(read.over_time, read.flown)),
         whole=flown.part_of(*span) if isinstance(flown, Flight) else None,
         scale=level_factor(motion),
+        ends={} if traced else ends_of(system),
         kept_every=settings.kept_every(len(time), float(time[-1] - time[0]) / max(len(time) - 1, 1)),
         felt_at_steps=felt_at_steps,
         **read.sampled(),

@@ -14,7 +14,7 @@ from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.one_body import HINGE, on_motion
+from gbeam.mechanics.tree.one_body import HINGE, on_hub
 from gbeam.mechanics.tree.signals import deforming, local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -132,11 +132,17 @@ class Subject:
 
 
 def subject_of(structure: Structure | System, motion: Motion | None) -> Subject:
-    """Subject of a question about a system whose ground has a motion, or about a structure alone in it."""
-    if isinstance(structure, System):
-        return Subject(structure, motion, "", motion)
-    system, ground = on_motion(structure, motion)
-    return Subject(system, ground, BEAM, motion)
+    """Subject of a question about a system whose ground has a motion, or about a structure alone in it, which is the
+    same as the system of it.
+    """
+    system = structure if isinstance(structure, System) else System.of(structure, BEAM)
+    body = system.alone
+    if body is None:
+        return Subject(system, motion, "", motion)
+    (name,) = system.order
+    if motion is None or not motion.free:
+        return Subject(system, motion, name, motion)
+    return Subject(on_hub(body, motion, name), None, name, motion)
 
 
 def directions_of(structure: Structure, q: Floats, modes: Complex | Floats) -> tuple[str, ...]:
