@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from gbeam.results.body_response import BodyResponse
-from gbeam.results.parts import Base, Extremes, Peaks, VectorPeaks
+from gbeam.results.parts import Base, Extremes, Outline, Peaks, VectorPeaks
 from gbeam.results.response import Response
-from gbeam.results.system import Maxima
+from gbeam.results.system import Assembly, Maxima
 
 
 def of_beam(
@@ -70,3 +70,11 @@ def with_body(response: Response, **more: Any) -> Response:
     """Return a response of one body with other values of the body."""
     ((name, body),) = response.bodies.items()
     return replace(response, bodies={name: replace(body, **more)})
+
+
+def clamped(response: Response, outline: Outline) -> Response:
+    """Return a response of a straight beam on its base as it is drawn, with an outline."""
+    still, unknown = np.zeros((1, 3)), np.full((1, 3), np.nan)
+    held = Assembly(("beam",), ("ground",), ("fixed",), still, np.zeros((2, 3)), unknown, unknown, unknown[None])
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(response.time), 2, 1))
+    return replace(with_body(response, outline=outline), assembly=held, attitude=upright)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-from dataclasses import replace
 from importlib.resources import files
 from typing import Any
 
@@ -15,6 +14,7 @@ from gbeam.results.parts import Outline
 from gbeam.results.study import Study
 
 from ..plots.conftest import study
+from ..responses import clamped
 
 __all__ = ["study"]
 
@@ -35,7 +35,7 @@ def test_widget_shows_a_response(browser: Any, study: Study) -> None:
     outline = Outline(
         points, np.full(4, 0.02), np.full(4, 0.004), False, np.array([[0.3, 0.1]]), flight.time[::50], displacement
     )
-    header, numbers = shown(replace(flight, outline=outline))
+    header, numbers = shown(clamped(flight, outline))
     module = (files("gbeam.report.page") / "assets" / "gbeam.js").read_bytes()
     source = "data:text/javascript;base64," + base64.b64encode(module).decode()
     page = browser.new_page()

@@ -33,9 +33,8 @@ from gbeam.results.parts import Outline
 from gbeam.results.result import Result
 from gbeam.results.searches import CommandRun, FittedColumn, Requirement
 from gbeam.results.study import Study
-from gbeam.results.system import Assembly
 
-from ..responses import with_body
+from ..responses import clamped, with_body
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 
@@ -219,11 +218,7 @@ def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
         np.array([0.0, 0.3]), np.full(2, 0.02), np.full(2, 0.004), False, np.empty((0, 2)), flight.time[::50],
         np.zeros((5, 2, 3)),
     )  # fmt: skip
-    still, unknown = np.zeros((1, 3)), np.full((1, 3), np.nan)
-    clamped = Assembly(("beam",), ("ground",), ("fixed",), still, np.zeros((2, 3)), unknown, unknown, unknown[None])
-    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(flight.time), 2, 1))
-    held = replace(with_body(flight, outline=outline), assembly=clamped, attitude=upright)
-    shown = replace(study, responses={**study.responses, "flight": held})
+    shown = replace(study, responses={**study.responses, "flight": clamped(flight, outline)})
     scene = header_of(report_of(shown))["scene"]
     (motion,) = scene["motions"]  # type: ignore[index]
     (part,) = motion["parts"]
