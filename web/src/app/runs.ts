@@ -12,8 +12,14 @@ const OFTEN = 700; // ms, while something runs
 const SELDOM = 5000;
 const HIGHEST = 200_000; // pixels
 
+/** A body's largest values over time; at rest it has no sizes. */
+interface Body {
+  tip?: { size?: { max_abs: number } };
+  loads?: { root_moment: { size?: { max_abs: number } }; stress?: { max?: number } };
+}
+
 interface Answer {
-  motions?: Record<string, { outcome: string; tip?: { size: { max_abs: number } }; loads?: { root_moment: { size: { max_abs: number } }; stress?: { max: number } } }>;
+  motions?: Record<string, { outcome: string; bodies?: Record<string, Body> }>;
   comparisons?: { verdict: string; accepted: boolean | null; criteria?: unknown[] }[];
 }
 
@@ -175,9 +181,13 @@ export class Runs {
     answers.forEach((answer, i) => {
       for (const [name, motion] of Object.entries(answer.motions ?? {})) {
         put(`${name}: outcome`, i, motion.outcome);
-        if (motion.tip) put(`${name}: tip, mm`, i, format(1e3 * motion.tip.size.max_abs));
-        if (motion.loads) put(`${name}: root moment, N m`, i, format(motion.loads.root_moment.size.max_abs));
-        if (motion.loads?.stress) put(`${name}: stress, MPa`, i, format(1e-6 * motion.loads.stress.max));
+        const bodies = Object.entries(motion.bodies ?? {});
+        for (const [body, { tip, loads }] of bodies) {
+          const of = bodies.length > 1 ? `${name}, ${body}` : name;
+          if (tip?.size) put(`${of}: tip, mm`, i, format(1e3 * tip.size.max_abs));
+          if (loads?.root_moment.size) put(`${of}: root moment, N m`, i, format(loads.root_moment.size.max_abs));
+          if (loads?.stress?.max !== undefined) put(`${of}: stress, MPa`, i, format(1e-6 * loads.stress.max));
+        }
       }
       for (const each of answer.comparisons ?? []) {
         const undecided = each.criteria?.length ? "not decided" : "no limits set";
