@@ -153,7 +153,7 @@ def points_table(motion: Facts) -> Block:
     """Table of the largest motions of the points of several bodies, with what is read there."""
     residual = f"residual from {known(motion.get('residual_from')):g} s, m"
     moved = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
-    rows = [each | _read(motion, *each["name"].split(".", 1)) for each in named(motion["points"])]
+    rows = [{**each, **_read(motion, *each["name"].split(".", 1))} for each in named(motion["points"])]
     return table(rows, {**moved, **_READ, residual: "residual_size"}, optional=(*_READ, residual))
 
 
