@@ -18,7 +18,7 @@ from gbeam.analysis.response.posed import Posed, begun
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import Carried, carried, deflections, histories, loads_of
+from gbeam.analysis.system.histories import Carried, deflections, histories, loads_of
 from gbeam.analysis.system.point import Point, unknown_at_start
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
@@ -152,18 +152,10 @@ class Run:
         """Root force and moment (t, 3) of every flexible body, zero where they are rounding, at every `stride`-th step
         of the flight, and its stress: at every section (t, s, 1), or a solid's (t, c).
         """
-        system, out = self.posed.system, list[Floats]()
-        chosen = self._flown(stride)
-        states = {name: list[Carried]() for name in self.deforming}
-        for part in pieces(len(chosen), system.tree.size):
-            at, inputs = self.trajectory.at(chosen[part]), self.inputs(system, chosen[part])
-            state = system.tree.motion(at.q, at.qd, at.qdd, inputs)
-            *_, acting = system.tree.demanded(state, inputs)
-            for name, of_body in states.items():
-                of_body.append(carried(system, state, name, acting))
-        for name, of_body in states.items():
-            body, of = system.flexible[name], Carried.joined(of_body)
-            loads = loads_of(body, of, self.trajectory.time[chosen])
+        out, solution = list[Floats](), self.solution(stride)
+        for name, of in solution.states(self.deforming)[1].items():
+            body = self.posed.system.flexible[name]
+            loads = loads_of(body, of, solution.of.time)
             force, moment = loads.root_force, loads.root_moment
             sizes = np.abs(force).max() * body.length, np.abs(moment).max()
             out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]

@@ -66,11 +66,8 @@ class Solution:
         """
         return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.of, shared)
 
-    def read(self, bodies: Iterable[str]) -> Reading:
-        """Places (t, p, 3) m of all points and, of each body named, deflections (t, p, 3) m, force and moment (t, 3) at
-        the root and the largest normal and von Mises stress over the sections (t,); of a solid the stress (t, c) of
-        `recovery.felt`.
-        """
+    def states(self, bodies: Iterable[str]) -> tuple[Floats, dict[str, Carried]]:
+        """Places (t, p, 3) m of all points, and states of the bodies named."""
         tree, of = self.system.tree, self.of
         places, along = list[Floats](), {name: list[Carried]() for name in bodies}
         for times in pieces(len(of.time), tree.size):
@@ -81,10 +78,18 @@ class Solution:
                 acting = tree.demanded(state, inputs)[2] if self.system.laden & {*along} else [[] for _ in tree.links]
                 for name, carried_pieces in along.items():
                     carried_pieces.append(carried(self.system, state, name, acting))
-        out: dict[Quantity, Floats] = {PLACE: np.concatenate(places)}
-        for name, carried_pieces in along.items():
-            body, moved = self.system.flexible[name], Carried.joined(carried_pieces)
-            loads, q = loads_of(body, moved, of.time), moved.q
+        return np.concatenate(places), {name: Carried.joined(parts) for name, parts in along.items()}
+
+    def read(self, bodies: Iterable[str]) -> Reading:
+        """Places (t, p, 3) m of all points and, of each body named, deflections (t, p, 3) m, force and moment (t, 3) at
+        the root and the largest normal and von Mises stress over the sections (t,); of a solid the stress (t, c) of
+        `recovery.felt`.
+        """
+        places, states = self.states(bodies)
+        out: dict[Quantity, Floats] = {PLACE: places}
+        for name, moved in states.items():
+            body, q = self.system.flexible[name], moved.q
+            loads = loads_of(body, moved, self.of.time)
             sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
             stress = loads.stress.max(axis=1)
             if body.recovery is not None:
