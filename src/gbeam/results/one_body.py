@@ -86,7 +86,9 @@ class MovedBody(DeflectedBody):
         return self.body.peaks
 
     def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
-        """Return what a strain gauge at a named point of the body reads, (t,); see :meth:`BodyResponse.strain_at`."""
+        """Return what a strain gauge at a named `point` of the body reads `along` a direction, (t,); see
+        :meth:`BodyResponse.strain_at`.
+        """
         return self.body.strain_at(point, along)
 
 

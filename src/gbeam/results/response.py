@@ -287,8 +287,8 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
             return np.asarray(getattr(self.hub, name.removeprefix("hub.")))
         only = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
         for each in (name, *only):
-            if (found := self._signal(each)) is not None:
-                return found
+            if (history := self._signal(each)) is not None:
+                return history
         return self.q[:, index_of("name", name, self.coordinates)]
 
     def _signal(self, name: str) -> Floats | None:

@@ -162,8 +162,19 @@ class Placed:
         return self.place[..., index_of("point", point, self.points), :]
 
     def point(self, where: str, name: str) -> int:
-        """Return the number of a named point, ``body.point``, without the body's name where one alone deforms;
-        InputError at the keyword `where` if there is no such point.
+        """Return the number of a named point.
+
+        Parameters
+        ----------
+        where : str
+            Keyword that an error names.
+        name : str
+            ``body.point``, without the body's name where one alone deforms.
+
+        Raises
+        ------
+        InputError
+            If there is no such point.
         """
         short = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
         known = [each for each in short if each in self.points]

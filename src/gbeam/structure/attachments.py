@@ -59,7 +59,7 @@ class Point(Value):
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01, points=[camera])
     >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
     >>> response = gb.simulate(gb.assemble(beam, "FOAM", z=2), turn, duration=6.0)
-    >>> response.points, response.at("camera").shape[1:]
+    >>> response.body.points, response.body.at("camera").shape[1:]
     (('camera', 'tip'), (3,))
     """
 
