@@ -144,6 +144,8 @@ def _read(path: str, case: Case, motion: str | None) -> Measurement:
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
     if clock is None:
         raise InputError(OPTION, f"{path} has no column time or mode", f"its columns are {', '.join(names)}")
+    if motion is not None and motion not in case.environments:
+        raise InputError("--motion", f"is {motion!r}", f"the scenario has {', '.join(case.environments)}")
     modal = clock.lower() == _MODE
     at = table.numbers("file", clock) * _factor(names[clock], "time" if not modal else "ratio", clock)
     others = [name for name in names if name != clock]
@@ -192,9 +194,7 @@ def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Ca
     """
     owners, (prefix, face, place) = case.system.flexible, strain.groups()
     given = prefix.split(".")[:-1]
-    run = given.pop(0) if given and given[0] not in owners else motion or _only_motion(case, name)
-    if run not in case.environments:
-        raise InputError("--motion", f"is {run!r}", f"the scenario has {', '.join(case.environments)}")
+    run = given.pop(0) if given and given[0] in case.environments else motion or _only_motion(case, name)
     owner = ".".join(given) or (next(iter(owners)) if len(owners) == 1 else "")
     if owner not in owners:
         raise InputError(OPTION, f"has the column {name!r}, which names no body", advise(owner, owners))
