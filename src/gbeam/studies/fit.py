@@ -113,11 +113,8 @@ def fit(
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
-    start = (
-        None
-        if measurement.modal or case.only_beam is None
-        else Neighbourhood(inquiry, parameters, adapt=partial(reduced, needs=Needs(errors=False)), progress=progress)
-    )
+    adapt = partial(reduced, needs=Needs(errors=False))
+    start = None if measurement.modal else Neighbourhood(inquiry, parameters, adapt=adapt, progress=progress)
     model = Quantities(
         inquiry, parameters, measurement.read, start, measurement.motions, measurement.parts,
         measurement.instrumented, progress,
