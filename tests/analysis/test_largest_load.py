@@ -7,9 +7,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gbeam import Beam, Comparison, InputError, PointMass, Response, assemble, compare, constant, simulate
+from gbeam import (
+    Beam,
+    Comparison,
+    InputError,
+    Joint,
+    PointMass,
+    Response,
+    RigidBody,
+    System,
+    assemble,
+    compare,
+    constant,
+    simulate,
+)
 from gbeam import Flight as InFlight
 from gbeam.analysis.imitation.accounting import largest_load
+from gbeam.analysis.outline import ends_of
 from gbeam.results.parts import Base
 
 from .helpers import ALUMINIUM, LENGTH, SECTION, of_tip
@@ -122,3 +136,24 @@ def test_a_limit_by_another_name_is_refused() -> None:
     level = np.full(len(TIME), G)
     with pytest.raises(InputError, match="largest_load"):
         compare(in_flight(-level[:, None] * ALONG_X), on_an_arm(np.sqrt(level), 0.0), accept={"largest": 0.1})
+
+
+def test_ends_of_bodies_are_where_their_joints_hold_them() -> None:
+    """A leg stands on the tip of another, and a box with a point hangs beside them."""
+    leg = assemble(Beam(LENGTH, SECTION, ALUMINIUM, damping_ratio=0.01), "FOAM", z=1)
+    box = RigidBody(1.0, (1.0, 1.0, 1.0), centre=(0.0, 0.0, 0.1), points={"lid": (0.0, 0.0, 0.2)})
+    joints = {
+        "clamp": Joint("fixed", "foot"),
+        "corner": Joint("fixed", "leg", "foot.tip", turn=(0.0, -np.pi / 2, 0.0)),
+        "screws": Joint("fixed", "box", at=(0.0, 0.5, 0.0)),
+    }
+    ends = ends_of(System({"foot": leg, "leg": leg, "box": box}, joints))
+    places = {
+        "the tip of foot": (LENGTH, 0, 0),
+        "the tip of leg": (LENGTH, 0, LENGTH),
+        "the point lid of box": (0, 0.5, 0.2),
+        "the centre of mass of box": (0, 0.5, 0.1),
+    }
+    for name, place in places.items():
+        np.testing.assert_allclose(ends[name], place, atol=1e-12)
+    assert ends.keys() - places == {"the root of foot", "the root of leg", "the root of box"}

@@ -86,7 +86,7 @@ def test_a_system_of_one_beam_has_the_rows_of_the_beam_on_a_hub() -> None:
     held = gb.Case("held", gb.System({"beam": structure}, {"axis": axis}), {}, settings)
     one, other = (gb.compare_models(case, ["FOAM", "SFOAM"]) for case in (alone, held))
     (foam, short, exact), (its, shorter, same) = one.rows, other.rows
-    assert other.direction == {"ground": "beam.tip y"} and one.direction == {"slew": "y"}
+    assert other.direction == {"ground": "y"} and one.direction == {"slew": "y"}
     assert shorter.outcome == short.outcome == "done"
     assert shorter.difference == pytest.approx(short.difference, abs=2e-3)
     pushed = replace(held, system=gb.System({"beam": structure}, {"axis": replace(axis, rate=None, effort=1.0)}))
@@ -108,5 +108,10 @@ def test_points_of_a_system_are_compared() -> None:
     with pytest.raises(gb.InputError, match="have no beam"):
         gb.compare_models(gb.Case("rigid", rod, {}, ResponseSettings(1.0)))
     beam = gb.read_scenario("examples/f16_8g_turn.toml")
-    with pytest.raises(gb.InputError, match="beam is the only body; leave it out"):
-        gb.compare_models(beam, ["FOAM"], point="tip")
+    with pytest.raises(gb.InputError, match="point is no point: 'top'; did you mean 'tip'"):
+        gb.compare_models(beam, ["FOAM"], point="top")
+    slew = gb.read_scenario(
+        "examples/hubbeam2009_slew_2p8.toml", ["response.duration=2 s", "response.residual_from=1 s"]
+    )
+    named, plain = (gb.compare_models(slew, ["TLAM"], point=point) for point in ("tip", None))
+    assert [row.peak for row in named.rows] == [row.peak for row in plain.rows] and named.direction == {"slew": "tip y"}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from gbeam import Comparison, Flight, InputError, compare, simulate, tabulated
+from gbeam import Comparison, Flight, InputError, Joint, SmoothStep, System, compare, simulate, tabulated
 from gbeam.numerics.samples import displacement, largest_riding_acceleration, low_pass, riding_acceleration
 from gbeam.report.study import comparison_lines as lines
 
@@ -234,3 +234,20 @@ def test_low_pass_has_the_gain_of_butterworth_twice() -> None:
         with pytest.raises(InputError, match=r"apart over 3\.999 s; give 0\.250063 Hz or more, below 500 Hz"):
             low_pass(line, 1e-3, wrong)
     np.testing.assert_allclose(low_pass(line, 1e-3, 0.250063), line, atol=0.01 * np.ptp(line[..., 0]))
+
+
+def test_a_beam_on_a_turned_clamp_is_compared_in_axes_of_the_ground(structure: Any) -> None:
+    """Turned by a right angle about x, and loaded along the ground's y: the same as the beam on the ground itself."""
+    clamp = Joint("fixed", "strip", turn=(np.pi / 2, 0.0, 0.0))
+    turned = System({"strip": structure}, {"clamp": clamp})
+    options: dict[str, Any] = {"duration": 0.3, "step": 1e-3, "estimate": False}
+    plain = compare(*(simulate(structure, Flight(z=SmoothStep(level, 0.1)), **options) for level in (10.0, 12.0)))
+    other = compare(
+        *(simulate(turned, Flight(y=SmoothStep(-level, 0.1)), **options) for level in (10.0, 12.0)), point="tip"
+    )
+    np.testing.assert_allclose(other.difference[:, 1], -plain.difference[:, 2], atol=1e-9 * plain.peak_flight[2])
+    assert plain.shock is not None and other.shock is not None
+    np.testing.assert_allclose(other.shock.flight[:, 1], plain.shock.flight[:, 2], rtol=1e-6)
+    for name in ("tip", "root_force", "root_moment", "stress"):
+        assert other.peaks[name].ratio == pytest.approx(plain.peaks[name].ratio, rel=1e-4), name
+        assert other.peaks[name].flight == pytest.approx(plain.peaks[name].flight, rel=1e-4), name

@@ -182,7 +182,7 @@ def test_response_carries_accelerations_and_gravity_hangs_on_the_root() -> None:
     response = simulate(structure, Flight(z=constant(9.80665)), duration=0.05)
     loads = response.loads
     assert loads is not None
-    assert response.qdd.shape == response.q.shape
+    assert response.body.qdd.shape == response.q.shape
     np.testing.assert_allclose(loads.root_force[:, 2], M * L * 9.80665, rtol=1e-6)  # it starts in equilibrium
     np.testing.assert_allclose(loads.acceleration[:, -1, 2], 9.80665, rtol=1e-6)
 

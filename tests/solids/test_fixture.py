@@ -51,5 +51,5 @@ def test_one_mesh_of_both_lies_between_a_seat_that_gives_and_a_rigid_one() -> No
     wanted, run = gb.simulate(whole.structure, flight, **OPTIONS), gb.simulate(stiff, flight, **OPTIONS)
     moved = np.abs(run.at("strip.tip") - run.at("strip.tip")[0]).max(axis=0)
     assert moved[2] == pytest.approx(wanted.peaks.max_abs[2], rel=0.02)
-    assert wanted.solid is not None and run.solids["fixture"].worst.node == wanted.solid.worst.node
-    assert run.solids["fixture"].worst.von_mises == pytest.approx(wanted.solid.worst.von_mises, rel=0.005)
+    assert wanted.solid is not None and run.bodies["fixture"].solid.worst.node == wanted.solid.worst.node
+    assert run.bodies["fixture"].solid.worst.von_mises == pytest.approx(wanted.solid.worst.von_mises, rel=0.005)

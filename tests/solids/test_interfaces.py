@@ -230,7 +230,7 @@ def test_errors_of_a_system_are_those_of_more_modes() -> None:
     )
     assert place > 1e-4 and place / 2 < few.errors.place.shapes < 2 * place
     assert force > 0.01 and max(force, moment) / 2 < few.errors.loads.shapes < 2 * max(force, moment)
-    stress = [np.abs(each.solids["strip"].von_mises).max() for each in runs]
+    stress = [np.abs(each.bodies["strip"].solid.von_mises).max() for each in runs]
     assert few.errors.stress.shapes > abs(stress[0] / stress[1] - 1) / 2
     assert many.errors.place.shapes < place / 10
     assert few.errors.beams == ("strip",) and "the mesh of strip is not judged" in few.errors.note

@@ -60,7 +60,7 @@ def test_a_beam_of_nodes_is_the_beam() -> None:
     rigid = model.coefficients.rigid
     np.testing.assert_allclose(rigid[[0, 1, 4]], [MU * L, MU * L**2 / 2, MU * L**3 / 3], rtol=1e-3)
     flown = gb.simulate(model, gb.Flight(z=constant(5.0)), duration=0.05, step=1e-3)
-    assert flown.points == ("middle", "tip") and flown.outcome == "done"
+    assert flown.body.points == ("middle", "tip") and flown.outcome == "done"
     assert any("no geometric stiffness is given" in each for each in flown.warnings)
 
 

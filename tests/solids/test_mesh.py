@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 import gbeam as gb
 from gbeam.motion import constant
 from gbeam.report import text
-from gbeam.report.study import of_beam
+from gbeam.report.study import response_lines
 from gbeam.report.words import number
 from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
 from gbeam.solids.files import read_mesh
@@ -205,7 +205,7 @@ def test_the_mesh_converges_and_says_by_how_much() -> None:
         assert of.errors.loads.mesh == pytest.approx(loads[0], rel=2e-2, abs=1e-9)
         assert_stated(tips[0], tips[1])
         assert 0.01 < of.errors.stress.mesh < 0.5
-    said = " ".join(of_beam(of))
+    said = " ".join(response_lines(of))
     assert "mesh" in said and "not judged" not in said and any("mesh it finer" in each for each in of.warnings)
     lost, rough = (
         gb.critical_speed(each.structure, gb.Hub(radius=0.1, pointing="inward")) for each in (judged, coarse)

@@ -156,7 +156,7 @@ def test_a_run_of_several_bodies_is_differentiated_exactly(tmp_path: Path) -> No
             case = gb.read_scenario(file, [f"{path}={float(slopes.values[j] + sign * h)!r}"])
             run = gb.simulate(case.system, None, case.response)
             k = run.coordinates.index("hinge.angle")
-            ends.append(np.array([run.peaks.highest[k], run.peaks.rate[k]]))
+            ends.append(np.array([run.maxima.highest[k], run.maxima.rate[k]]))
         difference = (ends[0] - ends[1]) / (2 * h)
         assert slopes.derivatives[:, j] == pytest.approx(difference, rel=1e-5), path
 

@@ -56,8 +56,8 @@ def sweep(
         tuple[str, ...],
         option(
             "--history",
-            'Histories by motion, quantity (tip, root_force, root_moment) and axis, "flight.tip.z"; of a system what a '
-            'sensor reads, "strip.tip.place_z"; of verb run.',
+            'Histories by motion, point or load of the root, and axis, "flight.tip.z", or what a sensor reads, '
+            '"strip.tip.place_z"; of verb run.',
         ),
     ] = (),
     times: Annotated[int, Parameter(help="At which histories are given, over the whole response.")] = 501,

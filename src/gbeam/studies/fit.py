@@ -54,10 +54,10 @@ def fit(
         The scenario's file, or a case, of :func:`gbeam.read_scenario` or made in Python.
         Its values are where the search starts.
     data : path
-        A text file with a header. Columns ``time`` and any of ``tip.z``, ``root_moment.y``, ``root_force.z``,
-        ``hub.angle``, ``hub.rate``, ``strain.z@10 mm``, with a unit in brackets or SI, after the motion's name where
-        the scenario has several; of a system what :meth:`Response.signal` reads, ``strip.tip.place_z``; or
-        columns ``mode``, ``frequency`` and ``damping_ratio``.
+        A text file with a header. Columns ``time`` and what :meth:`Response.signal` reads, such as ``tip.z``,
+        ``root_moment.y``, ``hub.angle`` or ``strip.tip.place_z``, or strain gauges, ``strain.z@10 mm``, with a unit in
+        brackets or SI, after the motion's name where the scenario has several; or columns ``mode``, ``frequency`` and
+        ``damping_ratio``.
     free : sequence of str
         Paths of the values to find, such as ``beam.material.youngs_modulus``; ``*`` stands for part of one step, and
         values that it fits, which the scenario gives alike, stay alike: ``bodies.plate.springs.*.stiffness.z``.
@@ -113,11 +113,8 @@ def fit(
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
     limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
-    start = (
-        None
-        if measurement.modal or case.only_beam is None
-        else Neighbourhood(inquiry, parameters, adapt=partial(reduced, needs=Needs(errors=False)), progress=progress)
-    )
+    adapt = partial(reduced, needs=Needs(errors=False))
+    start = None if measurement.modal else Neighbourhood(inquiry, parameters, adapt=adapt, progress=progress)
     model = Quantities(
         inquiry, parameters, measurement.read, start, measurement.motions, measurement.parts,
         measurement.instrumented, progress,

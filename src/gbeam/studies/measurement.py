@@ -31,7 +31,7 @@ OPTION = "--data"
 _TIME = ("time", "time_s", "t")
 _MODE = "mode"
 _STRAIN = re.compile(r"((?:\w+\.)*)strain\.(-?[xyz])@(.+)")
-_MODAL = {"frequency": "frequency", "damping_ratio": "ratio"}
+_MODAL = {"frequency": ("frequency", "Hz"), "damping_ratio": ("ratio", "")}  # kinds and units
 _USUAL = {"history": 1e-2, "frequency": 1e-3, "damping_ratio": 0.1}  # assumed noise, of the largest or of the value
 _LEAST = 1e-6  # of that: least noise, as of data that were computed
 _SIGNALS = "length", "angle", "speed", "angular rate", "acceleration", "force", "torque"  # kinds of signals
@@ -144,6 +144,8 @@ def _read(path: str, case: Case, motion: str | None) -> Measurement:
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
     if clock is None:
         raise InputError(OPTION, f"{path} has no column time or mode", f"its columns are {', '.join(names)}")
+    if motion is not None and motion not in case.environments:
+        raise InputError("--motion", f"is {motion!r}", f"the scenario has {', '.join(case.environments)}")
     modal = clock.lower() == _MODE
     at = table.numbers("file", clock) * _factor(names[clock], "time" if not modal else "ratio", clock)
     others = [name for name in names if name != clock]
@@ -178,7 +180,8 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion:
     if modal:
         if name not in _MODAL:
             raise InputError(OPTION, f"has the column {name!r}", advise(name, _MODAL))
-        return Measured(name, motion or "", name, values * _factor(unit, _MODAL[name], name), _si(_MODAL[name]))
+        kind, si = _MODAL[name]
+        return Measured(name, motion or "", name, values * _factor(unit, kind, name), si)
     if (strain := _STRAIN.fullmatch(name)) is not None:
         return _gauge(name, unit, values, strain, case, motion)
     signal = read_history(name, case, OPTION, motion)
@@ -192,9 +195,7 @@ def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Ca
     """
     owners, (prefix, face, place) = case.system.flexible, strain.groups()
     given = prefix.split(".")[:-1]
-    run = given.pop(0) if given and given[0] not in owners else motion or _only_motion(case, name)
-    if run not in case.environments:
-        raise InputError("--motion", f"is {run!r}", f"the scenario has {', '.join(case.environments)}")
+    run = given.pop(0) if given and given[0] in case.environments else motion or _only_motion(case, name)
     owner = ".".join(given) or (next(iter(owners)) if len(owners) == 1 else "")
     if owner not in owners:
         raise InputError(OPTION, f"has the column {name!r}, which names no body", advise(owner, owners))
@@ -204,10 +205,6 @@ def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Ca
     factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
     at: float | str = (_gauged if body.source is None else _position)(place, face, body)
     return Measured(name, run, "strain", values * factor, unit="", at=at, face=face, body=owner)
-
-
-def _si(kind: str) -> str:
-    return "Hz" if kind == "frequency" else KINDS[kind].unit
 
 
 def _factor(unit: str, kind: str, name: str) -> float:

@@ -73,8 +73,8 @@ def sweep(
         is on (its limits of acceptance, or the largest load), the largest of tip and root moment, the share of the
         flight that is followed, and whether it is accepted.
     histories : sequence of str
-        Histories over time as further measures, ``flight.tip.z``: of tip, root_force or root_moment along x, y or z; of
-        a system what :meth:`Response.signal` reads, ``strip.tip.place_z``.
+        Histories over time as further measures, of what :meth:`Response.signal` reads: ``flight.tip.z``,
+        ``flight.strip.root_moment.y``.
         Where samples are drawn, their quantiles at every time are the bands that the response stays in.
     times : int
         At which histories are given, spread evenly over the response of the first case; 501 by default.

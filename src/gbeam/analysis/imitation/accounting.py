@@ -231,8 +231,8 @@ def times_between(first: float, last: float) -> Floats:
 
 
 def beside_root(ends: Mapping[str, Floats]) -> Floats:
-    """Places (p, 3) m, among the ends of a specimen, that are not its root; NaN where there is none."""
-    places = np.array([place for place in ends.values() if np.any(place)]).reshape(-1, 3)
+    """Places (p, 3) m of the ends of a specimen but "the root"; NaN where there is none."""
+    places = np.array([place for name, place in ends.items() if name != "the root"]).reshape(-1, 3)
     return places if len(places) else np.full((1, 3), np.nan)
 
 

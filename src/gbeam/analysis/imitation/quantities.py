@@ -41,13 +41,15 @@ class Quantities:
     @classmethod
     def of(cls, where: str, response: Response) -> Quantities:
         """Quantities of a response, given as the argument `where`; InputError if the ground rests, or loads are lacking
-        where joints move the bodies.
+        where bodies hang on joints.
         """
-        jointed = len(response.coordinates) > sum(body.q.shape[1] for body in response.bodies.values())
-        if response.base is None or ((response.several or jointed) and response.assembly is None):
+        own = sum(body.q.shape[1] for body in response.bodies.values())
+        away = np.any(response.place[0, -1]) or np.any(response.attitude[0, -1, 1:])  # of an only body the root
+        jointed = response.several or len(response.coordinates) > own or bool(away)
+        if response.base is None or (jointed and response.assembly is None):
             fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
             raise InputError(where, "is on a ground at rest, or without loads", fix)
-        if response.several or jointed:
+        if jointed:
             return cls._of_points(response, response.base)
         body, loads = response.body, response.body.loads
         return cls(
@@ -97,12 +99,14 @@ class Quantities:
     def peaks(self, part: slice | Flags, point: int) -> dict[str, Peak]:
         """Largest sizes over a part of the times, between steps, and their times, by name; `point` is that of "tip"."""
         time, known = self.response.time[part], self._known(point)
-        histories = {"tip": self.displacement[:, point]} if self.response.q.shape[1] else {}  # a rigid tip stays
-        histories |= {} if self.root is None else dict(zip(("root_force", "root_moment"), self.root, strict=True))
-        found = dict.fromkeys(("root_force", "root_moment"), UNKNOWN)
+        force, moment = self.root or (None, None)
+        histories = {"tip": self.displacement[:, point], "root_force": force, "root_moment": moment}
+        if not self.response.q.shape[1]:
+            del histories["tip"]  # a rigid one stays
+        found = dict[str, Peak]()
         for name, vectors in histories.items():
             peak = _within(time, known[name].size) if name in known else None
-            found[name] = peak or _first(*vector_peaks(time, vectors[part]))
+            found[name] = peak or (UNKNOWN if vectors is None else _first(*vector_peaks(time, vectors[part])))
         return found | {"stress": max(self._stresses(time, part), key=_by_size, default=UNKNOWN)}
 
     def _known(self, point: int) -> dict[str, VectorPeaks]:
