@@ -74,7 +74,7 @@ def describe(case: Case) -> Description:
         tracks=dict(case.tracks),
         scales={name: each.level_factor for name, each in flights.items() if each.level_factor is not None},
         records={name: each.record for name, each in flights.items() if each.record is not None},
-        notes=notes_on(case.motions),
+        notes=notes_on({name: motion for name, motion in case.motions.items() if name not in flights}),
         warnings=tuple(dict.fromkeys(doubts)),
         **over_time,
     )

@@ -56,6 +56,16 @@ class Gap(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Offset(Part):
+    """What the sensors of a record read in a stretch, at rest or of another known load, besides what is known."""
+
+    start: float = entry("s", "first time of the stretch")
+    end: float = entry("s", "its last time")
+    load: Vector = entry("m/s^2", "offsets of the columns x, y and z, with their signs", "axis")
+    rates: Vector | None = entry("rad/s", "offsets of the columns p, q and r", "axis", default=None)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class RecordSummary(Part):
     """A flight's record, as its file has it and as it is flown."""
 
@@ -75,6 +85,7 @@ class RecordSummary(Part):
         "", "columns of p, q and r, with their signs", "axis", default=None
     )
     gaps: tuple[Gap, ...] = rows("gaps that were bridged", "gap", default=())
+    offsets: tuple[Offset, ...] = rows("offsets that were subtracted, found at rest", "offset", default=())
     clock: str = fact("what the clock of the file shows at zero seconds; empty where that is zero", default="")
     done: tuple[str, ...] = fact("what was done to it, as asked", default=())
     notes: tuple[str, ...] = fact("what looks odd", default=())

@@ -10,6 +10,7 @@ from gbeam.motion import Profile
 from gbeam.motion.flight import body_rates
 from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.rest import Rest
 from gbeam.scenario import schema
 from gbeam.scenario.schema.profile import Record
 
@@ -129,9 +130,10 @@ def _record(table: Record) -> FlightRecord:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
     conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "bridge", "skip_checks")}
     columns = values_of(
-        table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to", "turn", "level", "arm"
+        table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to", "turn", "level", "arm", "rest"
     )
     span = table.begin, table.to
+    rests = tuple(Rest((each.begin, each.to), each.load, each.rates) for each in table.rest)
     return read_flight(
         table.file,
         table.time,
@@ -139,7 +141,7 @@ def _record(table: Record) -> FlightRecord:
         rates=rates,
         conditioning=Conditioning(**conditions),
         span=span,
-        instrument=Instrument(table.turn, table.level, table.arm),
+        instrument=Instrument(table.turn, table.level, table.arm, rests),
     )
 
 

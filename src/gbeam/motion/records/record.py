@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from gbeam.motion.records.columns import (
 )
 from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
 from gbeam.motion.records.instrument import Instrument
+from gbeam.motion.records.rest import Rest, offsets_of
 from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unsound
 from gbeam.motion.records.text import read_text
 from gbeam.motion.records.times import Span, Timeline, Times, check_interval
@@ -79,8 +80,8 @@ class Conditioning:
     bridge : float or None
         Longest gap that is bridged, s: lost samples are put on straight lines, before the low-pass and resampling.
     skip_checks : bool or tuple of str
-        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts`` and ``columns``; True leaves
-        out all.
+        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts``, ``columns`` and ``rest``;
+        True leaves out all.
     """
 
     cutoff: float | None = None
@@ -137,6 +138,7 @@ def read_record(
     vehicle: Vehicle = "aircraft",
     turn: Numbers = (0.0, 0.0, 0.0),
     level: Span | None = None,
+    rest: Sequence[Rest] = (),
     span: Span = (None, None),
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
@@ -171,6 +173,9 @@ def read_record(
     level : tuple, optional
         First and last time of a stretch at rest, on the record's own clock: the block is turned on by the shortest
         way, so that the mean specific force there points along z.
+    rest : sequence of Rest
+        Stretches of :class:`gbeam.motion.records.rest.Rest` in which the load is known: what the accelerometers read
+        besides is subtracted, of several stretches on straight lines from one to the next.
     span : tuple
         First and last time of the part that is flown, s on the record's own clock, or a time of day where it has these;
         None is the record's end. What is outside is not checked, but for level flight.
@@ -196,7 +201,7 @@ def read_record(
     """
     return read_flight(
         path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, sample_rate=sample_rate,
-        quantity=quantity, vehicle=vehicle, instrument=Instrument(turn, level), span=span,
+        quantity=quantity, vehicle=vehicle, instrument=Instrument(turn, level, rest=tuple(rest)), span=span,
     ).acceleration  # fmt: skip
 
 
@@ -247,7 +252,12 @@ def read_flight(
     load = load_unit.size * table.vector(names, len(clock), part)
     turning = rate_unit.size * table.vector(turns, len(clock), part) if turns else np.empty((len(clock), 0))
 
-    axes, mounted = instrument.axes(times, load, turning, table.counted, specific=quantity == "specific-force")
+    specific = quantity == "specific-force"
+    axes, mounted = instrument.axes(times, load, turning, table.counted, specific=specific)
+    offsets = offsets_of(
+        instrument.rest, times, load, turning, axes, {**names, **turns}, table.counted,
+        specific=specific, trust="rest" in skip,
+    )  # fmt: skip
 
     def judge(time: Floats) -> None:
         if "sampling" not in skip:
@@ -258,7 +268,6 @@ def read_flight(
 
     def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
         turned = upended(table, names)
-        specific = quantity == "specific-force"
 
         def place(i: int) -> str:
             return table.place(int(rows[i]))
@@ -273,7 +282,10 @@ def read_flight(
     if "columns" not in skip:
         notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
     notes += oddities(flown)
+    notes += offsets.carried_on(*line.time[[0, -1]])
     calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
+    off = offsets.at(line.time)
+    calm = calm - off
     turned = np.concatenate([calm[:, k : k + 3] @ axes.T for k in range(0, calm.shape[1], 3)], axis=1)
     new, both = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
     done = [f"time in {times.unit.text}, as the file says"] if time_unit is None and times.unit.size != 1 else []
@@ -284,7 +296,7 @@ def read_flight(
     if conditioning.resample is not None:
         done.append(f"resampled at {conditioning.resample:g} Hz")
     at_root, carried = instrument.carried(new, both[:, :3], both[:, 3:])
-    done += [*mounted, *carried]
+    done += [*mounted, *offsets.words({**names, **turns}), *carried]
     as_read = line.values[line.read]
     facts = RecordSummary(
         file=os.fspath(path),
@@ -295,9 +307,10 @@ def read_flight(
         whole=times.ends,
         read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
         flown=curves(new, at_root, both[:, 3:]),
-        level=level(flown),
+        level=level(replace(flown, load=flown.load - off[:, :3])),
         rate_columns=None if rates is None else (rates.p, rates.q, rates.r),
         gaps=line.gaps,
+        offsets=offsets.found,
         clock="" if times.zero is None else times.zero.first,
         done=tuple(done),
         notes=tuple(notes),

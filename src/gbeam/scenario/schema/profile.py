@@ -41,6 +41,7 @@ from gbeam.scenario.schema.fields import (
     Torque,
     TorqueRate,
     Turn3,
+    listed,
     optional,
     refuse,
     wrong,
@@ -204,6 +205,22 @@ else:
     _TimeUnit = _unit_of("time", TimeUnit, "1 s / 32768")
 
 
+class Rest(Table):
+    """A stretch of a record in which the vehicle rests, or its load is known."""
+
+    begin: Moment | None = optional(
+        "first time of the stretch, on the record's own clock; the record's first if left out", alias="from"
+    )
+    to: Moment | None = optional("last time of the stretch; the record's last if left out")
+    load: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
+        'the load there, base axes, such as ["0 g", "0 g", "1 g"], which specific force is at rest if left out; '
+        "acceleration is none then"
+    )
+    rates: tuple[AngularRate, AngularRate, AngularRate] = Field(
+        default=(0.0, 0.0, 0.0), description="the body's rates there, about base axes, such as of a rate table"
+    )
+
+
 class Record(Table):
     """A measured flight: a file of named columns."""
 
@@ -248,6 +265,10 @@ class Record(Table):
         "first and last time of a stretch at rest and level, on the record's own clock: the block is turned on by the "
         "shortest way, so that the specific force there points along z"
     )
+    rest: tuple[Rest, ...] = listed(
+        "stretches at rest, or of another known load: what the sensors of x, y, z, p, q and r read there besides is "
+        "their offset, and is subtracted; of several stretches it drifts on straight lines from one to the next, and on"
+    )
     arm: Place3 = Field(
         default=(0.0, 0.0, 0.0),
         description="from the instrument to the specimen's root, base axes: by p, q and r it adds α × r + ω × (ω × r)",
@@ -274,7 +295,8 @@ class Record(Table):
     skip_checks: _Skipped = Field(
         default=False,
         description="true to take the record as it is, or a list of the checks to leave out: sampling (rate), spikes, "
-        "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names)",
+        "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names), rest (that the "
+        "load there is steady, and how far sensors are off)",
     )
 
     @model_validator(mode="after")
