@@ -105,16 +105,20 @@ def test_a_part_is_run_where_it_is_asked_for_and_said_first(scenario: Path, gbea
     assert gbeam("run", scenario, "--set", "motion.flight.record.to=6 s", "--set", "response.duration=5 s").status == 2
 
 
-def test_flights_of_other_lengths_are_cut_on_their_records(scenario: Path, gbeam: Call) -> None:
+def test_flights_of_other_lengths_have_their_own_times(scenario: Path, gbeam: Call) -> None:
     other = SCENARIO.split("[motion.flight]")[1].split("[motion.spin]")[0].replace("motion.flight", "motion.short")
     scenario.write_text(SCENARIO + "[motion.short]" + other + 'to = "9 s"\n', encoding="utf-8")
     answer = gbeam("check", scenario)
-    assert answer.status == 2
-    assert (
-        "motion.flight.record: is longer than the flights that are run together: the record of 'flight'" in answer.err
-    )
-    assert 'ask for a part on the record itself: to = "9 s" in [motion.flight.record]' in answer.err
-    assert gbeam("check", scenario, "--set", "motion.flight.record.to=9 s").status == 0
+    assert answer.status == 0, answer.err
+    assert "response  flight 0 to 15.99 s, short 0 to 9 s" in answer.out
+    told = gbeam("check", scenario, "--json").json
+    assert told["motions"]["short"]["span"] == {"start": 0.0, "end": 9.0}
+    assert "start" not in told["response"]
+    refused = gbeam("check", scenario, "--set", "response.duration=9 s")
+    assert refused.status == 2
+    assert 'ask for a part on the record itself: to = "9 s" in [motion.flight.record]' in refused.err
+    same = gbeam("check", scenario, "--set", "motion.flight.record.to=9 s", "--json").json
+    assert same["response"]["duration"] == 9.0 and "span" not in same["motions"]["short"]
 
 
 def test_python_says_the_part_too(scenario: Path) -> None:

@@ -71,12 +71,12 @@ def test_one_stretch_finds_a_constant_offset_and_says_it(tmp_path: Path) -> None
     record = read(path, ENDS[0])
     np.testing.assert_allclose(record.acceleration.values, load, atol=1e-12)
     said = (
-        "offsets at rest from 0 to 1.5 s, are subtracted: x 0.02 g, y -0.01 g, z 0.03 g, "
+        "offsets at rest (0 to 1.5 s) are subtracted: x 0.02 g, y -0.01 g, z 0.03 g, "
         "p 0.1 deg/s, q -0.2 deg/s, r 0.3 deg/s"
     )
-    assert record.summary.done == (said.replace("s, are", "s are"),)
+    assert record.summary.words == said
     flight = Flight(acceleration=record.acceleration)
-    assert notes_on({"turn": flight}) == (f"motion.turn.record: {record.summary.done[0]}",)
+    assert notes_on({"turn": flight, "again": flight}) == (f"record x.csv: {said}",)
     options: Any = {"time": "time", "x": "ax", "y": "ay", "z": "az", "unit": "g"}
     np.testing.assert_array_equal(read_record(path, **options, rest=ENDS[:1]).values, record.acceleration.values)
 
@@ -117,7 +117,7 @@ def test_acceleration_is_none_at_rest_and_what_has_no_column_has_no_offset(tmp_p
     record = read(path, ENDS[0], y="0", **options)
     assert record.summary.offsets[0].load == pytest.approx([0.3, 0.0, 0.1])
     np.testing.assert_allclose(record.acceleration.values, (load - [0, 0, G]) * [1, 0, 1], atol=1e-12)
-    assert record.summary.done == ("offsets at rest from 0 to 1.5 s are subtracted: x 0.03059 g, z 0.0102 g",)
+    assert record.summary.words == "offsets at rest (0 to 1.5 s) are subtracted: x 0.03059 g, z 0.0102 g"
     specific = read(written(path, load, rates), ENDS[0], z="0", rates=None, vehicle="other")
     assert specific.summary.offsets[0].load == pytest.approx([0, 0, 0])
 

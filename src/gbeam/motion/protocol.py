@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -60,18 +61,15 @@ def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
     """Notes on motions by name: hubs, built or as a scenario has them, without gravity, which in orbit is meant; and
     records of flights, to which something was done.
     """
-    done = (
-        f"{f'motion.{name}' if name else 'motion'}.record: {'; '.join(motion.unscaled.record.done)}"
-        for name, motion in motions.items()
-        if isinstance(motion, Flight) and motion.unscaled.record is not None and motion.unscaled.record.done
-    )
+    records = [motion.unscaled.record for motion in motions.values() if isinstance(motion, Flight)]
+    done = (f"record {Path(each.file).name}: {each.words}" for each in records if each is not None and each.words)
     hubs = (
         f"{f'motion.{name}' if name else 'motion'}: gravity is left out; on a test arm give "
         'gravity = [0, 0, "-1 g"], in hub axes'
         for name, motion in motions.items()
         if motion is not None and motion.kind == "hub" and motion.gravity is None
     )
-    return (*done, *hubs)
+    return tuple(dict.fromkeys((*done, *hubs)))
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:

@@ -190,7 +190,7 @@ def settled(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
         return inquiry
     enough = settings.step is not None or cases >= TOGETHER
     body = case.system.alone
-    able = body is not None and body.size > 0 and not settings.estimate and not case.automatic
+    able = body is not None and body.size > 0 and not settings.estimate and not case.automatic and not case.spans
     return replace(inquiry, together=enough and able)
 
 

@@ -48,12 +48,13 @@ class Instrument:
 
     def axes(
         self, times: Times, load: Floats, rates: Floats, counted: Callable[[int], str], *, specific: bool
-    ) -> tuple[Floats, list[str]]:
-        """Return the rotation matrix from the block's to base axes, and what is done in words.
+    ) -> tuple[Floats, list[str], tuple[float, float] | None]:
+        """Return the rotation matrix from the block's to base axes, what is done in words, and first and last time of
+        the level stretch.
 
         Loads (t, 3), m/s², and rates (t, 3) or (t, 0), rad/s, are in axes of the block.
         """
-        matrix, done = np.eye(3), list[str]()
+        matrix, done, ends = np.eye(3), list[str](), None
         if np.any(turn := vector("record.turn", self.turn)):
             matrix = rotation_of(turn)
             done.append(f"the block's axes are turned by {_words(turn)} in base axes")
@@ -62,12 +63,12 @@ class Instrument:
                 problem = "is given, and the record holds acceleration, which is none at rest"
                 raise InputError("record.level", problem, "give the block's turn in its place")
             stretch = times.part(self.level, counted, ("level[0]", "level[1]"))
-            begin, end = times.values[stretch][[0, -1]]
-            span = f"from {begin:.6g} to {end:.6g} s"
+            ends = float(times.values[stretch][0]), float(times.values[stretch][-1])
+            span = f"from {ends[0]:.6g} to {ends[1]:.6g} s"
             tilt = _tilt(load[stretch] @ matrix.T, rates[stretch], span)
             matrix = rotation_of(tilt) @ matrix
             done.append(f"levelled by the rest {span}: turned by {_words(tilt)} in base axes")
-        return matrix, done
+        return matrix, done, ends
 
     def carried(self, time: Floats, load: Floats, rates: Floats) -> tuple[Floats, list[str]]:
         """Return the load (t, 3), m/s², at the root, and what is done in words; rates (t, 3), rad/s, in base axes.

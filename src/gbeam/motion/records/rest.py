@@ -94,19 +94,6 @@ class Offsets:
             f"{beyond:.4g} s: a stretch at rest at the other end of the record would hold it"
         ]
 
-    def words(self, columns: Mapping[str, str]) -> list[str]:
-        """Say what is subtracted of each column, by axis."""
-        if not self.found:
-            return []
-        where = ", ".join(f"from {each.start:.6g} to {each.end:.6g} s" for each in self.found)
-        said = []
-        for (axis, column), values in zip(columns.items(), self.values.T, strict=True):
-            size, unit = (STANDARD_GRAVITY, "g") if axis in "xyz" else (math.pi / 180, "deg/s")
-            if column != NO_COLUMN:
-                said.append(f"{axis} {' to '.join(f'{value / size:.4g}' for value in values)} {unit}")
-        drifting = ", and their drift on straight lines between," if len(self.found) > 1 else ""
-        return [f"offsets at rest {where}{drifting} are subtracted: {', '.join(said)}"]
-
 
 def offsets_of(
     rests: Sequence[Rest],
