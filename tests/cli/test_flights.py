@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -211,3 +212,23 @@ def test_check_and_run_say_what_is_odd_in_a_record(scenario: Path, gbeam: Call) 
     along = [f"motion.flight.record.{each}" for each in ('z="0"', 'x="z"')] + ["motion.spin.idle=1.4 g"]
     arguments = [word for each in along for word in ("--set", each)]
     assert "lies along the beam (x is 5.537 g), which bends it little" in gbeam("check", scenario, *arguments).out
+
+
+def test_check_draws_what_was_read_over_what_is_flown(gbeam: Call, with_figures: None, tmp_path: Path) -> None:
+    examples = Path(__file__).parents[2] / "examples"
+    folder = tmp_path / "drawn"
+    answer = gbeam("check", examples / "campaign.toml", "--out", folder)
+    assert answer.status == 0, answer.err
+    pictures = ["file_turn", "record_turn", "record_pull", "record_push"]
+    expected = {"check.json"} | {f"{name}.{kind}" for name in pictures for kind in ("png", "svg")}
+    assert {file.name for file in folder.iterdir()} == expected
+    assert all(file.stat().st_size > 1000 for file in folder.iterdir())
+    assert f"9 files in {folder}: check.json, file_turn.png/.svg, record_pull.png/.svg" in answer.out
+    told = json.loads((folder / "check.json").read_text(encoding="utf-8"))
+    record = told["records"]["push"]
+    assert (record["section"], record["sections_by"], len(record["offsets"])) == ("3", "event", 2)
+    assert "as_read" not in record and record["offsets"][0]["load"]["z"] == pytest.approx(0.0215 * 9.80665, rel=0.01)
+    again = gbeam("check", examples / "campaign.toml", "--out", folder, "--set", "motion.turn.record.sections=nix")
+    assert again.status == 2 and {file.name for file in folder.iterdir()} == expected  # nothing is half written
+    only = gbeam("check", examples / "campaign.toml", "--out", folder, "--json")
+    assert only.json["records"].keys() == {"turn", "pull", "push"} and "files in" not in only.out

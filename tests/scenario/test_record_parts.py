@@ -117,6 +117,9 @@ def test_offsets_of_the_example_are_those_that_its_program_puts_in() -> None:
         (["motion.pull.record.to=50 min"], "motion.pull.record.to", "is 3000 s, and the record lasts 0 to 52 s"),
         (["motion.pull.record.cutoff=5 Hz"], "motion.pull.record.cutoff", "the keys here are of, from, to, section"),
         (["response.residual_from=25 s"], "response.residual_from", "give a time from 8 s on, before 18 s"),
+        (['motion.turn.record.rest=[{from="14 s", to="16 s"}]'], "motion.turn.record.rest", "drifts by 0.06 g"),
+        (["motion.turn.record.z=n_z_g", "motion.turn.record.rest=[]"], "motion.turn.record.z", "downwards for"),
+        (["motion.turn.record.z=n_z_g"], "motion.turn.record.rest[0]", "is upside down: the load from 0 to 5 s points"),
         (["motion.turn.record.sections=time_s"], "motion.turn.record.sections", "numbers no sections"),
     ],
 )

@@ -125,6 +125,12 @@ class RecordSummary(Part):
         return dict(zip("xyzpqr", (*self.columns, *(self.rate_columns or ())), strict=False))
 
     @property
+    def is_part(self) -> bool:
+        """True if the file holds samples that are not flown."""
+        assert self.as_read is not None
+        return self.span != (float(self.as_read.time.min()), float(self.as_read.time.max()))
+
+    @property
     def words(self) -> str:
         """Sentence on what was done to it; empty where nothing was."""
         return "; ".join([*self.done, *([self._off] if self.offsets else [])])

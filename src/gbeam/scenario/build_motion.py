@@ -24,20 +24,24 @@ if TYPE_CHECKING:
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:
     """Build the flights and hubs of a scenario by name, without refused ones, whose errors `parts` keeps."""
     built: dict[str, motion.Motion | None] = {}
-    recordings = _recordings(parts, scenario)
+    recordings, partly = _recordings(parts, scenario), dict[str, None]()
     for name, table in scenario.motion.items():
         where = f"motion.{name}"
         if isinstance(table, schema.Hub):
             built[name] = _hub(parts, where, table)
         elif isinstance(table, schema.Flight):
             if table.record is not None:
-                recording = recordings.get(table.record.of if isinstance(table.record, PartOfRecord) else name)
-                span = table.record.begin, table.record.to
+                source = table.record.of if isinstance(table.record, PartOfRecord) else name
+                recording, span = recordings.get(source), (table.record.begin, table.record.to)
                 flight = recording and parts.attempt(where, recording.flight, span, table.record.section)
                 built[name] = _recorded(flight, table) if flight else None
+                if flight and flight.summary.is_part:
+                    partly[source] = None
             else:
                 load = components(parts, f"{where}.acceleration", table.acceleration)
                 built[name] = None if load is None else _flight(load, None, table)
+    for name in partly:
+        parts.attempt(f"motion.{name}", recordings[name].refuse_unlevel)
     return {name: base for name, base in built.items() if base is not None}
 
 

@@ -28,9 +28,9 @@ from gbeam.motion.records.columns import (
 )
 from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
 from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.rest import Rest, offsets_of
+from gbeam.motion.records.rest import Offsets, Rest, offsets_of
 from gbeam.motion.records.sections import Sections
-from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unsound
+from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unlevel, refuse_unsound
 from gbeam.motion.records.text import read_text
 from gbeam.motion.records.times import Span, Timeline, Times, check_interval
 from gbeam.motion.records.units import Unit, unit_of
@@ -229,7 +229,11 @@ def read_flight(
     """Read a record with the body's rates, and say what was done to it; see :func:`read_record`, and
     :meth:`Recording.read` for the options.
     """
-    return Recording.read(path, time, x, y, z, unit, **options).flight(span, section)
+    recording = Recording.read(path, time, x, y, z, unit, **options)
+    flight = recording.flight(span, section)
+    if flight.summary.is_part:
+        recording.refuse_unlevel()
+    return flight
 
 
 @dataclass(frozen=True)
@@ -253,6 +257,10 @@ class Recording:
     quantity: RecordQuantity
     vehicle: Vehicle
     instrument: Instrument
+    axes: Floats  # (3, 3) rotation from those of the columns to base axes
+    mounted: tuple[str, ...]  # how these were found, in words
+    levelled: tuple[float, float] | None  # first and last time of the level stretch, s
+    offsets: Offsets
 
     @classmethod
     @np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
@@ -303,14 +311,35 @@ class Recording:
         read = [table.vector(each, count, nowhere) for each in (names, turns) if each]
         sound = np.logical_and.reduce([(np.abs(each) <= LARGEST).all(axis=1) for each in read])
         load, *turning = (unit.size * each for unit, each in zip(units, read, strict=True))
+        rate = turning[0] if turning else np.empty((count, 0))
+        specific, columns_of = quantity == "specific-force", {**names, **turns}
+        axes, mounted, levelled = instrument.axes(times, load, rate, table.counted, specific=specific)
         said = time_unit is None and times.unit.size != 1
         return cls(
-            os.fspath(path), table, times, stated, names, turns, tuple(units),
-            load, turning[0] if turning else np.empty((count, 0)), sound,
-            _as_read(table, times, (names, turns), units, read),
-            (f"time in {times.unit.text}, as the file says",) if said else (),
-            None if sections is None else Sections.of(table, sections, times.values),
-            conditioning, quantity, vehicle, instrument,
+            path=os.fspath(path),
+            table=table,
+            times=times,
+            stated=stated,
+            names=names,
+            turns=turns,
+            units=tuple(units),
+            load=load,
+            rates=rate,
+            sound=sound,
+            channels=_as_read(table, times, (names, turns), units, read),
+            done=(f"time in {times.unit.text}, as the file says",) if said else (),
+            sections=None if sections is None else Sections.of(table, sections, times.values),
+            conditioning=conditioning,
+            quantity=quantity,
+            vehicle=vehicle,
+            instrument=instrument,
+            axes=axes,
+            mounted=tuple(mounted),
+            levelled=levelled,
+            offsets=offsets_of(
+                instrument.rest, times, load, rate, axes, columns_of, table.counted,
+                specific=specific, trust="rest" in skip,
+            ),
         )  # fmt: skip
 
     def part(self, span: Span, section: str | None) -> tuple[slice, tuple[float, float]]:
@@ -329,6 +358,22 @@ class Recording:
                 self.table.vector(each, len(self.sound), part)  # refuses the first that is none
         return part, whole
 
+    def _samples(self, time: Floats, load: Floats, rows: Indices) -> Samples:
+        """Samples to be judged, with the rows of the file that they are."""
+
+        def place(i: int) -> str:
+            return self.table.place(int(rows[i]))
+
+        specific, upside = self.quantity == "specific-force", upended(self.table, self.names)
+        return Samples(time, load, self.names, self.units[0], specific, self.vehicle, upside, place, self.axes)
+
+    @np.errstate(all="ignore")
+    def refuse_unlevel(self) -> None:
+        """Raise InputError if the whole record, of which flights are parts, is level in another unit or upside down."""
+        known = np.flatnonzero(np.isfinite(self.load).all(axis=1))  # outside the flights there may be what is no number
+        samples = self._samples(self.times.values[known], self.load[known], known)
+        refuse_unlevel(samples, self.conditioning.skipped)
+
     @np.errstate(all="ignore")
     def flight(self, span: Span = (None, None), section: str | None = None) -> FlightRecord:
         """Return the part within a span and a section, conditioned and judged, and say what was done to it."""
@@ -336,12 +381,7 @@ class Recording:
         table, times, clock, stated = self.table, self.times, self.times.values, self.stated
         names, turns, load, turning = self.names, self.turns, self.load, self.rates
         load_unit, vehicle, instrument = self.units[0], self.vehicle, self.instrument
-        (part, of), specific = self.part(span, section), self.quantity == "specific-force"
-        axes, mounted, levelled = instrument.axes(times, load, turning, table.counted, specific=specific)
-        offsets = offsets_of(
-            instrument.rest, times, load, turning, axes, {**names, **turns}, table.counted,
-            specific=specific, trust="rest" in skip,
-        )  # fmt: skip
+        (part, of), axes, offsets = self.part(span, section), self.axes, self.offsets
 
         def judge(time: Floats) -> None:
             if "sampling" not in skip:
@@ -350,18 +390,9 @@ class Recording:
         both, bridge = np.concatenate([load, turning], axis=1), conditioning.bridge
         line = Timeline.of(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
 
-        def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
-            turned = upended(table, names)
-
-            def place(i: int) -> str:
-                return table.place(int(rows[i]))
-
-            return Samples(time, load, names, load_unit, specific, vehicle, turned, place, axes)
-
-        flown = samples(line.time, line.values[:, :3], line.rows)
-        known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
-        whole = flown if part == slice(0, len(clock)) else samples(clock[known], load[known], known)
-        refuse_unsound(flown, whole, (*skip, "spikes") if conditioning.despike else skip)
+        flown = self._samples(line.time, line.values[:, :3], line.rows)
+        ignored = (*skip, "spikes") if conditioning.despike else skip
+        refuse_unsound(flown, ignored, is_part=part != slice(0, len(clock)))
         notes = [*table.remarks]
         if "columns" not in skip:
             notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
@@ -379,7 +410,7 @@ class Recording:
         if conditioning.resample is not None:
             done.append(f"resampled at {conditioning.resample:g} Hz")
         at_root, carried = instrument.carried(new, both[:, :3], both[:, 3:])
-        done += [*mounted, *carried]
+        done += [*self.mounted, *carried]
         as_read = line.values[line.read]
         facts = RecordSummary(
             file=self.path,
@@ -394,7 +425,7 @@ class Recording:
             rate_columns=(turns["p"], turns["q"], turns["r"]) if turns else None,
             gaps=line.gaps,
             offsets=offsets.found,
-            levelled=levelled,
+            levelled=self.levelled,
             sections_by="" if self.sections is None else self.sections.column,
             section="" if section is None else as_word(section),
             sections=() if self.sections is None else tuple(self.sections.listed()),

@@ -138,6 +138,10 @@ def offsets_of(
             problem = f"is no stretch at rest: {axis} = {columns[axis]!r} is {size:.3g} g off what is known {span}"
             there = np.round(axes @ load[stretch].mean(axis=0) / STANDARD_GRAVITY, 4) + 0.0  # no -0
             known_g = ", ".join(f'"{each:.4g} g"' for each in there)
+            if known @ load[stretch].mean(axis=0) < 0:
+                problem = f"is upside down: the load {span} points against what is known, {axis} = {columns[axis]!r}"
+                fix = "change the signs of the columns: aircraft axes, z down, want y and z with a minus"
+                raise InputError(f"record.{key}", problem, fix)
             fix = f"{STILL}; or say the load there, such as load = [{known_g}]; {_TRUST}"
             raise InputError(f"record.{key}", problem, fix)
         x, y, z, *turning = off.tolist()
