@@ -76,7 +76,7 @@ def test_one_stretch_finds_a_constant_offset_and_says_it(tmp_path: Path) -> None
     )
     assert record.summary.words == said
     flight = Flight(acceleration=record.acceleration)
-    assert notes_on({"turn": flight, "again": flight}) == (f"record x.csv: {said}",)
+    assert notes_on({"turn": flight, "again": flight}) == (f"done to the record: {said}",)
     options: Any = {"time": "time", "x": "ax", "y": "ay", "z": "az", "unit": "g"}
     np.testing.assert_array_equal(read_record(path, **options, rest=ENDS[:1]).values, record.acceleration.values)
 
@@ -106,8 +106,8 @@ def test_a_rate_table_gives_the_load_that_is_known(tmp_path: Path, turned: bool)
     known = Rest((2.0, 4.0), (-(spin**2) * arm, 0.0, G), (0.0, 0.0, float(spin)))
     record = read(path, known, turn=tuple(block.as_rotvec()))
     np.testing.assert_allclose(record.acceleration.values, load, atol=1e-12)
-    (found,) = record.summary.offsets
-    np.testing.assert_allclose([*found.load, *(found.rates or ())], [*off, *gyro], atol=1e-13)
+    (offset,) = record.summary.offsets
+    np.testing.assert_allclose([*offset.load, *(offset.rates or ())], [*off, *gyro], atol=1e-13)
 
 
 def test_acceleration_is_none_at_rest_and_what_has_no_column_has_no_offset(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,19 @@ def test_a_run_answers_for_every_manoeuvre_as_one_for_it_alone() -> None:
 
     alone = gb.study(build(loads(scenario, str(alone_in), [*QUICK, *only], folder=CAMPAIGN.parent)))
     np.testing.assert_array_equal(alone.responses["turn"].tip, together.responses["push"].tip)
+
+
+def test_a_result_says_what_was_done_to_its_record_and_is_computed_again(tmp_path: Path) -> None:
+    from gbeam.scenario.rerun import rerun
+
+    study = gb.study(gb.read_scenario(CAMPAIGN, QUICK))
+    (note,) = study.notes  # one of all three
+    assert note.startswith(
+        "done to the record: low-pass at 10 Hz, zero phase; offsets at rest (0 to 5 s, 47 to 52 s), and their drift"
+    )
+    study.save(tmp_path / "result.nc")
+    again = rerun(tmp_path / "result.nc")
+    assert again.reproduced, again
 
 
 def test_frozen_questions_ask_each_motion_at_its_own_start() -> None:
@@ -167,3 +181,12 @@ def test_records_of_one_length_share_their_time() -> None:
     case = build(load(CAMPAIGN, same))
     assert not case.spans and case.over_time.duration == pytest.approx(10.0)
     assert scenario_of(case).motion.keys() == SPANS.keys()
+
+
+@pytest.mark.parametrize(
+    ("spans", "words"),
+    [({"trun": (0.0, 1.0)}, "choose of turn, pull, push"), ({"turn": (2.0, 2.0)}, "let it end later")],
+)
+def test_spans_of_a_case_in_python_are_judged(spans: dict[str, tuple[float, float]], words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        replace(gb.read_scenario(CAMPAIGN), spans=spans)

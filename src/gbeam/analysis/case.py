@@ -151,6 +151,11 @@ class Case(OneBody, Value):
             refuse_unknown(f"motion.{name}.accept", limits)
         for name, motion in self.motions.items():
             self._refuse_motion(f"motion.{name}", name, motion)
+        for name, (start, end) in self.spans.items():
+            if name not in self.motions:
+                raise InputError(f"spans.{name}", "names no motion", f"choose of {', '.join(self.motions)}")
+            if not end > start:
+                raise InputError(f"spans.{name}", f"ends at {end:g} s and begins at {start:g} s", "let it end later")
         for error in refusals(self.system, self.accept, self.sensors):
             raise error
         # By another name than the field's, so that dataclasses.replace leaves it behind.
@@ -222,14 +227,14 @@ class Case(OneBody, Value):
         return self.response
 
     def settings_of(self, name: str) -> ResponseSettings:
-        """Settings of the response in one motion, over its own time; errors as of :attr:`over_time`."""
+        """Settings of the response in the motion `name`, over its own time; errors as of :attr:`over_time`."""
         if name not in self.spans:
             return self.over_time
         start, end = self.spans[name]
         return replace(self.over_time, start=start, duration=end - start)
 
     def start_of(self, name: str) -> float:
-        """Time at which one motion is frozen unless another is asked for, s."""
+        """Time at which the motion `name` is frozen unless another is asked for, s."""
         return self.spans[name][0] if name in self.spans else self.start
 
     @property

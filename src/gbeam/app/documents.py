@@ -267,7 +267,7 @@ def load_curves(text: str, folder: Path) -> dict[str, Any]:
         first, last = spans.get(name, (-np.inf, np.inf))
         flown = (time >= first) & (time <= last)
         in_g = np.asarray(flight.over(first, last).base(time).a_WO_B) / STANDARD_GRAVITY
-        return [[float(each) if here else None for each, here in zip(axis, flown, strict=True)] for axis in in_g.T]
+        return [[float(each) if inside else None for each, inside in zip(axis, flown, strict=True)] for axis in in_g.T]
 
     return {"time": time.tolist(), "flights": {name: load(name, flight) for name, flight in flights.items()}}
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
@@ -13,7 +12,7 @@ from gbeam.arrays.types import Floats
 from gbeam.guards.checks import implausible
 from gbeam.motion.flight import Flight
 from gbeam.results.parts import Base
-from gbeam.results.result import part_words
+from gbeam.results.result import each_once, part_words
 
 
 @runtime_checkable
@@ -61,15 +60,20 @@ def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
     """Notes on motions by name: hubs, built or as a scenario has them, without gravity, which in orbit is meant; and
     records of flights, to which something was done.
     """
-    records = [motion.unscaled.record for motion in motions.values() if isinstance(motion, Flight)]
-    done = (f"record {Path(each.file).name}: {each.words}" for each in records if each is not None and each.words)
+    records = {name: motion.unscaled.record if isinstance(motion, Flight) else None for name, motion in motions.items()}
+    done = each_once(
+        {
+            name: [] if each is None or not each.words else [f"done to the record: {each.words}"]
+            for name, each in records.items()
+        }
+    )
     hubs = (
         f"{f'motion.{name}' if name else 'motion'}: gravity is left out; on a test arm give "
         'gravity = [0, 0, "-1 g"], in hub axes'
         for name, motion in motions.items()
         if motion is not None and motion.kind == "hub" and motion.gravity is None
     )
-    return tuple(dict.fromkeys((*done, *hubs)))
+    return (*done, *hubs)
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:

@@ -59,7 +59,7 @@ class Gap(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Offset(Part):
-    """What the sensors of a record read in a stretch, at rest or of another known load, besides what is known."""
+    """Readings of a record's sensors in a stretch, at rest or of another known load, less what is known."""
 
     start: float = entry("s", "first time of the stretch")
     end: float = entry("s", "its last time")

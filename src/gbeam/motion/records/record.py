@@ -424,7 +424,7 @@ class Recording:
             level=level(replace(flown, load=flown.load - off[:, :3])),
             rate_columns=(turns["p"], turns["q"], turns["r"]) if turns else None,
             gaps=line.gaps,
-            offsets=offsets.found,
+            offsets=offsets.of_stretches,
             levelled=self.levelled,
             sections_by="" if self.sections is None else self.sections.column,
             section="" if section is None else as_word(section),

@@ -70,7 +70,7 @@ def mean_of(key: str, load: Floats, rates: Floats, span: str, still: str) -> tup
 class Offsets:
     """Offsets of a record's sensors over time: constant of one stretch, on straight lines through those of several."""
 
-    found: tuple[Offset, ...]  # in the order of their times
+    of_stretches: tuple[Offset, ...]  # in the order of their times
     times: Floats  # (s,) s, of which each is the mean
     values: Floats  # (s, n) of the columns x, y, z and p, q, r, m/s² and rad/s
 
@@ -113,7 +113,7 @@ def offsets_of(
     axes. What has no column has no offset.
     """
     sensed = np.array([column != NO_COLUMN for column in columns.values()])
-    found: list[tuple[float, Offset, Floats]] = []
+    offsets: list[tuple[float, Offset, Floats]] = []
     for i, rest in enumerate(rests):
         key = f"rest[{i}]" if len(rests) > 1 else "rest"
         stretch = times.part(rest.span, counted, (f"rest[{i}].from", f"rest[{i}].to"))
@@ -136,8 +136,8 @@ def offsets_of(
         if size > _OFF and not trust:
             axis = "xyz"[int(np.abs(off[:3]).argmax())]
             problem = f"is no stretch at rest: {axis} = {columns[axis]!r} is {size:.3g} g off what is known {span}"
-            there = np.round(axes @ load[stretch].mean(axis=0) / STANDARD_GRAVITY, 4) + 0.0  # no -0
-            known_g = ", ".join(f'"{each:.4g} g"' for each in there)
+            mean = np.round(axes @ load[stretch].mean(axis=0) / STANDARD_GRAVITY, 4) + 0.0  # no -0
+            known_g = ", ".join(f'"{each:.4g} g"' for each in mean)
             if known @ load[stretch].mean(axis=0) < 0:
                 problem = f"is upside down: the load {span} points against what is known, {axis} = {columns[axis]!r}"
                 fix = "change the signs of the columns: aircraft axes, z down, want y and z with a minus"
@@ -146,11 +146,11 @@ def offsets_of(
             raise InputError(f"record.{key}", problem, fix)
         x, y, z, *turning = off.tolist()
         facts = Offset(start, end, (x, y, z), (turning[0], turning[1], turning[2]) if turning else None)
-        found.append((float(clock.mean()), facts, off))
-    found.sort(key=lambda each: each[0])
-    for (_, one, _), (_, other, _) in pairwise(found):
+        offsets.append((float(clock.mean()), facts, off))
+    offsets.sort(key=lambda each: each[0])
+    for (_, one, _), (_, other, _) in pairwise(offsets):
         if other.start <= one.end:
             problem = f"has stretches that overlap: {one.start:g} to {one.end:g} s, {other.start:g} to {other.end:g} s"
             raise InputError("record.rest", problem, "give stretches apart from one another, or one of them alone")
-    values = np.array([each[2] for each in found]).reshape(-1, len(columns))
-    return Offsets(tuple(each[1] for each in found), np.array([each[0] for each in found]), values)
+    values = np.array([each[2] for each in offsets]).reshape(-1, len(columns))
+    return Offsets(tuple(each[1] for each in offsets), np.array([each[0] for each in offsets]), values)

@@ -55,18 +55,18 @@ class Sections:
             raise InputError("record.section", f"is {section}, which no section is", fix)
         runs = [run for name, run in zip(self.names, self.stretches, strict=True) if name == section]
         parts = [(slice(max(run.start, within.start), min(run.stop, within.stop)), run) for run in runs]
-        here = [(part, run) for part, run in parts if part.stop > part.start]
-        if len(here) > 1:
-            told = [f"{start:.6g} to {end:.6g} s" for start, end in (self.ends(part) for part, _ in here[:_LISTED])]
-            start, end = self.ends(max((part for part, _ in here), key=lambda part: part.stop - part.start))
+        inside = [(part, run) for part, run in parts if part.stop > part.start]
+        if len(inside) > 1:
+            told = [f"{start:.6g} to {end:.6g} s" for start, end in (self.ends(part) for part, _ in inside[:_LISTED])]
+            start, end = self.ends(max((part for part, _ in inside), key=lambda part: part.stop - part.start))
             fix = f'add from = "{start:.12g} s", to = "{end:.12g} s", or those of another'
-            problem = f"is {section}, which stands in {len(here)} stretches: {', '.join(told)}"
+            problem = f"is {section}, which stands in {len(inside)} stretches: {', '.join(told)}"
             raise InputError("record.section", problem, fix)
-        count = here[0][0].stop - here[0][0].start if here else 0
+        count = inside[0][0].stop - inside[0][0].start if inside else 0
         if count < FEWEST:
-            fix = f"name a section of {FEWEST} samples or more" if here else "give a from and to that it is within"
+            fix = f"name a section of {FEWEST} samples or more" if inside else "give a from and to that it is within"
             raise InputError("record.section", f"is {section}, of which {counted(count)} are flown", fix)
-        return here[0]
+        return inside[0]
 
     def ends(self, run: slice) -> tuple[float, float]:
         """Return first and last time of some samples, s."""
