@@ -27,13 +27,14 @@ CELLS = [
 ]  # fmt: skip
 KEYS = [
     "time", "x", "y", "z", "unit", "time_unit", "cutoff", "resample", "despike", "skip_checks", "quantity", "p",
-    "rate_unit", "from", "to", "bridge", "sample_rate", "vehicle",
+    "rate_unit", "from", "to", "bridge", "sample_rate", "vehicle", "level", "rest", "sections", "section", "of",
 ]  # fmt: skip
 VALUES = [
     '"0"', '"-"', '""', '"none"', '"-t"', '"ms"', '"s"', '"g"', '"m/s^2"', '"0.1 Hz"', '"3 Hz"', '"1e9 Hz"',
     '"1e-9 Hz"', "true", '["spikes"]', '["unit", "sign", "sampling"]', '"acceleration"', '"ax"', '"rad/s"', "-1",
     '"\\u001b"', '"1 s"', '"1 g / 2048"', '"50 ms"', '"rocket"', '"mm/s^2"', '"ns"',
-    '"99:12:34:56"', "12:34:56.5", "2024-05-03T12:34:56Z", '["columns"]',
+    '"99:12:34:56"', "12:34:56.5", "2024-05-03T12:34:56Z", '["columns"]', '["0 s", "1 s"]', "3",
+    '[{ to = "1 s" }]', '[{ to = "1 s" }, { from = "1 s", load = [0, 0, "1 g"] }]', "[{}]", '["rest"]',
 ]  # fmt: skip
 
 
@@ -135,7 +136,14 @@ def measured(chosen: Random) -> Case:
         entry |= {each[0]: f'"{chosen.choice(("", "-"))}{each}"' for each in table if each.endswith("_rad_s")}
         entry["rate_unit"] = chosen.choice(('"rad/s"', '"rad/s"', '"deg/s"'))
     asked = [("vehicle", '"rocket"'), ("vehicle", '"other"'), ("resample", f'"{rate} Hz"'), ("despike", "true")]
-    for key, value in (*asked, ("quantity", '"acceleration"'), ("cutoff", f'"{rate / 4} Hz"')):
+    for key, value in (
+        *asked,
+        ("quantity", '"acceleration"'),
+        ("cutoff", f'"{rate / 4} Hz"'),
+        ("rest", '[{ to = "1 s" }]'),
+        ("sections", f'"{names[0]}"'),
+        ("section", "3"),
+    ):
         if wrong() < 0.1:
             entry[key] = value
     record = ", ".join(f"{key} = {value}" for key, value in entry.items())

@@ -102,7 +102,8 @@ class Samples:
             ),
             "Case": (
                 ("case", gb.System({"bar": self.bar}, {"hinge": self.hinge}), {}, self.settings),
-                {"tracks": {}, "accept": {}, "sensors": {"bar.root": gb.Sensor()}, "read_from": origin},
+                {"tracks": {}, "accept": {}, "sensors": {"bar.root": gb.Sensor()}, "read_from": origin,
+                 "spans": {}},
             ),
             "Centrifuge": (
                 (self.still,),
@@ -289,7 +290,8 @@ class Samples:
                 (self.record, *columns),
                 {
                     "time_unit": "s", "sample_rate": None, "quantity": "specific-force", "vehicle": "aircraft",
-                    "turn": (0.0, 0.0, 0.1), "level": None, "span": (None, 0.1),
+                    "turn": (0.0, 0.0, 0.1), "level": None, "span": (None, 0.1), "rest": (), "sections": None,
+                    "section": None,
                 },
             ),
             "read_scenario": ((self.fast, ["beam.length=250 mm"]), {}),

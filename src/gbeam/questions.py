@@ -188,9 +188,10 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
 
 def prepared(case: Case, name: str) -> Any:
     """Return a motion prepared for the response's times; None for ground at rest."""
-    settings, motion = case.response, case.environments[name]
-    if motion is None or settings is None:
+    motion = case.environments[name]
+    if motion is None or case.response is None:
         return motion
+    settings = case.settings_of(name)
     return motion.over(settings.start, settings.start + settings.duration)
 
 
@@ -220,8 +221,8 @@ def _subject(case: Case, needs: Needs) -> System:
     return replace(case.system, bodies=bodies)
 
 
-def _time(case: Case, at: float | None) -> float:
-    return case.start if at is None else at
+def _time(case: Case, name: str, at: float | None) -> float:
+    return case.start_of(name) if at is None else at
 
 
 @question(
@@ -255,7 +256,7 @@ def static(case: Case, motion: str | None = None, at: float | None = None, needs
     from gbeam.analysis.automatic import sufficient
     from gbeam.analysis.steady.static import static
 
-    time, needs = _time(case, at), replace(needs, errors=needs.errors or case.automatic)
+    needs = replace(needs, errors=needs.errors or case.automatic)
     if all(body.work is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
         case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
@@ -263,7 +264,7 @@ def static(case: Case, motion: str | None = None, at: float | None = None, needs
 
     def ask(case: Case) -> Any:
         structure = _subject(case, needs)
-        return tuple(static(structure, base, time, name=name) for name, base in moved.items())
+        return tuple(static(structure, base, _time(case, name, at), name=name) for name, base in moved.items())
 
     return sufficient(case, ask, lambda rests: [each.errors for each in rests])[1]
 
@@ -285,7 +286,8 @@ def modes(
     from gbeam.analysis.automatic import of_lowest, sufficient
     from gbeam.analysis.steady import modal
 
-    name, time = motion_of(case.environments, motion), _time(case, at)
+    name = motion_of(case.environments, motion)
+    time = _time(case, name, at)
     errors = needs.errors or case.automatic
     options: dict[str, Any] = {"gyroscopic": gyroscopic, "errors": errors, "name": name}
     base = prepared(case, name)
@@ -335,7 +337,8 @@ def critical_speed(
 
     if to is not None and not to > 0:
         raise InputError("to", f"is {to:g}", "give a value above zero, where the search ends")
-    name, time = motion_of(case.environments, motion, HUB), _time(case, at)
+    name = motion_of(case.environments, motion, HUB)
+    time = _time(case, name, at)
     base, needs = prepared(case, name), replace(needs, errors=needs.errors or case.automatic)
     options: dict[str, Any] = {"time": time, "upper": to, "progress": progress}
 
@@ -383,8 +386,8 @@ def place(case: Case, motion: str | None = None, at: float | None = None, needs:
 
     name, current = machine_of(case, motion)
     system, names = case.system, (case.tracks[name], name)
-    choice = choice_of(current, turns=usual_turns(system))
-    return place(system, current.flight, choice, case.over_time, usual(system), current=current, names=names)
+    choice, settings = choice_of(current, turns=usual_turns(system)), case.settings_of(name)
+    return place(system, current.flight, choice, settings, usual(system), current=current, names=names)
 
 
 @question(
@@ -417,7 +420,7 @@ def campbell(
     if to is None and getattr(base, "free", False):
         raise InputError("to", "is missing: the hub is driven by a torque", 'give the largest speed, such as "5 rad/s"')
     options: dict[str, Any] = {"turning": turning, "start": from_ or 0.0, "end": to, "modes": modes}
-    options |= {"orders": range(1, orders + 1), "time": _time(case, at), "name": name, "progress": progress}
+    options |= {"orders": range(1, orders + 1), "time": _time(case, name, at), "name": name, "progress": progress}
 
     def ask(case: Case) -> Campbell:
         return campbell.campbell(case.system, base, **options)

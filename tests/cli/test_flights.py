@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -105,16 +106,20 @@ def test_a_part_is_run_where_it_is_asked_for_and_said_first(scenario: Path, gbea
     assert gbeam("run", scenario, "--set", "motion.flight.record.to=6 s", "--set", "response.duration=5 s").status == 2
 
 
-def test_flights_of_other_lengths_are_cut_on_their_records(scenario: Path, gbeam: Call) -> None:
+def test_flights_of_other_lengths_have_their_own_times(scenario: Path, gbeam: Call) -> None:
     other = SCENARIO.split("[motion.flight]")[1].split("[motion.spin]")[0].replace("motion.flight", "motion.short")
     scenario.write_text(SCENARIO + "[motion.short]" + other + 'to = "9 s"\n', encoding="utf-8")
     answer = gbeam("check", scenario)
-    assert answer.status == 2
-    assert (
-        "motion.flight.record: is longer than the flights that are run together: the record of 'flight'" in answer.err
-    )
-    assert 'ask for a part on the record itself: to = "9 s" in [motion.flight.record]' in answer.err
-    assert gbeam("check", scenario, "--set", "motion.flight.record.to=9 s").status == 0
+    assert answer.status == 0, answer.err
+    assert "response  flight 0 to 15.99 s, short 0 to 9 s" in answer.out
+    told = gbeam("check", scenario, "--json").json
+    assert told["motions"]["short"]["span"] == {"start": 0.0, "end": 9.0}
+    assert "start" not in told["response"]
+    refused = gbeam("check", scenario, "--set", "response.duration=9 s")
+    assert refused.status == 2
+    assert 'ask for a part on the record itself: to = "9 s" in [motion.flight.record]' in refused.err
+    same = gbeam("check", scenario, "--set", "motion.flight.record.to=9 s", "--json").json
+    assert same["response"]["duration"] == 9.0 and "span" not in same["motions"]["short"]
 
 
 def test_python_says_the_part_too(scenario: Path) -> None:
@@ -207,3 +212,23 @@ def test_check_and_run_say_what_is_odd_in_a_record(scenario: Path, gbeam: Call) 
     along = [f"motion.flight.record.{each}" for each in ('z="0"', 'x="z"')] + ["motion.spin.idle=1.4 g"]
     arguments = [word for each in along for word in ("--set", each)]
     assert "lies along the beam (x is 5.537 g), which bends it little" in gbeam("check", scenario, *arguments).out
+
+
+def test_check_draws_what_was_read_over_what_is_flown(gbeam: Call, with_figures: None, tmp_path: Path) -> None:
+    examples = Path(__file__).parents[2] / "examples"
+    folder = tmp_path / "drawn"
+    answer = gbeam("check", examples / "campaign.toml", "--out", folder)
+    assert answer.status == 0, answer.err
+    pictures = ["file_turn", "record_turn", "record_pull", "record_push"]
+    expected = {"check.json"} | {f"{name}.{kind}" for name in pictures for kind in ("png", "svg")}
+    assert {file.name for file in folder.iterdir()} == expected
+    assert all(file.stat().st_size > 1000 for file in folder.iterdir())
+    assert f"9 files in {folder}: check.json, file_turn.png/.svg, record_pull.png/.svg" in answer.out
+    told = json.loads((folder / "check.json").read_text(encoding="utf-8"))
+    record = told["records"]["push"]
+    assert (record["section"], record["sections_by"], len(record["offsets"])) == ("3", "event", 2)
+    assert "as_read" not in record and record["offsets"][0]["load"]["z"] == pytest.approx(0.0215 * 9.80665, rel=0.01)
+    again = gbeam("check", examples / "campaign.toml", "--out", folder, "--set", "motion.turn.record.sections=nix")
+    assert again.status == 2 and {file.name for file in folder.iterdir()} == expected  # nothing is half written
+    only = gbeam("check", examples / "campaign.toml", "--out", folder, "--json")
+    assert only.json["records"].keys() == {"turn", "pull", "push"} and "files in" not in only.out

@@ -71,6 +71,23 @@ def test_a_level_that_is_none_is_refused_at_its_place(level: str, path: str, wor
     assert where == RECORD + path and words in text
 
 
+@pytest.mark.parametrize(
+    ("rest", "path", "words"),
+    [
+        ('[{from="0 s", to="1 s"}]', "rest", "is no stretch at rest: the load spreads by 0.0859 g"),
+        ('[{from="13 s", to="14 s"}]', "rest", "is no stretch at rest: the load drifts by 0.0241 g"),
+        ('[{from="13 s", to="35 s"}]', "rest[0].to", "is 35 s, and the record lasts 0 to 15.99 s"),
+        ('[{from="13 s", to="14 s", load="1 g"}]', "rest[0].load", "'1 g' is not a list"),
+        ('[{from="13 s", to="14 s", rates=["1 deg/s", 0, 0]}]', "rest.rates", "name the columns of the body's rates"),
+        ('["0 s"]', "rest[0]", "'0 s' is not a table; give a table: stretches at rest"),
+        ('{from="0 s", to="1 s"}', "rest", "is not a list"),
+    ],
+)
+def test_a_rest_that_is_none_is_refused_at_its_place(rest: str, path: str, words: str) -> None:
+    where, text = refused(f"{RECORD}rest={rest}")
+    assert where == RECORD + path and words in text
+
+
 def test_a_level_factor_is_said_wherever_the_flight_is() -> None:
     from gbeam.report.description import text
 

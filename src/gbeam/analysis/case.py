@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import InitVar, dataclass, field
+from dataclasses import InitVar, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from gbeam.analysis.one_body import OneBody, points_of, refuse_no_point, structure_of
@@ -61,6 +61,9 @@ class Case(OneBody, Value):
         Accelerometers by the names of points, whose readings results have.
     read_from : ScenarioText, optional
         The text that these are the objects of.
+    spans : mapping of str to (float, float)
+        By the motion's name, first and last time of its response, s, where motions last differently: records of several
+        manoeuvres. The others have those of `response`.
 
     Attributes
     ----------
@@ -95,6 +98,7 @@ class Case(OneBody, Value):
     provenance: Provenance | None = None
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
     read_from: InitVar[ScenarioText | None] = None
+    spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     scenario: ScenarioText | None = field(default=None, init=False, repr=False, compare=False)
 
     @classmethod
@@ -147,6 +151,11 @@ class Case(OneBody, Value):
             refuse_unknown(f"motion.{name}.accept", limits)
         for name, motion in self.motions.items():
             self._refuse_motion(f"motion.{name}", name, motion)
+        for name, (start, end) in self.spans.items():
+            if name not in self.motions:
+                raise InputError(f"spans.{name}", "names no motion", f"choose of {', '.join(self.motions)}")
+            if not end > start:
+                raise InputError(f"spans.{name}", f"ends at {end:g} s and begins at {start:g} s", "let it end later")
         for error in refusals(self.system, self.accept, self.sensors):
             raise error
         # By another name than the field's, so that dataclasses.replace leaves it behind.
@@ -155,7 +164,8 @@ class Case(OneBody, Value):
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {motion.kind}" if motion else name for name, motion in self.environments.items())
         subject = repr(self.subject) if self.only_beam is None else self.model.kind
-        duration = "" if self.response is None else f", {self.response.duration:g} s"
+        alike = self.response is not None and not self.spans
+        duration = f", {self.over_time.duration:g} s" if alike else ""
         return f"{type(self).__name__}({self.title!r}, {subject}, {{{motions}}}{duration})"
 
     def _refuse_motion(self, where: str, name: str, motion: Motion) -> None:
@@ -215,6 +225,17 @@ class Case(OneBody, Value):
         if self.response is None:
             raise InputError("response", "duration is missing", 'no record gives one: add duration = "16 s"')
         return self.response
+
+    def settings_of(self, name: str) -> ResponseSettings:
+        """Settings of the response in the motion `name`, over its own time; errors as of :attr:`over_time`."""
+        if name not in self.spans:
+            return self.over_time
+        start, end = self.spans[name]
+        return replace(self.over_time, start=start, duration=end - start)
+
+    def start_of(self, name: str) -> float:
+        """Time at which the motion `name` is frozen unless another is asked for, s."""
+        return self.spans[name][0] if name in self.spans else self.start
 
     def require_motion(self) -> None:
         """Raise InputError where a body is held by a base that nothing moves."""

@@ -56,7 +56,8 @@ def describe(case: Case) -> Description:
     over_time: dict[str, Any] = {}
     doubts = [*_doubts(case), *(() if settings is None else settings.warnings)]
     if settings is not None:
-        over_time = {key: getattr(settings, key) for key in ("start", "duration", "step", "integrator")}
+        common = () if case.spans else ("start", "duration")
+        over_time = {key: getattr(settings, key) for key in (*common, "step", "integrator")}
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
     return Description(
         title=case.title,
@@ -72,9 +73,10 @@ def describe(case: Case) -> Description:
         gravity=None if system.gravity is None else np.asarray(system.gravity, dtype=float),
         motions={name: motion.kind for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
+        spans=dict(case.spans),
         scales={name: each.level_factor for name, each in flights.items() if each.level_factor is not None},
         records={name: each.record for name, each in flights.items() if each.record is not None},
-        notes=notes_on(case.motions),
+        notes=notes_on({name: motion for name, motion in case.motions.items() if name not in flights}),
         warnings=tuple(dict.fromkeys(doubts)),
         **over_time,
     )
@@ -85,9 +87,16 @@ def _doubts(case: Case) -> tuple[str, ...]:
     body = case.system.alone
     if body is None:
         return case.system.warnings
-    span = case.start, case.start + (0.0 if case.response is None else case.response.duration)
+
+    def span(name: str) -> tuple[float, float]:
+        if case.response is None:
+            return case.start, case.start
+        settings = case.settings_of(name)
+        return settings.start, settings.start + settings.duration
+
     motions = case.motions.items()
-    doubts = [input_warnings(body, motion, name=name, span=span) for name, motion in motions] or [input_warnings(body)]
+    doubts = [input_warnings(body, motion, name=name, span=span(name)) for name, motion in motions]
+    doubts = doubts or [input_warnings(body)]
     return tuple(doubt for each in doubts for doubt in each)
 
 

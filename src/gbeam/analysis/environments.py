@@ -129,7 +129,7 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, 
         def report(what: str, share: float) -> None:
             tell(progress, f"{name}: {what}", share)
 
-        response = simulate(case.system, motion, case.over_time, name=name, progress=report)
+        response = simulate(case.system, motion, case.settings_of(name), name=name, progress=report)
         return replace(response, provenance=case.provenance)
 
     responses: dict[str, Any] = {}

@@ -105,7 +105,7 @@ def compare_models(
             def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
                 tell(progress, f"{doing}: {what}", (done + share) / len(chosen))
 
-            run = partial(_answer, alike, motion, case.over_time, name, point, report)
+            run = partial(_answer, alike, motion, case.settings_of(name), name, point, report)
             answer, seconds = _timed(run)
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)

@@ -174,7 +174,7 @@ def place(
             system,
             current.flight,
             choice,
-            loaded.case.over_time,
+            loaded.case.settings_of(name),
             weights,
             current=current,
             names=(loaded.case.tracks[name], name),

@@ -6,23 +6,27 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option, read, signed
-from gbeam.cli.outputs import show, write_json
+from gbeam.cli.outputs import list_files, show, write_json
+from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
 from gbeam.errors import InputError
 from gbeam.printable import printable
+
+if TYPE_CHECKING:
+    from gbeam.results.description import Description
 
 
 def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
     """Say what a scenario means, without computing a response.
 
     Loads, validates and builds everything, and prints the beam's mass, its natural frequencies at rest, the motions
-    and the duration; where a value is a distribution it takes the centre. With --out also writes check.json. Exit
-    status: 0 the scenario is valid, 2 it is not.
+    and the duration; where a value is a distribution it takes the centre. With --out also writes check.json, and
+    of every record a plot of what was read over what is flown. Exit status: 0 the scenario is valid, 2 it is not.
     """
     if out is not None:
         refuse_unwritable(out)
@@ -39,10 +43,24 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
     facts = signed(facts_of(description), loaded.case.provenance)
-    if out is not None:
-        publish(out, lambda hidden: write_json(hidden / "check.json", facts))
     show(report.text(description), facts, json)
+    if out is not None:
+        with Watch("drawing the records") as watch:
+            files = publish(out, lambda hidden: _write(hidden, description, facts, watch))
+        if not json:
+            list_files(out, sorted(files))
     return 0
+
+
+def _write(folder: Path, description: Description, facts: dict[str, Any], watch: Watch) -> None:
+    """Write what a scenario means, and figures of its records."""
+    from gbeam.figures import figures_of
+
+    write_json(folder / "check.json", facts)
+    if (described := figures_of(description)) and figures_wanted():
+        from gbeam.plots import write_figures
+
+        write_figures(described, folder, "gbeam check", watch)
 
 
 def new(

@@ -184,16 +184,16 @@ class Input:
 
     def answer(self, question: Question, motion: str | None, at: str | None, options: Any, needs: Needs) -> Any:
         """Answer of a question with the options of the command line."""
-        time, chosen = self.time(at), question.chosen(asked(options))
+        time, chosen = None if at is None else number("--at", at, "time"), question.chosen(asked(options))
         places = {each.argument.rstrip("_"): each.flag for each in question.options.values()}
         with Watch() as watch, self.placing(**places):
             if "progress" in signature(question.answer).parameters:
                 chosen["progress"] = watch
             return question.answer(self.case, motion, time, needs, **chosen)
 
-    def time(self, text: str | None) -> float:
-        """Time of ``--at``, s; for None the response's start."""
-        return self.case.start if text is None else number("--at", text, "time")
+    def time(self, text: str | None, motion: str) -> float:
+        """Time of ``--at``, s; for None the start of the response in a motion."""
+        return self.case.start_of(motion) if text is None else number("--at", text, "time")
 
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:

@@ -230,7 +230,7 @@ def linearize(
     folder = output.folder(scenario)
     loaded = read("linearize", scenario, output.overrides)
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
-    time = loaded.time(at)
+    time = loaded.time(at, name)
     steady = None if rate is None else number("--rate", rate, "angular rate")
     for flag, other, both in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),

@@ -10,12 +10,13 @@ from functools import partial
 from typing import Any, get_args, get_origin
 
 from gbeam.errors import InputError
-from gbeam.figures import bodies, imitation, machine, response, steady, studies
+from gbeam.figures import bodies, imitation, machine, records, response, steady, studies
 from gbeam.figures.description import Figure
 from gbeam.printable import closest
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
+from gbeam.results.description import Description, RecordSummary
 from gbeam.results.equilibrium import Critical, CriticalMap, Rest
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
@@ -80,6 +81,8 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
             return {"critical": partial(steady.critical, result, title)} if len(result.followed) else {}
         case Sweep():
             return _of_sweep(result, title)
+        case Description():
+            return _of_records(result.records, title or result.title)
         case Modes() if not len(result.frequency):
             return {}
         case Sensitivity():
@@ -95,6 +98,17 @@ def figure_names(kind: type[Figured[Any]]) -> tuple[str, ...]:
     """Names of the figures that results of a kind can have; none where they follow from what a result holds."""
     bases = [base for each in kind.__mro__ for base in vars(each).get("__orig_bases__", ())]
     return get_args(next(get_args(base)[0] for base in bases if get_origin(base) is Figured))
+
+
+def _of_records(summaries: Mapping[str, RecordSummary], title: str) -> dict[str, Describe]:
+    """Figures of records that were read, and of each file of which parts are flown, by the names of flights."""
+    read = {name: each for name, each in summaries.items() if each.as_read is not None}
+    described: dict[str, Describe] = {}
+    for name, each in read.items():
+        of_file = {other: record for other, record in read.items() if record.as_read is each.as_read}
+        if next(iter(of_file)) == name and any(record.is_part for record in of_file.values()):
+            described[f"file {name}"] = partial(records.file, of_file, title)
+    return described | {f"record {name}": partial(records.record, each, name, title) for name, each in read.items()}
 
 
 def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:

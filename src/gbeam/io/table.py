@@ -198,6 +198,12 @@ class Table:
         samples = self._samples(axis, name)
         return self._finite(axis, name, samples, _numbers(samples), part)
 
+    def cells(self, axis: str, name: str) -> NDArray[np.str_]:
+        """Return a column as words (t,), numbers in their shortest form, so that 3, "3" and "3.0" are alike."""
+        samples = self._samples(axis, name)
+        known, alike = np.unique(np.asarray(samples), return_inverse=True)
+        return np.array([as_word(str(each)) for each in known], dtype=np.str_)[alike.reshape(-1)]
+
     def times(self, name: str) -> tuple[Floats, Clock | None, str]:
         """Return the column of times (t,), all finite; times of day are s from the first, with their clock; and the
         first as the file has it.
@@ -302,6 +308,12 @@ def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:
         return np.asarray(samples, dtype=np.float64)
     except ValueError:
         return np.array([_number(cell) for cell in samples])
+
+
+def as_word(cell: str) -> str:
+    """Return a cell without spaces around it, a number in its shortest form."""
+    number = _number(cell.strip())
+    return cell.strip() if math.isnan(number) else f"{number:.12g}"
 
 
 _FORTRAN = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?|\.\d++))(?:[dD]([+-]?\d++)|([+-]\d{3}))")  # 1.5D+02, 1.5+102

@@ -12,7 +12,7 @@ from gbeam.arrays.types import Floats
 from gbeam.guards.checks import implausible
 from gbeam.motion.flight import Flight
 from gbeam.results.parts import Base
-from gbeam.results.result import part_words
+from gbeam.results.result import each_once, part_words
 
 
 @runtime_checkable
@@ -57,13 +57,23 @@ SAMPLES = 501
 
 
 def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
-    """Notes on motions by name: hubs, built or as a scenario has them, without gravity. In orbit that is meant."""
-    return tuple(
+    """Notes on motions by name: hubs, built or as a scenario has them, without gravity, which in orbit is meant; and
+    records of flights, to which something was done.
+    """
+    records = {name: motion.unscaled.record if isinstance(motion, Flight) else None for name, motion in motions.items()}
+    done = each_once(
+        {
+            name: [] if each is None or not each.words else [f"done to the record: {each.words}"]
+            for name, each in records.items()
+        }
+    )
+    hubs = (
         f"{f'motion.{name}' if name else 'motion'}: gravity is left out; on a test arm give "
         'gravity = [0, 0, "-1 g"], in hub axes'
         for name, motion in motions.items()
         if motion is not None and motion.kind == "hub" and motion.gravity is None
     )
+    return (*done, *hubs)
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:

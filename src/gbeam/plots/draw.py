@@ -117,6 +117,9 @@ _PATTERNS = {
     "corner": ("#CFE8DE", "---"),
     "designed for": ("#EDEDED", None),
     "estimated error": ("#EDEDED", None),
+    "flown": ("#DCEAF5", None),
+    "at rest": ("#DEDEDE", "..."),
+    "level": ("#CFE8DE", "---"),
 }
 _LIMIT = ("#F7CDB8", "+++")
 STYLE: dict[Any, Any] = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +23,15 @@ def text(case: Description) -> str:
         motions.append(level_words(name, case.scales.get(name)) + (f": {described}" if described != name else ""))
     lines += _listed("motions", motions)
     for name, record in case.records.items():
-        first, *more_lines = _lines(record)
+        first, *more_lines = [*_lines(record), *_offsets(name, case.records)]
         lines += [f"  {'record':<9} {name}: {first}", *(f"  {'':<9} {line}" for line in more_lines)]
-    if case.start is not None and case.duration is not None:
-        end = case.start + case.duration
+    for file, records in _by_file(case.records).items():
+        lines += _listed("sections", [f"of {Path(file).name}", *_sections(records)])
+    if case.integrator is not None:
+        spans = case.spans or {"": (case.start or 0.0, (case.start or 0.0) + (case.duration or 0.0))}
+        times = ", ".join(f"{name} {first:.4g} to {last:.4g} s".lstrip() for name, (first, last) in spans.items())
         step = "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
-        lines.append(f"  response  {case.start:.4g} to {end:.4g} s, {case.integrator}, step {step}")
+        lines.append(f"  response  {times}, {case.integrator}, step {step}")
     lines += _listed("drawn", [f"{path}: {drawn}; here its centre" for path, drawn in case.distributions.items()])
     lines += [f"  warning: {each}" for each in case.warnings]
     lines += [f"  note: {each}" for each in case.notes]
@@ -91,7 +94,51 @@ def _acting(case: Description) -> list[str]:
     return [line for head, lines in parts.items() for line in _listed(head, lines)]
 
 
-_GAPS = 20  # in lines
+_GAPS, _SECTIONS = 20, 40  # in lines
+
+
+def _by_file(records: Mapping[str, RecordSummary]) -> dict[str, dict[str, RecordSummary]]:
+    """Records by name, by the file whose sections they are or have."""
+    files: dict[str, dict[str, RecordSummary]] = {}
+    for name, record in records.items():
+        if record.sections:
+            files.setdefault(record.file, {})[name] = record
+    return files
+
+
+def _offsets(name: str, records: Mapping[str, RecordSummary]) -> Iterator[str]:
+    """Yield a table of the offsets that are subtracted from a record; of a file they are told once."""
+    record = records[name]
+    if not record.offsets:
+        return
+    same = [key for key, each in records.items()
+            if each.file == record.file and each.offsets_of_columns == record.offsets_of_columns]  # fmt: skip
+    if same[0] != name:
+        yield f"offsets as of {same[0]} are subtracted"
+        return
+    cells = [["offsets at rest", *(f"{each.start:.6g} to {each.end:.6g} s" for each in record.offsets), ""]]
+    cells += [[f"{axis} = {record.channels[axis]}", *values, unit] for axis, unit, values in record.offsets_of_columns]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    for row in cells:
+        yield "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+    yield "subtracted" if len(record.offsets) == 1 else "subtracted, with their drift on straight lines between"
+
+
+def _sections(records: Mapping[str, RecordSummary]) -> Iterator[str]:
+    """Yield a table of the sections of a file, with the flights by records that are flown of each."""
+    record = next(iter(records.values()))
+    widest = max(len(each.value) for each in record.sections)
+    for section in record.sections[:_SECTIONS]:
+        inside = [
+            name
+            for name, each in records.items()
+            if each.span[0] <= section.end and each.span[1] >= section.start and each.section in ("", section.value)
+        ]
+        value = f"{record.sections_by} {section.value:<{widest}}"
+        ends = f"{section.start:9.6g} to {f'{section.end:.6g} s':<11}"
+        yield f"{value}  {ends}  {', '.join(inside) or 'not flown'}"
+    if len(record.sections) > _SECTIONS:
+        yield f"and {len(record.sections) - _SECTIONS} more, which --json has"
 
 
 def _lines(record: RecordSummary) -> Iterator[str]:
@@ -102,7 +149,8 @@ def _lines(record: RecordSummary) -> Iterator[str]:
     of = (
         "" if record.vehicle == "aircraft" else f" of {'a rocket' if record.vehicle == 'rocket' else 'another vehicle'}"
     )
-    yield f"{Path(record.file).name}, {part}{clock}, {record.quantity.replace('-', ' ')}{of}"
+    section = f", {record.sections_by} {record.section}" if record.section else ""
+    yield f"{Path(record.file).name}{section}, {part}{clock}, {record.quantity.replace('-', ' ')}{of}"
     read, flown = (_cells(record, each) for each in (record.read, record.flown))
     same = [*read.values()] == [*flown.values()]
     rows = [("", "read and flown" if same else "read", "flown")]

@@ -4,11 +4,13 @@ run.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from gbeam.results.declared import declared, fact, part, rows
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.results.declared import declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a record has a field of that name
 from gbeam.results.result import Floats, Part
 
@@ -56,6 +58,35 @@ class Gap(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
+class Offset(Part):
+    """Readings of a record's sensors in a stretch, at rest or of another known load, less what is known."""
+
+    start: float = entry("s", "first time of the stretch")
+    end: float = entry("s", "its last time")
+    load: Vector = entry("m/s^2", "offsets of the columns x, y and z, with their signs", "axis")
+    rates: Vector | None = entry("rad/s", "offsets of the columns p, q and r", "axis", default=None)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Section(Part):
+    """A section of a record's file, which a column numbers or names."""
+
+    value: str = fact("what the column holds through it")
+    start: float = entry("s", "its first time")
+    end: float = entry("s", "its last time")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Channels(Part):
+    """Samples of some channels over time."""
+
+    names: tuple[str, ...] = internal("", "names of the channels")
+    units: tuple[str, ...] = internal("", "their units")
+    time: Floats = internal("s", "their times")
+    values: Floats = internal("", "their values (time, channel)")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class RecordSummary(Part):
     """A flight's record, as its file has it and as it is flown."""
 
@@ -64,7 +95,7 @@ class RecordSummary(Part):
     quantity: str = fact("specific-force or acceleration")
     vehicle: str = fact("aircraft, rocket or other")
     span: tuple[float, float] = entry("s", "first and last time of the part that is flown", "ends")
-    whole: tuple[float, float] = entry("s", "first and last time of the file", "ends")
+    whole: tuple[float, float] = entry("s", "first and last time of the file, or of the section", "ends")
     read: Curves = part("the part, as the file has it")
     flown: Curves = part("the part, as it is flown: without spikes, filtered, resampled")
     level: Level | None = part(
@@ -75,9 +106,53 @@ class RecordSummary(Part):
         "", "columns of p, q and r, with their signs", "axis", default=None
     )
     gaps: tuple[Gap, ...] = rows("gaps that were bridged", "gap", default=())
+    offsets: tuple[Offset, ...] = rows("offsets that were subtracted, found at rest", "offset", default=())
     clock: str = fact("what the clock of the file shows at zero seconds; empty where that is zero", default="")
+    sections_by: str = fact("column that says the sections of the file; empty without", default="")
+    section: str = fact("section that is flown; empty where the part is given by times", default="")
+    sections: tuple[Section, ...] = rows("sections of the file, where a column says them", "section", default=())
+    levelled: tuple[float, float] | None = entry(
+        "s", "first and last time of the stretch that the instrument was levelled by", "ends", default=None
+    )
     done: tuple[str, ...] = fact("what was done to it, as asked", default=())
     notes: tuple[str, ...] = fact("what looks odd", default=())
+    as_read: Channels | None = internal("", "the whole file, in its own axes and units", default=None)
+    as_flown: Channels | None = internal("", "the part that is flown, in base axes, m/s² and rad/s", default=None)
+
+    @property
+    def channels(self) -> dict[str, str]:
+        """Columns with their signs, by axis; "0" stands for none."""
+        return dict(zip("xyzpqr", (*self.columns, *(self.rate_columns or ())), strict=False))
+
+    @property
+    def is_part(self) -> bool:
+        """True if the file holds samples that are not flown."""
+        assert self.as_read is not None
+        return self.span != (float(self.as_read.time.min()), float(self.as_read.time.max()))
+
+    @property
+    def words(self) -> str:
+        """Sentence on what was done to it; empty where nothing was."""
+        return "; ".join([*self.done, *([self._off] if self.offsets else [])])
+
+    @property
+    def _off(self) -> str:
+        """Words on the offsets that were subtracted."""
+        where = ", ".join(f"{each.start:.6g} to {each.end:.6g} s" for each in self.offsets)
+        said = [f"{axis} {' to '.join(values)} {unit}" for axis, unit, values in self.offsets_of_columns]
+        drifting = ", and their drift on straight lines between," if len(self.offsets) > 1 else ""
+        return f"offsets at rest ({where}){drifting} are subtracted: {', '.join(said)}"
+
+    @property
+    def offsets_of_columns(self) -> list[tuple[str, str, list[str]]]:
+        """Axis, unit, and the offset in each stretch in words, of every column."""
+        rows = []
+        values = [(*each.load, *(each.rates or ())) for each in self.offsets]
+        for (axis, column), off in zip(self.channels.items(), zip(*values, strict=True), strict=True):
+            size, unit = (STANDARD_GRAVITY, "g") if axis in "xyz" else (math.pi / 180, "deg/s")
+            if column != "0":
+                rows.append((axis, unit, [f"{each / size:.4g}" for each in off]))
+        return rows
 
     def scaled(self, scale: float) -> RecordSummary:
         """The record, flown with accelerations times a level factor."""
@@ -85,8 +160,11 @@ class RecordSummary(Part):
             (scale * x, scale * y, scale * z) for x, y, z in (self.flown.smallest, self.flown.largest, self.flown.peak)
         )
         rates = "" if self.rate_columns is None else ", rates as they are recorded"
-        flown = replace(self.flown, smallest=low, largest=high, peak=peak)
-        return replace(self, flown=flown, done=(*self.done, f"accelerations × {scale:.6g}{rates}"))
+        flown, curves = replace(self.flown, smallest=low, largest=high, peak=peak), self.as_flown
+        if curves is not None:
+            sizes = [scale if unit == "m/s^2" else 1.0 for unit in curves.units]
+            curves = replace(curves, values=curves.values * sizes)
+        return replace(self, flown=flown, as_flown=curves, done=(*self.done, f"accelerations × {scale:.6g}{rates}"))
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -164,6 +242,9 @@ class Kind(Part):
     kind: str = fact("kind of the motion")
     tracks: str = fact("name of the flight that it tracks", optional=True)
     scale: float | None = fact("level factor of its loads; None of 1", optional=True, default=None)
+    span: tuple[float, float] | None = entry(
+        "s", "first and last time of the response in it, where they differ", "ends", optional=True, default=None
+    )
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
@@ -190,6 +271,9 @@ class Description(Part):
     step: float | None = fact("time step; None for an automatic one", "s", key=None, default=None)
     integrator: str | None = fact("integrator", key="response.integrator", optional=True, default=None)
     tracks: Mapping[str, str] = fact("name of the flight that each centrifuge tracks", key=None, default_factory=dict)
+    spans: Mapping[str, tuple[float, float]] = internal(
+        "s", "first and last time of the response in each motion, where these differ", default_factory=dict
+    )
     scales: Mapping[str, float] = fact("level factors of flights but 1, by name", key=None, default_factory=dict)
     records: Mapping[str, RecordSummary] = rows("records of flights, by name", "motion", default_factory=dict)
     warnings: tuple[str, ...] = fact("what is implausible", default=())
@@ -199,9 +283,10 @@ class Description(Part):
     @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")
     def kinds(self) -> Mapping[str, Kind]:
         return {
-            name: Kind(kind, self.tracks.get(name, ""), self.scales.get(name)) for name, kind in self.motions.items()
+            name: Kind(kind, self.tracks.get(name, ""), self.scales.get(name), self.spans.get(name))
+            for name, kind in self.motions.items()
         }
 
     @declared("s", "time step, or auto", role="fact", key="response.step", optional=True)
     def step_or_auto(self) -> float | str | None:
-        return None if self.duration is None else self.step or "auto"
+        return None if self.integrator is None else self.step or "auto"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from gbeam.motion import Centrifuge, Motion
     from gbeam.results.description import RecordSummary
     from gbeam.scenario.load import AnyScenario
+
+
+Spans = dict[str, tuple[float, float]]
 
 
 @typed
@@ -62,10 +65,9 @@ def build(scenario: AnyScenario, *, ahead: bool = False, system: System | None =
     parts = Collector()
     system = system or _system(parts, scenario)
     motions = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, motions)
+    response, spans = _response(parts, scenario, motions)
     if response is not None:
-        span = (response.start, response.start + response.duration)
-        motions |= centrifuges(parts, scenario, motions, span, ahead=ahead)
+        motions |= centrifuges(parts, scenario, motions, _span_of(response, spans), ahead=ahead)
     accept, sensors = _acceptance(parts, scenario), _sensors(parts, scenario.sensors)
     if system is not None:
         parts.errors += refusals(system, accept, sensors)
@@ -83,6 +85,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False, system: System | None =
         provenance=provenance(scenario),
         sensors=sensors,
         read_from=text_of(scenario),
+        spans=spans,
     )
     if case is None:
         raise placed(scenario, parts.errors)
@@ -131,10 +134,9 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
     parts = Collector()
     motions = flights_and_hubs(parts, scenario)
-    response = _response(parts, scenario.response, motions)
+    response, spans = _response(parts, scenario, motions)
     if response is not None:
-        span = (response.start, response.start + response.duration)
-        motions |= centrifuges(parts, scenario, motions, span, ahead=True)
+        motions |= centrifuges(parts, scenario, motions, _span_of(response, spans), ahead=True)
     _acceptance(parts, scenario)
     if parts.errors:
         raise placed(scenario, parts.errors)
@@ -173,39 +175,56 @@ def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor]) -> dict[str,
     return {each: parts.attempt(f"sensors.{each}", Sensor, **dict(table)) for each, table in tables.items()}
 
 
-def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Motion]) -> ResponseSettings | None:
-    """Settings, over the time that all records cover if no duration is written; None, without one, or refused."""
+def _span_of(response: ResponseSettings, spans: Spans) -> Callable[[str], tuple[float, float]]:
+    """Function that says first and last time, s, of the response in a motion."""
+    return lambda name: spans.get(name, (response.start, response.start + response.duration))
+
+
+def _response(
+    parts: Collector, scenario: schema.Environments, motions: Mapping[str, Motion]
+) -> tuple[ResponseSettings | None, Spans]:
+    """Settings, over the time that all records cover if no duration is written, and without one where they last
+    differently the times of each motion; None, without a time, or refused.
+    """
     from gbeam.analysis.response.settings import ResponseSettings
     from gbeam.analysis.system.initial import Initial
     from gbeam.integrate.schemes import SCHEMES
     from gbeam.motion import Flight
 
+    table = scenario.response
     if table.parameters:
         # Only to refuse wrong parameters: the analysis makes its own scheme.
         parts.attempt("response", SCHEMES[table.integrator], **table.parameters)
     flights = {name: motion for name, motion in motions.items() if isinstance(motion, Flight)}
-    records = {name: flight for name, flight in flights.items() if flight.record is not None}
-    covered = [extent for flight in records.values() if (extent := flight.acceleration.extent) is not None]
-    start = max((first for first, _ in covered), default=0.0)
-    duration = table.duration
+    records = {name: flight.record for name, flight in flights.items() if flight.record is not None}
+    covered = {name: extent for name in records if (extent := flights[name].acceleration.extent) is not None}
+    start, duration, spans = max((first for first, _ in covered.values()), default=0.0), table.duration, Spans()
     if duration is None:
         if not covered:
-            return None
-        duration = min(last for _, last in covered) - start
-        if duration <= 0:
-            parts.errors.append(InputError("response", "has no time that all records cover", "add a duration"))
-            return None
+            return None, spans
+        duration = min(last for _, last in covered.values()) - start
+        if any(True for name, record in records.items() for _ in _not_all_of(name, record, start, start + duration)):
+            spans = covered | {
+                name: covered[each.tracks]
+                for name, each in scenario.motion.items()
+                if isinstance(each, schema.Centrifuge) and each.tracks in covered
+            }
+            parts.errors += _without_time(motions, spans)
+            start, last = next(iter(covered.values()))
+            duration = last - start
     end = start + duration
-    for name, flight in records.items():
-        assert flight.record is not None
-        parts.errors += _not_all_of(name, flight.record, start, end, has_duration=table.duration is not None)
-    if table.residual_from is not None and not start <= table.residual_from < end:
-        fix = f"give a time from {start:g} s on, before {end:g} s"
-        parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
+    if not spans:
+        for name, record in records.items():
+            parts.errors += _not_all_of(name, record, start, end)
+    for first, last in spans.values() or [(start, end)]:
+        if table.residual_from is not None and not first <= table.residual_from < last:
+            fix = f"give a time from {first:g} s on, before {last:g} s"
+            parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
+            break
     initial = parts.attempt("response.initial", Initial, **table.initial.settings)
     if initial is None:
-        return None
-    return parts.attempt(
+        return None, spans
+    settings = parts.attempt(
         "response",
         ResponseSettings,
         initial=initial,
@@ -219,30 +238,32 @@ def _response(parts: Collector, table: schema.Response, motions: Mapping[str, Mo
         residual_from=table.residual_from,
         histories=None if isinstance(table.histories, str) else table.histories,
     )
+    return settings, spans
 
 
-def _not_all_of(
-    name: str, record: RecordSummary, start: float, end: float, *, has_duration: bool
-) -> Iterator[InputError]:
+def _without_time(motions: Iterable[str], spans: Spans) -> Iterator[InputError]:
+    """Refuse motions without a record beside records that last differently."""
+    for name in motions:
+        if name not in spans:
+            listed = ", ".join(f"{other} {first:g} to {last:g} s" for other, (first, last) in spans.items())
+            problem = f"has no time of its own, and the records beside it last differently: {listed}"
+            yield InputError(f"motion.{name}", problem, "put it into a scenario of its own")
+
+
+def _not_all_of(name: str, record: RecordSummary, start: float, end: float) -> Iterator[InputError]:
     """Refuse a run from `start` to `end`, s, beyond a record, or over a part that its table does not ask for."""
     first, last = record.span
     interval = (1 + 1e-6) / record.read.rate  # 1600 samples at 100 Hz are 16 s of flight
     flown = f"{last - first:.6g} s" if first == 0 else f"{last - first:.6g} s, from {first:.6g} to {last:.6g} s"
     whole = f"the record of {name!r} lasts {flown}"
     if end > last + interval:
-        fix = f"give {last + 1 / record.read.rate - start:g} s or less, or leave it out"
+        most = last + 1 / record.read.rate - start
+        fix = f"give {most:g} s or less, or leave it out" if most > 0 else "leave it out: each has its own time then"
         yield InputError("response.duration", f"reaches to {end:g} s, and {whole}", fix)
         return
     asked = [f'from = "{start:g} s"'] if start > first + interval else []
     asked += [f'to = "{end:g} s"'] if end < last - interval else []
     if asked:
+        problem = f"is {end - start:g} s, and {whole}: the rest would be left out"
         part = f"ask for a part on the record itself: {', '.join(asked)} in [motion.{name}.record]"
-        where = "response.duration" if has_duration else f"motion.{name}.record"
-        problem = (
-            f"is {end - start:g} s, and {whole}"
-            if has_duration
-            else f"is longer than the flights that are run together: {whole}"
-        )
-        yield InputError(
-            where, f"{problem}: the rest would be left out", f"leave it out, or {part}" if has_duration else part
-        )
+        yield InputError("response.duration", problem, f"leave it out, or {part}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,9 +10,10 @@ from gbeam import motion
 from gbeam.motion import Profile
 from gbeam.motion.flight import body_rates
 from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, Recording
+from gbeam.motion.records.rest import Rest
 from gbeam.scenario import schema
-from gbeam.scenario.schema.profile import Record
+from gbeam.scenario.schema.profile import PartOfRecord, Record
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -22,17 +24,24 @@ if TYPE_CHECKING:
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:
     """Build the flights and hubs of a scenario by name, without refused ones, whose errors `parts` keeps."""
     built: dict[str, motion.Motion | None] = {}
+    recordings, partly = _recordings(parts, scenario), dict[str, None]()
     for name, table in scenario.motion.items():
         where = f"motion.{name}"
         if isinstance(table, schema.Hub):
             built[name] = _hub(parts, where, table)
         elif isinstance(table, schema.Flight):
             if table.record is not None:
-                record = parts.attempt(where, _record, table.record)
-                built[name] = None if record is None else _recorded(record, table)
+                source = table.record.of if isinstance(table.record, PartOfRecord) else name
+                recording, span = recordings.get(source), (table.record.begin, table.record.to)
+                flight = recording and parts.attempt(where, recording.flight, span, table.record.section)
+                built[name] = _recorded(flight, table) if flight else None
+                if flight and flight.summary.is_part:
+                    partly[source] = None
             else:
                 load = components(parts, f"{where}.acceleration", table.acceleration)
                 built[name] = None if load is None else _flight(load, None, table)
+    for name in partly:
+        parts.attempt(f"motion.{name}", recordings[name].refuse_unlevel)
     return {name: base for name, base in built.items() if base is not None}
 
 
@@ -40,18 +49,18 @@ def centrifuges(
     parts: Collector,
     scenario: schema.Environments,
     others: dict[str, motion.Motion],
-    span: tuple[float, float],
+    span_of: Callable[[str], tuple[float, float]],
     *,
     ahead: bool,
 ) -> dict[str, motion.Motion]:
-    """Build the centrifuges, which track one of the flights in `others`, over a span, s, by name."""
+    """Build the centrifuges, which track one of the flights in `others`, by name, over their spans, s."""
     built: dict[str, motion.Motion] = {}
     for name, table in scenario.motion.items():
         if not isinstance(table, schema.Centrifuge):
             continue
         flight = others.get(table.tracks)
         if isinstance(flight, motion.Flight):
-            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, table, flight, span, ahead)
+            centrifuge = parts.attempt(f"motion.{name}", centrifuge_of, table, flight, span_of(name), ahead)
             built |= {} if centrifuge is None else {name: centrifuge}
     return built
 
@@ -122,24 +131,34 @@ def profile_of(parts: Collector, where: str, table: Any) -> Profile | None:
     return None if profile is None else _rounded(profile, table.smoothing)
 
 
-def _record(table: Record) -> FlightRecord:
-    """Read the record of a flight from its file."""
+def _recordings(parts: Collector, scenario: schema.Environments) -> dict[str, Recording]:
+    """Read the files of records, each once, by the name of their flight; without refused ones."""
+    tables = {name: each.record for name, each in scenario.motion.items() if isinstance(each, schema.Flight)}
+    read = {
+        name: parts.attempt(f"motion.{name}", _recording, table)
+        for name, table in tables.items()
+        if isinstance(table, Record)
+    }
+    return {name: each for name, each in read.items() if each is not None}
+
+
+def _recording(table: Record) -> Recording:
+    """Read the columns of a record from its file."""
     rates = None
     if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
         rates = Rates(table.p, table.q, table.r, table.rate_unit)
     conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "bridge", "skip_checks")}
-    columns = values_of(
-        table, *conditions, "file", "time", "p", "q", "r", "rate_unit", "begin", "to", "turn", "level", "arm"
-    )
-    span = table.begin, table.to
-    return read_flight(
+    mounting = "turn", "level", "arm", "rest"
+    columns = values_of(table, *conditions, *mounting, "file", "time", "p", "q", "r", "rate_unit", "begin", "to",
+                        "section")  # fmt: skip
+    rests = tuple(Rest((each.begin, each.to), each.load, each.rates) for each in table.rest)
+    return Recording.read(
         table.file,
         table.time,
         **columns,
         rates=rates,
         conditioning=Conditioning(**conditions),
-        span=span,
-        instrument=Instrument(table.turn, table.level, table.arm),
+        instrument=Instrument(table.turn, table.level, table.arm, rests),
     )
 
 

@@ -20,6 +20,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED, PROBLEMS
 from gbeam.scenario.schema import Environments, Flight, Scenario, kind_of_scenario
 from gbeam.scenario.schema.fields import files, former_defaults
+from gbeam.scenario.schema.profile import Record
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Source, parse, read_text
@@ -61,7 +62,7 @@ def text_of(scenario: Environments) -> ScenarioText | None:
 def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
     """Yield name and path of files that a scenario reads; records are named by their motion, others by their key."""
     for name, motion in scenario.motion.items():
-        if isinstance(motion, Flight) and motion.record is not None:
+        if isinstance(motion, Flight) and isinstance(motion.record, Record):
             yield name, motion.record.file
     for key in ("beam", "controllers", "bodies"):
         yield from files(getattr(scenario, key, None), (key,))

@@ -120,10 +120,10 @@ class Neighbourhood:
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
         case = self.case
-        return Grid.of(case.system, case.environments[name], case.over_time, self.done(name))
+        return Grid.of(case.system, case.environments[name], case.settings_of(name), self.done(name))
 
     def _differentiated(self, name: str, grid: Grid) -> Differentiated:
-        motion, settings = self.case.environments[name], self.case.over_time
+        motion, settings = self.case.environments[name], self.case.settings_of(name)
         self._by_motion[name] = Differentiated(self.case.system, motion, settings, grid, name, **self.parts)
         return self._by_motion[name]
 
@@ -318,7 +318,7 @@ def _runs(case: Case, steps: Mapping[str, float]) -> Study:
     """Study of the motions in `steps`, run by these time steps, s, without estimates of errors."""
     responses = dict[str, Any]()
     for name, step in steps.items():
-        settings = replace(case.over_time, step=step, estimate=False)
+        settings = replace(case.settings_of(name), step=step, estimate=False)
         responses[name] = simulate(case.system, case.environments[name], settings, name=name)
     return study_of(case, responses)
 

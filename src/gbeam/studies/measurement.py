@@ -152,18 +152,19 @@ def _read(path: str, case: Case, motion: str | None) -> Measurement:
     if not others:
         examples = "frequency" if modal else "tip.z or root_moment.y"
         raise InputError(OPTION, f"{path} has nothing but {clock}", f"add columns such as {examples}")
-    _check_clock(at, path, modal, case)
+    _check_clock(at, path, modal, case, list(case.environments) if motion is None else [motion])
     columns = tuple(_column(table, name, names[name], modal, case, motion) for name in others)
     return Measurement(path, at, modal, columns)
 
 
-def _check_clock(at: Floats, path: str, modal: bool, case: Case) -> None:
-    """Raise InputError unless times increase within the response, or modes are numbered once each."""
+def _check_clock(at: Floats, path: str, modal: bool, case: Case, motions: Sequence[str]) -> None:
+    """Raise InputError unless times increase within the responses in motions, or modes are numbered once each."""
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
         return
-    start, end = case.over_time.start, case.over_time.start + case.over_time.duration
+    settings = [case.settings_of(name) for name in motions]
+    start, end = max(each.start for each in settings), min(each.start + each.duration for each in settings)
     if len(at) < 2:
         raise InputError(OPTION, f"{path} has one time", "give two or more, which increase")
     if (np.diff(at) <= 0).any():

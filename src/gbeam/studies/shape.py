@@ -215,7 +215,7 @@ def _grounded(case: Case, name: str | None) -> System:
     if not case.motions:
         return case.system
     chosen = motion_of(case.motions, name)
-    settings = case.over_time
+    settings = case.settings_of(chosen)
     times = np.linspace(settings.start, settings.start + settings.duration, _POINTS)
     base = case.motions[chosen].base(times)
     load = np.asarray(base.a_WO_B)

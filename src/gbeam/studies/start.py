@@ -30,18 +30,19 @@ Figures = Sequence[tuple[Sequence[str | int], str, bool]]
 
 @dataclass(frozen=True)
 class OverTime:
-    """Names of histories, and the number of times, over the response of the first case, at which they are taken."""
+    """Names of histories, and the number of times, over their responses in the first case, at which they are taken."""
 
     names: tuple[str, ...] = ()
     count: int = 0
 
     def of(self, inquiry: Inquiry, case: Case) -> Inquiry:
-        """Return the inquiry with these histories, at times over the response of `case`."""
+        """Return the inquiry with these histories, at times over their responses in `case`."""
         if not self.names:
             return inquiry
-        settings = case.over_time
-        times = np.linspace(settings.start, settings.start + settings.duration, self.count)
-        return replace(inquiry, histories=tuple(read_history(each, case) for each in self.names), times=times)
+        histories = tuple(read_history(each, case) for each in self.names)
+        settings = [case.settings_of(each.motion) for each in histories]
+        first, last = min(each.start for each in settings), max(each.start + each.duration for each in settings)
+        return replace(inquiry, histories=histories, times=np.linspace(first, last, self.count))
 
 
 NO_HISTORIES = OverTime()

@@ -14,15 +14,14 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import vector
 from gbeam.motion.flight import body_rates
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion.records.rest import STILL, Rest, mean_of
 from gbeam.motion.records.times import Span, Times
 from gbeam.motion.rigid import moved, rotation_of
 from gbeam.results.parts import Base
 
-_SPREAD, _DRIFT = 0.05, 0.02  # g: of the load at rest about its mean, and between the means of both halves
-_TURNING = math.radians(2)  # rad/s, of a gyro's offset at most
 _SIZE = 0.03  # of 1 g: scale error of an accelerometer at most
 _TILT = math.radians(45)  # beyond that the shortest way is not the block's
-_REST = "give first and last time of a stretch in which all stands still and level"
+_REST = f"{STILL} and level"
 
 
 @dataclass(frozen=True)
@@ -38,20 +37,24 @@ class Instrument:
         that the mean specific force there points along z. A turn about the vertical is not found.
     arm : (3,)
         From the block to the specimen's root, base axes, m.
+    rest : tuple of Rest
+        Stretches in which the load is known, by which offsets of the sensors are found and subtracted.
     """
 
     turn: Numbers = (0.0, 0.0, 0.0)
     level: Span | None = None
     arm: Numbers = (0.0, 0.0, 0.0)
+    rest: tuple[Rest, ...] = ()
 
     def axes(
         self, times: Times, load: Floats, rates: Floats, counted: Callable[[int], str], *, specific: bool
-    ) -> tuple[Floats, list[str]]:
-        """Return the rotation matrix from the block's to base axes, and what is done in words.
+    ) -> tuple[Floats, list[str], tuple[float, float] | None]:
+        """Return the rotation matrix from the block's to base axes, what is done in words, and first and last time of
+        the level stretch.
 
         Loads (t, 3), m/s², and rates (t, 3) or (t, 0), rad/s, are in axes of the block.
         """
-        matrix, done = np.eye(3), list[str]()
+        matrix, done, ends = np.eye(3), list[str](), None
         if np.any(turn := vector("record.turn", self.turn)):
             matrix = rotation_of(turn)
             done.append(f"the block's axes are turned by {_words(turn)} in base axes")
@@ -60,12 +63,12 @@ class Instrument:
                 problem = "is given, and the record holds acceleration, which is none at rest"
                 raise InputError("record.level", problem, "give the block's turn in its place")
             stretch = times.part(self.level, counted, ("level[0]", "level[1]"))
-            begin, end = times.values[stretch][[0, -1]]
-            span = f"from {begin:.6g} to {end:.6g} s"
+            ends = float(times.values[stretch][0]), float(times.values[stretch][-1])
+            span = f"from {ends[0]:.6g} to {ends[1]:.6g} s"
             tilt = _tilt(load[stretch] @ matrix.T, rates[stretch], span)
             matrix = rotation_of(tilt) @ matrix
             done.append(f"levelled by the rest {span}: turned by {_words(tilt)} in base axes")
-        return matrix, done
+        return matrix, done, ends
 
     def carried(self, time: Floats, load: Floats, rates: Floats) -> tuple[Floats, list[str]]:
         """Return the load (t, 3), m/s², at the root, and what is done in words; rates (t, 3), rad/s, in base axes.
@@ -83,19 +86,8 @@ class Instrument:
 
 def _tilt(load: Floats, rates: Floats, span: str) -> Floats:
     """Rotation vector that makes the mean of a load (t, 3) point along z; InputError unless it is one at rest."""
-    if not np.isfinite(load).all():
-        raise InputError("record.level", f"has cells {span} that hold no number", _REST)
-    in_g, middle = load / STANDARD_GRAVITY, len(load) // 2
-    mean = in_g.mean(axis=0)
-    size, spread = float(np.linalg.norm(mean)), float(np.linalg.norm(in_g.std(axis=0)))
-    drift = float(np.linalg.norm(in_g[:middle].mean(axis=0) - in_g[middle:].mean(axis=0)))
-    rate = float(np.linalg.norm(rates.mean(axis=0))) if rates.size else 0.0
-    if spread > _SPREAD or drift > _DRIFT:
-        moves = f"spreads by {spread:.3g} g about its mean" if spread > _SPREAD else f"drifts by {drift:.3g} g"
-        raise InputError("record.level", f"is no stretch at rest: the load {moves} {span}", _REST)
-    if rate > _TURNING:
-        problem = f"is no stretch at rest: the body turns at {math.degrees(rate):.3g} deg/s {span}"
-        raise InputError("record.level", problem, _REST)
+    mean = mean_of("level", load, rates, span, _REST)[0] / STANDARD_GRAVITY
+    size = float(np.linalg.norm(mean))
     if abs(size - 1) > _SIZE:
         problem = f"is no stretch at rest: the load is {size:.4g} g {span}, and at rest 1 g"
         raise InputError("record.level", problem, f"{_REST}; or mend the unit")

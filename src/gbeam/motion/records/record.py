@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats, Indices, Numbers
+from gbeam.arrays.types import Flags, Floats, Indices, Numbers
 from gbeam.constants import Check, RecordQuantity, Vehicle
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.limits import BINARY_BYTES, SAMPLES, refuse_large_file, refuse_more
+from gbeam.guards.limits import BINARY_BYTES, LARGEST, SAMPLES, refuse_large_file, refuse_more
 from gbeam.io.binary import is_binary, read_binary
-from gbeam.io.table import NO_COLUMN, Table
+from gbeam.io.table import NO_COLUMN, Table, as_word
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.columns import (
     RATE,
@@ -27,13 +28,15 @@ from gbeam.motion.records.columns import (
 )
 from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
 from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unsound
+from gbeam.motion.records.rest import Offsets, Rest, offsets_of
+from gbeam.motion.records.sections import Sections
+from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unlevel, refuse_unsound
 from gbeam.motion.records.text import read_text
 from gbeam.motion.records.times import Span, Timeline, Times, check_interval
 from gbeam.motion.records.units import Unit, unit_of
 from gbeam.numerics.samples import true_runs
 from gbeam.printable import advise
-from gbeam.results.description import RecordSummary
+from gbeam.results.description import Channels, RecordSummary
 
 
 def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
@@ -79,8 +82,8 @@ class Conditioning:
     bridge : float or None
         Longest gap that is bridged, s: lost samples are put on straight lines, before the low-pass and resampling.
     skip_checks : bool or tuple of str
-        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts`` and ``columns``; True leaves
-        out all.
+        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts``, ``columns`` and ``rest``;
+        True leaves out all.
     """
 
     cutoff: float | None = None
@@ -137,7 +140,10 @@ def read_record(
     vehicle: Vehicle = "aircraft",
     turn: Numbers = (0.0, 0.0, 0.0),
     level: Span | None = None,
+    rest: Sequence[Rest] = (),
     span: Span = (None, None),
+    sections: str | None = None,
+    section: str | None = None,
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
 
@@ -171,9 +177,16 @@ def read_record(
     level : tuple, optional
         First and last time of a stretch at rest, on the record's own clock: the block is turned on by the shortest
         way, so that the mean specific force there points along z.
+    rest : sequence of Rest
+        Stretches of :class:`gbeam.motion.records.rest.Rest` in which the load is known: what the accelerometers read
+        besides is subtracted, of several stretches on straight lines from one to the next.
     span : tuple
         First and last time of the part that is flown, s on the record's own clock, or a time of day where it has these;
         None is the record's end. What is outside is not checked, but for level flight.
+    sections : str, optional
+        Name of a column that numbers or names the sections of the file, such as an event marker.
+    section : str, optional
+        The section that is flown: what that column holds through it.
 
     Returns
     -------
@@ -196,11 +209,11 @@ def read_record(
     """
     return read_flight(
         path, time, x, y, z, unit, conditioning=conditioning, time_unit=time_unit, sample_rate=sample_rate,
-        quantity=quantity, vehicle=vehicle, instrument=Instrument(turn, level), span=span,
+        quantity=quantity, vehicle=vehicle, instrument=Instrument(turn, level, rest=tuple(rest)), span=span,
+        sections=sections, section=section,
     ).acceleration  # fmt: skip
 
 
-@np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
 def read_flight(
     path: str | os.PathLike[str],
     time: str | None,
@@ -209,101 +222,241 @@ def read_flight(
     z: str,
     unit: str,
     *,
-    rates: Rates | None = None,
-    conditioning: Conditioning = Conditioning(),
-    time_unit: str | None = None,
-    sample_rate: float | None = None,
-    quantity: RecordQuantity = "specific-force",
-    vehicle: Vehicle = "aircraft",
-    instrument: Instrument = Instrument(),
     span: Span = (None, None),
+    section: str | None = None,
+    **options: Any,
 ) -> FlightRecord:
-    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`."""
-    skip, evened = conditioning.skipped, conditioning.evened
-    trust = "unit" in skip
-    names = {"x": x, "y": y, "z": z}
-    turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
-    if {*names.values()} == {NO_COLUMN}:
-        raise InputError("record", 'takes nothing of the file: x, y and z are "0"', "name a column for one of them")
-    if any(instrument.arm) and rates is None:
-        fix = 'name the columns of the body\'s rates, p, q and r ("0" for none), and rate_unit'
-        raise InputError("record.arm", "is given without the rates that the body turns at", fix)
-    columns = [*names.values(), *turns.values()]
-    table = read_table(path, columns if time is None else [time, *columns])
-    if "columns" not in skip:
-        refuse_other_kinds(table, names)
-        if turns:
-            refuse_other_kinds(table, turns, RATE)
-            refuse_other_axes(table, names, turns)
-    load_unit = _unit(table, "unit", "acceleration", unit, names, trust=trust)
-    rate_unit = load_unit if rates is None else _unit(table, "rate_unit", "rate", rates.unit, turns, trust=trust)
-    stated = {} if "sampling" in skip else table.rates(columns)
-    times = _times(table, time, time_unit, sample_rate, names, stated, trust=trust)
-    clock = times.values
-    refuse_more("record.file", "samples", len(clock), SAMPLES, 200.0, "cut the record, or export it at a lower rate")
-    if len(clock) < FEWEST:
-        raise InputError("record.file", f"{path} has {table.counted(len(clock))}", f"give {FEWEST} samples or more")
-    part = times.part(span, table.counted)
-    load = load_unit.size * table.vector(names, len(clock), part)
-    turning = rate_unit.size * table.vector(turns, len(clock), part) if turns else np.empty((len(clock), 0))
+    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`, and
+    :meth:`Recording.read` for the options.
+    """
+    recording = Recording.read(path, time, x, y, z, unit, **options)
+    flight = recording.flight(span, section)
+    if flight.summary.is_part:
+        recording.refuse_unlevel()
+    return flight
 
-    axes, mounted = instrument.axes(times, load, turning, table.counted, specific=quantity == "specific-force")
 
-    def judge(time: Floats) -> None:
-        if "sampling" not in skip:
-            check_interval(time, times, stated, brief=vehicle == "other")
+@dataclass(frozen=True)
+class Recording:
+    """Columns of a record's file, read once, of which each flight is a part."""
 
-    both, bridge = np.concatenate([load, turning], axis=1), conditioning.bridge
-    line = Timeline.of(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
+    path: str
+    table: Table
+    times: Times
+    stated: Mapping[str, float]  # sample rates that the file states, Hz
+    names: dict[str, str]  # columns of x, y and z, with their signs
+    turns: dict[str, str]  # columns of p, q and r, likewise; none without rates
+    units: tuple[Unit, ...]  # of the loads, and of rates if there are any
+    load: Floats  # (t, 3) m/s², axes of the columns; what is no number where no flight is
+    rates: Floats  # (t, 3) rad/s, or (t, 0)
+    sound: Flags  # (t,) samples that are numbers of a possible size
+    channels: Channels  # as the file has them
+    done: tuple[str, ...]  # in words
+    sections: Sections | None
+    conditioning: Conditioning
+    quantity: RecordQuantity
+    vehicle: Vehicle
+    instrument: Instrument
+    axes: Floats  # (3, 3) rotation from those of the columns to base axes
+    mounted: tuple[str, ...]  # how these were found, in words
+    levelled: tuple[float, float] | None  # first and last time of the level stretch, s
+    offsets: Offsets
 
-    def samples(time: Floats, load: Floats, rows: Indices) -> Samples:
-        turned = upended(table, names)
-        specific = quantity == "specific-force"
+    @classmethod
+    @np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        time: str | None,
+        x: str,
+        y: str,
+        z: str,
+        unit: str,
+        *,
+        rates: Rates | None = None,
+        conditioning: Conditioning = Conditioning(),
+        time_unit: str | None = None,
+        sample_rate: float | None = None,
+        quantity: RecordQuantity = "specific-force",
+        vehicle: Vehicle = "aircraft",
+        instrument: Instrument = Instrument(),
+        sections: str | None = None,
+    ) -> Recording:
+        """Read the columns that are named; arguments as of :func:`read_record`."""
+        skip, trust = conditioning.skipped, "unit" in conditioning.skipped
+        names = {"x": x, "y": y, "z": z}
+        turns = {} if rates is None else {"p": rates.p, "q": rates.q, "r": rates.r}
+        if {*names.values()} == {NO_COLUMN}:
+            raise InputError("record", 'takes nothing of the file: x, y and z are "0"', "name a column for one of them")
+        if any(instrument.arm) and rates is None:
+            fix = 'name the columns of the body\'s rates, p, q and r ("0" for none), and rate_unit'
+            raise InputError("record.arm", "is given without the rates that the body turns at", fix)
+        columns = [*names.values(), *turns.values()]
+        table = read_table(path, [*columns, *(each for each in (time, sections) if each is not None)])
+        if "columns" not in skip:
+            refuse_other_kinds(table, names)
+            if turns:
+                refuse_other_kinds(table, turns, RATE)
+                refuse_other_axes(table, names, turns)
+        units = [_unit(table, "unit", "acceleration", unit, names, trust=trust)]
+        if rates is not None:
+            units.append(_unit(table, "rate_unit", "rate", rates.unit, turns, trust=trust))
+        stated = {} if "sampling" in skip else table.rates(columns)
+        times = _times(table, time, time_unit, sample_rate, names, stated, trust=trust)
+        count, fewer = len(times.values), "cut the record, or export it at a lower rate"
+        refuse_more("record.file", "samples", count, SAMPLES, 200.0, fewer)
+        if count < FEWEST:
+            raise InputError("record.file", f"{path} has {table.counted(count)}", f"give {FEWEST} samples or more")
+        nowhere = slice(0, 0)  # each flight refuses what is no number in its part
+        read = [table.vector(each, count, nowhere) for each in (names, turns) if each]
+        sound = np.logical_and.reduce([(np.abs(each) <= LARGEST).all(axis=1) for each in read])
+        load, *turning = (unit.size * each for unit, each in zip(units, read, strict=True))
+        rate = turning[0] if turning else np.empty((count, 0))
+        specific, columns_of = quantity == "specific-force", {**names, **turns}
+        axes, mounted, levelled = instrument.axes(times, load, rate, table.counted, specific=specific)
+        said = time_unit is None and times.unit.size != 1
+        return cls(
+            path=os.fspath(path),
+            table=table,
+            times=times,
+            stated=stated,
+            names=names,
+            turns=turns,
+            units=tuple(units),
+            load=load,
+            rates=rate,
+            sound=sound,
+            channels=_as_read(table, times, (names, turns), units, read),
+            done=(f"time in {times.unit.text}, as the file says",) if said else (),
+            sections=None if sections is None else Sections.of(table, sections, times.values),
+            conditioning=conditioning,
+            quantity=quantity,
+            vehicle=vehicle,
+            instrument=instrument,
+            axes=axes,
+            mounted=tuple(mounted),
+            levelled=levelled,
+            offsets=offsets_of(
+                instrument.rest, times, load, rate, axes, columns_of, table.counted,
+                specific=specific, trust="rest" in skip,
+            ),
+        )  # fmt: skip
+
+    def part(self, span: Span, section: str | None) -> tuple[slice, tuple[float, float]]:
+        """Return the samples within a span and a section, all of which are numbers, and first and last time, s, of the
+        section or the file that they are of.
+        """
+        part, whole = self.times.part(span, self.table.counted), self.times.ends
+        if section is not None:
+            if self.sections is None:
+                fix = 'name the column that numbers them, such as sections = "event"'
+                raise InputError("record.section", f"is {section}, and the record has no sections", fix)
+            part, run = self.sections.part(section, part, self.table.counted)
+            whole = self.sections.ends(run)
+        if not self.sound[part].all():
+            for each in (self.names, self.turns):
+                self.table.vector(each, len(self.sound), part)  # refuses the first that is none
+        return part, whole
+
+    def _samples(self, time: Floats, load: Floats, rows: Indices) -> Samples:
+        """Samples to be judged, with the rows of the file that they are."""
 
         def place(i: int) -> str:
-            return table.place(int(rows[i]))
+            return self.table.place(int(rows[i]))
 
-        return Samples(time, load, names, load_unit, specific, vehicle, turned, place, axes)
+        specific, upside = self.quantity == "specific-force", upended(self.table, self.names)
+        return Samples(time, load, self.names, self.units[0], specific, self.vehicle, upside, place, self.axes)
 
-    flown = samples(line.time, line.values[:, :3], line.rows)
-    known = np.flatnonzero(np.isfinite(load).all(axis=1))  # outside the part there may be what is no number
-    whole = flown if part == slice(0, len(clock)) else samples(clock[known], load[known], known)
-    refuse_unsound(flown, whole, (*skip, "spikes") if conditioning.despike else skip)
-    notes = [*table.remarks]
-    if "columns" not in skip:
-        notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
-    notes += oddities(flown)
-    calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
-    turned = np.concatenate([calm[:, k : k + 3] @ axes.T for k in range(0, calm.shape[1], 3)], axis=1)
-    new, both = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
-    done = [f"time in {times.unit.text}, as the file says"] if time_unit is None and times.unit.size != 1 else []
-    done += line.done
-    (done if conditioning.despike else notes).extend(spiked)
-    if conditioning.cutoff is not None:
-        done.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
-    if conditioning.resample is not None:
-        done.append(f"resampled at {conditioning.resample:g} Hz")
-    at_root, carried = instrument.carried(new, both[:, :3], both[:, 3:])
-    done += [*mounted, *carried]
-    as_read = line.values[line.read]
-    facts = RecordSummary(
-        file=os.fspath(path),
-        columns=(x, y, z),
-        quantity=quantity,
-        vehicle=vehicle,
-        span=(float(line.time[0]), float(line.time[-1])),
-        whole=times.ends,
-        read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
-        flown=curves(new, at_root, both[:, 3:]),
-        level=level(flown),
-        rate_columns=None if rates is None else (rates.p, rates.q, rates.r),
-        gaps=line.gaps,
-        clock="" if times.zero is None else times.zero.first,
-        done=tuple(done),
-        notes=tuple(notes),
-    )
-    flown_rates = None if rates is None else PiecewiseLinear(new, both[:, 3:])
-    return FlightRecord(PiecewiseLinear(new, at_root, record=facts), flown_rates)
+    @np.errstate(all="ignore")
+    def refuse_unlevel(self) -> None:
+        """Raise InputError if the whole record, of which flights are parts, is level in another unit or upside down."""
+        known = np.flatnonzero(np.isfinite(self.load).all(axis=1))  # outside the flights there may be what is no number
+        samples = self._samples(self.times.values[known], self.load[known], known)
+        refuse_unlevel(samples, self.conditioning.skipped)
+
+    @np.errstate(all="ignore")
+    def flight(self, span: Span = (None, None), section: str | None = None) -> FlightRecord:
+        """Return the part within a span and a section, conditioned and judged, and say what was done to it."""
+        conditioning, skip, evened = self.conditioning, self.conditioning.skipped, self.conditioning.evened
+        table, times, clock, stated = self.table, self.times, self.times.values, self.stated
+        names, turns, load, turning = self.names, self.turns, self.load, self.rates
+        load_unit, vehicle, instrument = self.units[0], self.vehicle, self.instrument
+        (part, of), axes, offsets = self.part(span, section), self.axes, self.offsets
+
+        def judge(time: Floats) -> None:
+            if "sampling" not in skip:
+                check_interval(time, times, stated, brief=vehicle == "other")
+
+        both, bridge = np.concatenate([load, turning], axis=1), conditioning.bridge
+        line = Timeline.of(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
+
+        flown = self._samples(line.time, line.values[:, :3], line.rows)
+        ignored = (*skip, "spikes") if conditioning.despike else skip
+        refuse_unsound(flown, ignored, is_part=part != slice(0, len(clock)))
+        notes = [*table.remarks]
+        if "columns" not in skip:
+            notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
+        notes += oddities(flown)
+        notes += offsets.carried_on(*line.time[[0, -1]])
+        calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
+        off = offsets.at(line.time)
+        calm = calm - off
+        turned = np.concatenate([calm[:, k : k + 3] @ axes.T for k in range(0, calm.shape[1], 3)], axis=1)
+        new, both = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
+        done = [*self.done, *line.done]
+        (done if conditioning.despike else notes).extend(spiked)
+        if conditioning.cutoff is not None:
+            done.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
+        if conditioning.resample is not None:
+            done.append(f"resampled at {conditioning.resample:g} Hz")
+        at_root, carried = instrument.carried(new, both[:, :3], both[:, 3:])
+        done += [*self.mounted, *carried]
+        as_read = line.values[line.read]
+        facts = RecordSummary(
+            file=self.path,
+            columns=(names["x"], names["y"], names["z"]),
+            quantity=self.quantity,
+            vehicle=vehicle,
+            span=(float(line.time[0]), float(line.time[-1])),
+            whole=of,
+            read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
+            flown=curves(new, at_root, both[:, 3:]),
+            level=level(replace(flown, load=flown.load - off[:, :3])),
+            rate_columns=(turns["p"], turns["q"], turns["r"]) if turns else None,
+            gaps=line.gaps,
+            offsets=offsets.of_stretches,
+            levelled=self.levelled,
+            sections_by="" if self.sections is None else self.sections.column,
+            section="" if section is None else as_word(section),
+            sections=() if self.sections is None else tuple(self.sections.listed()),
+            clock="" if times.zero is None else times.zero.first,
+            done=tuple(done),
+            notes=tuple(notes),
+            as_read=self.channels,
+            as_flown=Channels(
+                (*names, *turns),
+                ("m/s^2",) * 3 + ("rad/s",) * len(turns),
+                new,
+                np.concatenate([at_root, both[:, 3:]], axis=1),
+            ),
+        )
+        flown_rates = PiecewiseLinear(new, both[:, 3:]) if turns else None
+        return FlightRecord(PiecewiseLinear(new, at_root, record=facts), flown_rates)
+
+
+def _as_read(
+    table: Table, times: Times, named: Sequence[dict[str, str]], units: Sequence[Unit], values: Sequence[Floats]
+) -> Channels:
+    """Channels of the columns that are read, by their own names, without the signs of components."""
+    names, texts, channels = list[str](), list[str](), list[Floats]()
+    for columns, unit, read in zip((each for each in named if each), units, values, strict=True):
+        for name, component in zip(columns.values(), read.T, strict=True):
+            sign, column = table.signed(name)
+            if column is not None:
+                names.append(column)
+                texts.append(unit.text)
+                channels.append(sign * component)
+    return Channels(tuple(names), tuple(texts), times.values, np.stack(channels, axis=1))
 
 
 def _unit(table: Table, key: str, kind: str, declared: str | None, columns: dict[str, str], *, trust: bool) -> Unit:

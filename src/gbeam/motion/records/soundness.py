@@ -55,25 +55,37 @@ class Samples:
         return f"{value / _SIZES[unit]:.4g} {unit}"
 
 
-def refuse_unsound(record: Samples, whole: Samples, skip: Collection[str]) -> None:
-    """Raise InputError if a record does not look like a flight's; spikes are judged first.
+def refuse_unsound(record: Samples, skip: Collection[str], *, is_part: bool) -> None:
+    """Raise InputError if a record, or a part of one, does not look like a flight's; spikes are judged first.
 
-    A fragment of less than 2 s need hold no level flight: of that only the size is judged, and dropouts.
+    Of a part only the size is judged, and dropouts: level flight may be elsewhere.
     """
     odd, calm, size = _calmed(record)
     if "spikes" not in skip and _lasts(record):
         _check_spikes(record, odd, size)
     if "unit" not in skip:
         _check_size(record, size)
-    if _flies(whole) and not {"unit", "sign"} <= set(skip):
-        if whole is not record:
-            _, calm, size = _calmed(whole)
-        if "unit" not in skip:
-            _check_level(whole, size)
-        if "sign" not in skip and whole.vehicle == "aircraft":
-            _check_sign(whole, calm @ whole.axes[2], size)
+    if not is_part:
+        _refuse_unlevel(record, calm, size, skip)
     if "dropouts" not in skip:
         _check_dropouts(record)
+
+
+def refuse_unlevel(whole: Samples, skip: Collection[str]) -> None:
+    """Raise InputError if the whole of a record, of which parts are flown, is level in another unit or upside down."""
+    if _flies(whole) and not {"unit", "sign"} <= set(skip):
+        _, calm, size = _calmed(whole)
+        _refuse_unlevel(whole, calm, size, skip)
+
+
+def _refuse_unlevel(record: Samples, calm: Floats, size: Floats, skip: Collection[str]) -> None:
+    """Judge level flight, by the load without spikes and its size; a fragment of less than 2 s need hold none."""
+    if not _flies(record):
+        return
+    if "unit" not in skip:
+        _check_level(record, size)
+    if "sign" not in skip and record.vehicle == "aircraft":
+        _check_sign(record, calm @ record.axes[2], size)
 
 
 def _lasts(record: Samples) -> bool:

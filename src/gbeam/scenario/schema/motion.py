@@ -27,7 +27,7 @@ from gbeam.scenario.schema.fields import (
     refuse,
     wrong,
 )
-from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, Record, TorqueProfile
+from gbeam.scenario.schema.profile import AccelerationProfile, RateProfile, RecordOrPart, TorqueProfile
 
 Share = Annotated[float, Quantity("ratio", "positive")]
 Ratio = Annotated[float, Quantity("ratio", "positive")]
@@ -111,7 +111,10 @@ class Flight(Table):
     """The root accelerates as recorded or prescribed, and the axes do not turn."""
 
     kind: Literal["flight"] = Field(description="kind of the motion")
-    record: Record | None = optional("a measured record: { file, time, x, y, z, unit }; or acceleration")
+    record: RecordOrPart | None = optional(
+        "a measured record: { file, time, x, y, z, unit }, or { of, from, to, section }, another part of that of "
+        "another flight; or acceleration"
+    )
     acceleration: Components | None = optional("profiles: { x, y, z }, those left out zero; or record")
     smoothing: Time = Field(default=0.0, description="width of the kernel that rounds the corners; 0 leaves them sharp")
     scale: Ratio = Field(

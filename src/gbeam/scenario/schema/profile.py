@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar, get
 
 from pydantic import (
     AfterValidator,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
@@ -41,6 +42,7 @@ from gbeam.scenario.schema.fields import (
     Torque,
     TorqueRate,
     Turn3,
+    listed,
     optional,
     refuse,
     wrong,
@@ -204,6 +206,60 @@ else:
     _TimeUnit = _unit_of("time", TimeUnit, "1 s / 32768")
 
 
+def _word(value: Any) -> Any:
+    """A section as text, as it is found in its column."""
+    return f"{value:.12g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+
+
+_Section = Annotated[str, BeforeValidator(_word), WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]
+
+
+_From = Annotated[
+    Moment | None,
+    Field(
+        alias="from",
+        description="first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
+        "its times are times of day; the record's first if left out",
+    ),
+]
+_To = Annotated[
+    Moment | None,
+    Field(description="last time of the part that is flown, likewise; the record's last if left out"),
+]
+_OfSections = Annotated[
+    _Section | None,
+    Field(
+        description="section that is flown: the number or word that the column of sections holds through it; of one "
+        "that stands in several stretches, from and to choose"
+    ),
+]
+
+
+class PartOfRecord(Table):
+    """Another part of the record of another flight, whose file is read once and whose keys hold for both."""
+
+    of: str = Field(description="NAME of the flight that has the record itself")
+    begin: _From = None
+    to: _To = None
+    section: _OfSections = None
+
+
+class Rest(Table):
+    """A stretch of a record in which the vehicle rests, or its load is known."""
+
+    begin: Moment | None = optional(
+        "first time of the stretch, on the record's own clock; the record's first if left out", alias="from"
+    )
+    to: Moment | None = optional("last time of the stretch; the record's last if left out")
+    load: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
+        'the load there, base axes, such as ["0 g", "0 g", "1 g"], which specific force is at rest if left out; '
+        "acceleration is none then"
+    )
+    rates: tuple[AngularRate, AngularRate, AngularRate] = Field(
+        default=(0.0, 0.0, 0.0), description="the body's rates there, about base axes, such as of a rate table"
+    )
+
+
 class Record(Table):
     """A measured flight: a file of named columns."""
 
@@ -248,16 +304,20 @@ class Record(Table):
         "first and last time of a stretch at rest and level, on the record's own clock: the block is turned on by the "
         "shortest way, so that the specific force there points along z"
     )
+    rest: tuple[Rest, ...] = listed(
+        "stretches at rest, or of another known load: what the sensors of x, y, z, p, q and r read there besides is "
+        "their offset, and is subtracted; of several stretches it drifts on straight lines from one to the next, and on"
+    )
     arm: Place3 = Field(
         default=(0.0, 0.0, 0.0),
         description="from the instrument to the specimen's root, base axes: by p, q and r it adds α × r + ω × (ω × r)",
     )
-    begin: Moment | None = optional(
-        "first time of the part that is flown, on the record's own clock, such as 2 s, or 12:34:56.7 where "
-        "its times are times of day; the record's first if left out",
-        alias="from",
+    begin: _From = None
+    to: _To = None
+    section: _OfSections = None
+    sections: str | None = optional(
+        "column that numbers or names the sections of the file, such as an event marker or the number of a manoeuvre"
     )
-    to: Moment | None = optional("last time of the part that is flown, likewise; the record's last if left out")
     cutoff: Annotated[float, Quantity("frequency", "positive")] | None = optional(
         "cut-off of a zero-phase low-pass, -6 dB, such as 5 Hz; none if left out"
     )
@@ -274,7 +334,8 @@ class Record(Table):
     skip_checks: _Skipped = Field(
         default=False,
         description="true to take the record as it is, or a list of the checks to leave out: sampling (rate), spikes, "
-        "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names)",
+        "unit (size, level flight), sign (level flight is upwards), dropouts, columns (their names), rest (that the "
+        "load there is steady, and how far sensors are off)",
     )
 
     @model_validator(mode="after")
@@ -285,6 +346,9 @@ class Record(Table):
             refuse([((), wrong("time is missing", 'give the column of times, or sample_rate = "100 Hz"', mark="key"))])
         if self.sample_rate is not None and self.time_unit is not None:
             refuse([(("time_unit",), wrong("is given without time", "leave it out", mark="key"))])
+        if self.section is not None and self.sections is None:
+            hint = 'name the column that numbers them, such as sections = "event"'
+            refuse([(("section",), wrong("is given without sections", hint, mark="key"))])
         if self.bridge is not None and self.resample is None and self.cutoff is None:
             hint = 'add resample = "100 Hz", or a cutoff: what is bridged is evened out'
             refuse([(("bridge",), wrong("is given without resample and cutoff", hint, mark="key"))])
@@ -298,3 +362,14 @@ class Record(Table):
             hint = 'give p, q and r ("0" for none) and rate_unit = "rad/s" or "deg/s"'
             refuse([((), wrong(f"{missing} is missing beside {keys[0]}", hint, mark="key"))])
         return self
+
+
+def _source(value: Any) -> str:
+    """Tag of a record: ``part`` of one that names another flight's."""
+    return "part" if isinstance(value, PartOfRecord) or (isinstance(value, dict) and "of" in value) else "file"
+
+
+RecordOrPart = Annotated[
+    Annotated[Record, Tag("file")] | Annotated[PartOfRecord, Tag("part")],
+    Discriminator(_source),
+]

@@ -42,6 +42,7 @@ from gbeam.scenario.schema.fields import (
     wrong,
 )
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
+from gbeam.scenario.schema.profile import PartOfRecord, Record
 
 if TYPE_CHECKING:
     from gbeam.constants import Verb
@@ -334,6 +335,8 @@ class Environments(Titled):
         for name, motion in self.motion.items():
             if isinstance(motion, Centrifuge):
                 yield from self._tracking(name, motion)
+            if isinstance(motion, Flight) and isinstance(motion.record, PartOfRecord):
+                yield from self._part(name, motion.record)
         recorded = any(isinstance(motion, Flight) and motion.record for motion in self.motion.values())
         machines = any(isinstance(motion, Centrifuge) for motion in self.motion.values())  # which plan for these times
         if machines and self.response.duration is None and not recorded:
@@ -341,6 +344,21 @@ class Environments(Titled):
                 ("response",),
                 wrong("duration is missing", 'no record gives one: add duration = "16 s"', mark="key"),
             )
+
+    def _part(self, name: str, part: PartOfRecord) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """Errors of a record that is part of another flight's."""
+        flights = {key: each for key, each in self.motion.items() if isinstance(each, Flight)}
+        whole = [key for key, each in flights.items() if isinstance(each.record, Record)]
+        where = ("motion", name, "record")
+        if part.of not in whole:
+            message = "names a flight without a record of its own" if part.of in flights else "names no flight"
+            hint = advise(part.of, whole) if whole else "give the record itself: file, time, x, y, z and unit"
+            yield (*where, "of"), wrong(f"{{value}} {message}", hint)
+            return
+        record = flights[part.of].record
+        if part.section is not None and isinstance(record, Record) and record.sections is None:
+            hint = f'name the column that numbers them, such as sections = "event" in [motion.{part.of}.record]'
+            yield (*where, "section"), wrong("is given, and its record has no sections", hint, mark="key")
 
     def _tracking(self, name: str, motion: Centrifuge) -> Iterator[tuple[Loc, PydanticCustomError]]:
         flights = [name for name, candidate in self.motion.items() if isinstance(candidate, Flight)]

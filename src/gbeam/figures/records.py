@@ -1,0 +1,102 @@
+"""Records of flights: channels as their file has them, over what is flown, and a file with the parts that are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+
+from gbeam.constants import STANDARD_GRAVITY
+from gbeam.figures.description import Figure, Line, Panel, Span, of_motion
+from gbeam.printable import raised
+from gbeam.results.description import Channels, RecordSummary
+
+_SHOWN = {"m/s^2": (1 / STANDARD_GRAVITY, "g"), "rad/s": (180 / math.pi, "deg/s")}  # of what is flown
+_ROW, _ROWS, _LETTER = 0.12, 3, 0.01  # of a panel's height a row of names of parts, and of its width a letter
+_BETWEEN = 0.003  # of a panel's width: parts that touch are shaded so far apart
+_ALWAYS = (-math.inf, math.inf)
+
+
+def record(summary: RecordSummary, name: str = "", title: str = "") -> Figure:
+    """Describe a record's channels over the part that is flown, as its file has them, and below as they are flown."""
+    assert summary.as_read is not None and summary.as_flown is not None  # it was read from its file
+    read = _panels(summary.as_read, "as read", summary.span)
+    flown = _panels(summary.as_flown, "flown", summary.span)
+    spans = tuple(_within(_marked(summary), summary.span))
+    panels = [replace(panel, spans=spans) for pair in zip(read, flown, strict=True) for panel in pair]
+    section = f", {summary.sections_by} {summary.section}" if summary.section else ""
+    subject = of_motion(name, f"{Path(summary.file).name}{section}, as read in its own axes, and as flown in base axes")
+    off = ("offsets of the sensors subtracted",) if summary.offsets else ()
+    return Figure(title, subject, tuple(panels), (*summary.done, *off))
+
+
+def file(records: Mapping[str, RecordSummary], title: str = "") -> Figure:
+    """Describe all channels of a file over the whole of it, with the parts that flights, by name, are of it."""
+    summary = next(iter(records.values()))
+    assert summary.as_read is not None  # it was read from its file
+    parts = {name: each.span for name, each in records.items()}
+    width = float(np.ptp(summary.as_read.time))
+    apart = _BETWEEN * width
+    touching = [any(abs(start - end) < apart for start, _ in parts.values()) for _, end in parts.values()]
+    ends = [end - apart * touches for (_, end), touches in zip(parts.values(), touching, strict=True)]
+    flown = ((start, end, "flown") for (start, _), end in zip(parts.values(), ends, strict=True) if end > start)
+    spans = (*flown, *_marked(summary))
+    first, *others = (replace(panel, spans=spans) for panel in _panels(summary.as_read, "as read", _ALWAYS))
+    values = np.concatenate([each.y for each in first.lines])
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    height = high - low or 1.0
+    rows = _rows(parts, width)
+    names = tuple((place, high + (row + 0.7) * _ROW * height, name) for name, (place, row) in rows.items())
+    top = high + (max(row for _, row in rows.values()) + 1.4) * _ROW * height
+    first = replace(first, texts=names, limits=(low - 0.05 * height, top))
+    left_out = len(parts) - len(rows)
+    notes = (f"{left_out} names of parts are left out for want of room",) if left_out else ()
+    subject = f"{Path(summary.file).name}: all that is read of it, and the parts that are flown"
+    return Figure(title, subject, (first, *others), notes)
+
+
+def _rows(parts: Mapping[str, tuple[float, float]], width: float) -> dict[str, tuple[float, int]]:
+    """Middle of each part, s, and the row above the lines in which its name has room; without those that have none."""
+    ends, rows = [-math.inf] * _ROWS, dict[str, tuple[float, int]]()
+    for name, (first, last) in sorted(parts.items(), key=lambda each: sum(each[1])):
+        middle, half = (first + last) / 2, (len(name) + 1) * _LETTER * width / 2
+        row = next((k for k, end in enumerate(ends) if middle - half >= end), None)
+        if row is not None:
+            ends[row] = middle + half
+            rows[name] = middle, row
+    return rows
+
+
+def _panels(channels: Channels, what: str, span: tuple[float, float]) -> list[Panel]:
+    """Panels of the channels of each unit, in the order of their times within a span."""
+    order = np.argsort(channels.time, kind="stable")
+    time = channels.time[order]
+    order = order[(time >= span[0]) & (time <= span[1])]
+    panels = []
+    for unit, group in groupby(range(len(channels.names)), key=lambda k: channels.units[k]):
+        size, shown = _SHOWN.get(unit, (1.0, unit)) if what == "flown" else (1.0, unit)
+        lines = tuple(
+            Line(channels.time[order], size * channels.values[order, k], channels.names[k], colour=i % 3)
+            for i, k in enumerate(group)
+        )
+        panels.append(Panel(f"{what}, {raised(shown)}", lines))
+    return panels
+
+
+def _marked(summary: RecordSummary) -> Iterator[Span]:
+    """Yield stretches at rest, that the instrument was levelled by, and samples that were lost."""
+    yield from ((each.start, each.end, "at rest") for each in summary.offsets)
+    if summary.levelled is not None:
+        yield (*summary.levelled, "level")
+    yield from ((each.start, each.end, "lost samples") for each in summary.gaps)
+
+
+def _within(spans: Iterator[Span], ends: tuple[float, float]) -> Iterator[Span]:
+    """Yield what of some stretches lies between the ends of a part, s."""
+    for first, last, reason in spans:
+        if first < ends[1] and last > ends[0]:
+            yield max(first, ends[0]), min(last, ends[1]), reason
