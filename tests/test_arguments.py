@@ -259,8 +259,8 @@ class Samples:
             "plan": (
                 ("machine", self.centrifuge.over(0.0, 0.1), "flight"),
                 {
-                    "beam": self.beam, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5}, "title": "a",
-                    "envelope": None, "progress": None,
+                    "specimen": self.structure, "tolerance": 0.05, "tolerance_of": "peak", "accept": {"tip": 0.5},
+                    "title": "a", "progress": None,
                 },
             ),
             "ImportedModel": (

@@ -285,6 +285,7 @@ NOT_READ = {
     "values of profiles, which do not know what they are of":
         "Sine.amplitude SmoothStep.level trapezoid.level build_target.raw",
     "functions": "Choice.make Feedback.law Line.curvature",
+    "times by the names of motions": "Case.spans",
     "words": "Feedback.measure SolidMesh.read.mass_unit read_record.time_unit read_record.unit read_scenario.overrides",
     "matrices whose entries have several units":
         "ImportedModel.reduced.geometric Section.of_matrices.mass Section.of_matrices.stiffness",

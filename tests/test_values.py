@@ -117,9 +117,11 @@ def test_objects_are_shown_by_what_is_not_as_by_default(samples: Samples) -> Non
 def test_another_number_makes_another_value(samples: Samples) -> None:
     response = samples.responses[0]
     assert replace(response, step=0.5 * response.step) != response != samples.responses[1]
-    moved = response.displacement.copy()
+    moved = response.place.copy()
     moved[-1, -1, -1] += 1e-12
-    assert replace(response, displacement=moved) != response
+    assert replace(response, place=moved) != response
+    body = replace(response.body, displacement=response.displacement + 1e-12)
+    assert replace(response, bodies={"beam": body}) != response
     thicker = replace(samples.beam, section=gb.Section.rectangle(0.02, 0.0041))
     assert thicker != samples.beam and gb.assemble(thicker, "FOAM", axial=0, y=1, z=1) != samples.structure
     assert gb.Load(0.1, force=np.array([0.0, 0.0, 1.0])) == gb.Load(0.1, force=np.array([0.0, 0.0, 1.0]))

@@ -46,7 +46,7 @@ def ends_of(system: System) -> dict[str, Floats]:
 
 
 def _ends(body: RigidBody | Structure) -> dict[str, Floats]:
-    """The same of one body, from its root, its own axes."""
+    """Places (3,) m, by name, at one of which the load on an undeformed body is largest, from its root in its axes."""
     if isinstance(body, RigidBody):
         points = {f"the point {name}": np.asarray(point.at, dtype=float) for name, point in body.points.items()}
         return {"the root": np.zeros(3)} | points | {"the centre of mass": np.asarray(body.centre, dtype=float)}

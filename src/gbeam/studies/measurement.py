@@ -195,9 +195,9 @@ def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Ca
     may be left out where there is only one.
     """
     owners, (prefix, face, place) = case.system.flexible, strain.groups()
-    given = prefix.split(".")[:-1]
-    run = given.pop(0) if given and given[0] in case.environments else motion or _only_motion(case, name)
-    owner = ".".join(given) or (next(iter(owners)) if len(owners) == 1 else "")
+    names = prefix.split(".")[:-1]
+    run = names.pop(0) if names and names[0] in case.environments else motion or _only_motion(case, name)
+    owner = ".".join(names) or (next(iter(owners)) if len(owners) == 1 else "")
     if owner not in owners:
         raise InputError(OPTION, f"has the column {name!r}, which names no body", advise(owner, owners))
     body = owners[owner]

@@ -43,9 +43,9 @@ class Quantities:
         """Quantities of a response, given as the argument `where`; InputError if the ground rests, or loads are lacking
         where bodies hang on joints.
         """
-        own = sum(body.q.shape[1] for body in response.bodies.values())
+        deforming = sum(body.q.shape[1] for body in response.bodies.values())
         away = np.any(response.place[0, -1]) or np.any(response.attitude[0, -1, 1:])  # of an only body the root
-        jointed = response.several or len(response.coordinates) > own or bool(away)
+        jointed = response.several or len(response.coordinates) > deforming or bool(away)
         if response.base is None or (jointed and response.assembly is None):
             fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
             raise InputError(where, "is on a ground at rest, or without loads", fix)
@@ -103,11 +103,11 @@ class Quantities:
         histories = {"tip": self.displacement[:, point], "root_force": force, "root_moment": moment}
         if not self.response.q.shape[1]:
             del histories["tip"]  # a rigid one stays
-        found = dict[str, Peak]()
+        largest = dict[str, Peak]()
         for name, vectors in histories.items():
             peak = _within(time, known[name].size) if name in known else None
-            found[name] = peak or (UNKNOWN if vectors is None else _first(*vector_peaks(time, vectors[part])))
-        return found | {"stress": max(self._stresses(time, part), key=_by_size, default=UNKNOWN)}
+            largest[name] = peak or (UNKNOWN if vectors is None else _first(*vector_peaks(time, vectors[part])))
+        return largest | {"stress": max(self._stresses(time, part), key=_by_size, default=UNKNOWN)}
 
     def _known(self, point: int) -> dict[str, VectorPeaks]:
         """Peaks over all steps, by name, that the response has; `point` is that of "tip"."""
