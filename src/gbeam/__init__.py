@@ -13,7 +13,7 @@ import re
 from importlib import import_module
 from pathlib import Path
 
-__version__ = "0.3.0.dev0"
+__version__ = "0.3.0"
 
 # Every public name, and the module it is in: as the stub has them, which type checkers read.
 _STUB = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
