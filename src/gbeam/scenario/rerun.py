@@ -130,6 +130,11 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
     from gbeam.io.netcdf import stored
 
     origin = origin_of(path, before)
+    assert origin.environment is not None
+    if not any(name.rpartition("/")[2] == "place" for name in before.variables):
+        version = origin.environment.gbeam
+        problem = f"holds responses in the layout of gbeam {version}, which is not read any more"
+        raise InputError(str(path), problem, f"compute it again by gbeam {version}, or run its scenario anew")
     with TemporaryDirectory(prefix="gbeam-") as folder:
         changes, defaults = as_read(str(path), origin, Path(folder))
         scenario = loads(origin.scenario, str(path), [*origin.overrides, *changes], folder=folder)
