@@ -32,13 +32,14 @@ def test_json_contract(fast: Path, gbeam: Call) -> None:
     assert facts["title"] == "fast" and facts["outcome"] == "done" and facts["files"] == []
     assert list(facts["motions"]) == ["flight", "spin"]
     for motion in facts["motions"].values():
-        assert motion["outcome"] == "done" and motion["message"] == "" and motion["model"] == "FOAM"
+        body = motion["bodies"]["beam"]
+        assert motion["outcome"] == "done" and motion["message"] == "" and body["model"] == "FOAM"
         assert motion["error_estimate"] >= 0 and motion["step"] > 0
         for axis in "xyz":
-            assert set(motion["tip"][axis]) == {"max_abs", "time_of_max", "residual_amplitude"}
-            assert motion["tip"][axis]["residual_amplitude"] is None  # the scenario has no time to measure it from
+            assert set(body["tip"][axis]) == {"max_abs", "time_of_max", "residual_amplitude"}
+            assert body["tip"][axis]["residual_amplitude"] is None  # the scenario has no time to measure it from
     # 6 g on a cantilever with one mode: close to w L⁴ / 8 EI = 1.721 mm.
-    assert facts["motions"]["flight"]["tip"]["z"]["max_abs"] == pytest.approx(1.72e-3, rel=0.02)
+    assert facts["motions"]["flight"]["bodies"]["beam"]["tip"]["z"]["max_abs"] == pytest.approx(1.72e-3, rel=0.02)
     spin = facts["motions"]["spin"]
     assert spin["axes"]["1"]["rate"]["max_abs"] == pytest.approx((6 * 9.80665 / 3.3) ** 0.5)
     assert spin["tracking_error"]["max"] < 1e-9 and spin["not_followed"] == []
@@ -66,7 +67,7 @@ def test_stress_yield_and_fatigue(fast: Path, gbeam: Call) -> None:
     stress = 6 * (2700 * 0.02 * 0.004 * 6 * 9.80665 * 0.3**2 / 2) / (0.02 * 0.004**2)
     material = f"beam.material.yield_strength={2 * stress}"
     answer = gbeam("run", fast, "--json", "--set", material, "--set", "beam.material.fatigue_exponent=3")
-    flight = answer.json["motions"]["flight"]
+    flight = answer.json["motions"]["flight"]["bodies"]["beam"]
     loads, tip = flight["loads"], flight["tip"]
     assert set(tip["size"]) == {"max_abs", "time_of_max"} and tip["size"]["max_abs"] >= tip["z"]["max_abs"]
     assert [each["at"] for each in flight["stations"]] == [0.3]
@@ -156,9 +157,9 @@ def test_the_peak_is_that_of_the_whole_flight(pulls: Any) -> None:
     """A machine that spins up from rest: no peak of the flight vanishes in that."""
     flown = pulls
     (comparison,) = flown["comparisons"]
-    tip = comparison["peaks"]["tip"]
-    assert tip["flight"] == pytest.approx(flown["motions"]["flight"]["tip"]["z"]["max_abs"], rel=1e-3)
-    assert tip["time_flight"] == pytest.approx(flown["motions"]["flight"]["tip"]["z"]["time_of_max"], abs=0.01)
+    tip, peak = comparison["peaks"]["tip"], flown["motions"]["flight"]["bodies"]["beam"]["tip"]["z"]
+    assert tip["flight"] == pytest.approx(peak["max_abs"], rel=1e-3)
+    assert tip["time_flight"] == pytest.approx(peak["time_of_max"], abs=0.01)
     first = comparison["accounting"]["peaks"][0]
     assert first["load"] == pytest.approx(98.0665, rel=1e-3)
     lost = "the largest peak is missed"
@@ -169,8 +170,9 @@ def test_json_of_a_hub(hub: Path, gbeam: Call) -> None:
     facts = gbeam("run", hub, "--json").json
     slew = facts["motions"]["slew"]
     assert slew["hub"]["rate_max"] > 0 and slew["hub"]["angle_end"] > 0
-    assert slew["tip"]["y"]["residual_amplitude"] > 0
-    assert slew["loads"]["beam_torque"]["max_abs"] > slew["loads"]["root_moment"]["z"]["max_abs"] > 0
+    body = slew["bodies"]["beam"]
+    assert body["tip"]["y"]["residual_amplitude"] > 0
+    assert body["loads"]["beam_torque"]["max_abs"] > body["loads"]["root_moment"]["z"]["max_abs"] > 0
     assert facts["comparisons"] == []
 
 

@@ -96,8 +96,8 @@ def test_a_modal_test_is_a_specimen(folder: Path) -> None:
     modes = gb.modes(case.subject, case.motions["turn"])
     np.testing.assert_allclose(modes.damping_ratio, [0.01, 0.02], rtol=1e-9)
     response = gb.study(case).responses["turn"]
-    assert response.points == ("middle", "tip")
-    np.testing.assert_allclose(response.at("middle"), response.tip, atol=1e-12)
+    assert response.body.points == ("middle", "tip")
+    np.testing.assert_allclose(response.body.at("middle"), response.tip, atol=1e-12)
     rest = gb.static(case.subject, acceleration=(0, 0, 10.0))
     assert rest.tip[2] == pytest.approx(-10.0 / (40 * np.pi) ** 2, rel=1e-9)
     assert any("no geometric stiffness" in each for each in response.warnings)
@@ -260,11 +260,11 @@ def test_control_points_of_a_scenario_judge_a_box(folder: Path) -> None:
     sensed.save(folder / "read.nc")
     kept = xarray.open_datatree(folder / "read.nc")["motions/machine"]
     np.testing.assert_allclose(kept["sensor_acceleration"].sel(sensor="lid"), readings.acceleration[:, 0])
-    assert run.points == ("lid", "edge", "tip") and run.accelerations is not None
+    assert run.body.points == ("lid", "edge", "tip") and run.body.acceleration is not None
     place = np.array([0.15, 0, 0])
     w, alpha, a = run.base.w_WB_B, run.base.alpha_WB_B, run.base.a_WO_B
     felt = a + np.cross(alpha, place) + np.cross(w, np.cross(w, place))
-    np.testing.assert_allclose(run.accelerations[:, 1], felt, atol=1e-9 * np.abs(felt).max())
+    np.testing.assert_allclose(run.body.acceleration[:, 1], felt, atol=1e-9 * np.abs(felt).max())
 
 
 @pytest.mark.parametrize(

@@ -277,7 +277,8 @@ def test_a_board_of_shells_is_swept_over_its_thickness(folder: Path) -> None:
     text = BODY.replace("arm.inp", "arm.msh") + 'coarser = "coarse.msh"\nthickness = "2 mm"\n' + FLIGHT
     case = case_of(folder, text)
     study = gb.study(case)
-    assert study.responses["turn"].solid is not None and study.responses["turn"].surface is not None
+    body = study.responses["turn"].body
+    assert body.solid is not None and body.surface is not None
     sweep = gb.sweep(
         folder / "scenario.toml", {"bodies.arm.thickness": ["1 mm", "2 mm"]}, ["modes[0].frequency"], verb="modes"
     )

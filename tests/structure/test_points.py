@@ -27,24 +27,30 @@ def response() -> gb.Response:
 def test_points_are_stations_with_names(response: gb.Response) -> None:
     plain = replace(BEAM, points=[], masses=[replace(SENSOR, name="")])
     same = gb.simulate(gb.assemble(plain, "FOAM", z=2, stations=[0.12, 0.2]), FLIGHT, **RUN)
-    assert response.points == ("camera", "sensor", "tip") and same.points == ("120 mm", "200 mm", "tip")
+    assert response.points == ("beam.camera", "beam.sensor", "beam.tip", "beam.root")
+    body = response.body
+    assert body.points == ("camera", "sensor", "tip") and same.body.points == ("120 mm", "200 mm", "tip")
     np.testing.assert_array_equal(response.displacement, same.displacement)
-    for k, name in enumerate(response.points):
-        np.testing.assert_array_equal(response.at(name), same.displacement[:, k])
-    np.testing.assert_array_equal(response.at("tip"), response.tip)
+    for k, name in enumerate(body.points):
+        np.testing.assert_array_equal(body.at(name), same.displacement[:, k])
+        place = response.at(f"beam.{name}") - [body.stations[k], 0.0, 0.0]
+        np.testing.assert_allclose(place, body.at(name), atol=1e-12 * BEAM.length)
+    np.testing.assert_array_equal(body.at("tip"), response.tip)
     with pytest.raises(gb.InputError, match="choose from camera, sensor, tip"):
-        response.at("lens")
+        body.at("lens")
+    with pytest.raises(gb.InputError, match=r"point is 'tip'"):  # a place is not taken for a deflection
+        response.at("tip")
 
 
 def test_figures_of_points_have_their_names(response: gb.Response) -> None:
     from gbeam.results.facts import facts_of
 
-    known = facts_of(response)
+    known = facts_of(response)["bodies"]["beam"]
     assert [row["name"] for row in known["stations"]] == ["camera", "sensor", "tip"]
     assert list(known["points"]) == ["camera", "sensor"]  # the tip has its place
-    largest = np.abs(response.at("camera")[:, 2]).max()
+    largest = np.abs(response.body.at("camera")[:, 2]).max()
     assert known["points"]["camera"]["z"]["max_abs"] == pytest.approx(largest, rel=1e-3)
-    assert list(response.to_xarray()["station_name"].values) == ["camera", "sensor", "tip"]
+    assert list(response.to_xarray()["beam_station_name"].values) == ["camera", "sensor", "tip"]
 
 
 def test_names_that_cannot_be_are_refused() -> None:

@@ -86,7 +86,7 @@ def test_a_specimen_pushed_along_x_says_so_everywhere(gbeam: Callable[..., Answe
     )
     for answer, place in ((gbeam("static", file), ", 0 m"), (gbeam("run", file, "--out", tmp_path), " at 0 m")):
         assert "-7.943 to" in answer.out and f"compression{place}" in answer.out
-    facts = gbeam("run", file, "--json").json["motions"]["flight"]["loads"]
+    facts = gbeam("run", file, "--json").json["motions"]["flight"]["bodies"]["beam"]["loads"]
     assert facts["stress"]["compression"]["min"] == pytest.approx(-7.943e6, rel=1e-3)
     assert facts["sections"][0]["compression"] == pytest.approx(-7.943e6, rel=1e-3)
     assert facts["root_force"]["x"]["max_abs"] == pytest.approx(root, rel=1e-6)
