@@ -86,9 +86,7 @@ class MovedBody(DeflectedBody):
         return self.body.peaks
 
     def strain_at(self, point: str, along: Numbers = (1.0, 0.0, 0.0)) -> Floats:
-        """Return what a strain gauge at a named `point` of the body reads `along` a direction, (t,); see
-        :meth:`BodyResponse.strain_at`.
-        """
+        """Return what a strain gauge at a named `point` of the body reads `along` a direction, (t,)."""
         return self.body.strain_at(point, along)
 
 
