@@ -312,9 +312,9 @@ def test_point_masses_points_and_origin() -> None:
     # The corner's own place is a little off that of the section, on whose nodes the mass is spread evenly.
     assert pulled == pytest.approx(0.1 * 2.0**2 * 2.0 * L / (STIFF.youngs_modulus * B * H), rel=1e-2)
     flown = gb.simulate(model.structure, gb.Flight(z=constant(1.0)), duration=0.1, step=0.01)
-    assert flown.points == ("middle", "tip") and flown.at("middle").shape == flown.tip.shape
+    assert flown.body.points == ("middle", "tip") and flown.body.at("middle").shape == flown.tip.shape
     # (3 x²L − x³)/6EI of the force at the end.
-    assert flown.at("middle")[-1, 2] / flown.tip[-1, 2] == pytest.approx(5 / 16, rel=2e-3)
+    assert flown.body.at("middle")[-1, 2] / flown.tip[-1, 2] == pytest.approx(5 / 16, rel=2e-3)
     system = gb.linearize(model.structure, gb.Flight(z=constant(1.0)))
     assert "middle_z" in [each.name for each in system.outputs]
 

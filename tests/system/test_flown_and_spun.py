@@ -52,7 +52,7 @@ def test_two_beams_on_a_rigid_body_are_flown_and_spun() -> None:
     mass = 0.5 + 2 * 2700 * 0.3 * 0.02 * 0.004
     assert compared.peaks["root_force"].flight == pytest.approx(70.0 * mass, rel=0.02)
     assert 0 < compared.relative[2] < 0.1 and compared.root is not None
-    largest = max(each.peaks.largest_stress.value for each in flight.beams.values())  # type: ignore[union-attr]
+    largest = max(each.peaks.loads.largest_stress.value for each in flight.bodies.values())  # type: ignore[union-attr]
     assert compared.peaks["stress"].flight == pytest.approx(largest, rel=1e-3)
     assert compared.shock is not None
     control = gb.compare(flight, spun, point="left.tip", control={"left.tip": 1.0, "right.tip": 1.0}).shock
@@ -60,7 +60,7 @@ def test_two_beams_on_a_rigid_body_are_flown_and_spun() -> None:
     assert gb.compare(flight, spun).max_difference.shape == (3,)
     with pytest.raises(gb.InputError, match="choose from"):
         gb.compare(flight, spun, point="left.top")
-    with pytest.raises(gb.InputError, match="a system and a beam"):
+    with pytest.raises(gb.InputError, match="of another specimen"):
         gb.compare(flight, gb.simulate(structure, MACHINE, **OPTIONS))
 
 

@@ -71,7 +71,7 @@ def test_limits_at_points_of_a_mesh_in_a_system_are_the_specimens() -> None:
 def test_the_larger_stress_of_a_mesh_and_a_beam_is_judged() -> None:
     flight, machine = both()
     compared = gb.compare(flight, machine, point="strip.tip", damage_at="rod.half")
-    largest = max(flight.bodies["strip"].solid.worst.von_mises, flight.bodies["rod"].peaks.largest_stress.value)
+    largest = max(flight.bodies["strip"].solid.worst.von_mises, flight.bodies["rod"].peaks.loads.largest_stress.value)
     assert compared.peaks["stress"].flight == pytest.approx(largest, rel=1e-3)
     assert compared.fatigue is not None and compared.fatigue.place == "at rod.half"
     alone = gb.compare(*runs(beam()), damage_at="half").fatigue
@@ -103,7 +103,7 @@ def test_a_scenario_of_a_mesh_on_a_plate_is_judged_by_its_stress(
     scenario.write_text(text.replace("[response]", joints + machine + "[response]"), encoding="utf-8")
     assert main(["run", str(scenario), "--out", str(tmp_path / "out"), "--report", "--verbose"]) == 1
     printed = capsys.readouterr()
-    assert "bar: von Mises" in printed.out and "NOT ACCEPTED: stress" in printed.err
+    assert "von Mises" in printed.out and "NOT ACCEPTED: stress" in printed.err
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "von Mises stress" in page and "margin" in page
 
@@ -128,7 +128,7 @@ def test_at_rest_a_mesh_has_the_stress_of_its_section() -> None:
 def test_a_mesh_in_a_system_is_drawn_where_it_is() -> None:
     """Its surface moves about its root as that of the specimen alone does, in the machine that carries both."""
     alone, _ = shown(gb.Study("", {"machine": specimen()[1]}, ()))
-    among, numbers = shown(both()[1])
+    among, _ = shown(both()[1])
     (one,), (two,) = alone["scene"]["motions"], among["scene"]["motions"]
     ours = next(part for part in two["parts"] if "surface" in part)
 
@@ -136,8 +136,7 @@ def test_a_mesh_in_a_system_is_drawn_where_it_is() -> None:
         assert part["surface"]["largest"] == pytest.approx(specimen()[1].solid.worst.von_mises, rel=2e-3)
         assert motion["arm"] == 3.3 and motion["controlPlace"] == [0.22, 0.0, 0.0]
         assert motion["extent"][1][0] == pytest.approx(L) and motion["axes"]["shape"][1] == 3
-    frame = numbers.array[ours["frame"]["at"] :][:10]
-    np.testing.assert_allclose(frame, [0, 0, 0, 1, 0, 0, 0, 0, 0, 0], atol=1e-12)
+    assert "frame" not in ours  # its root rests on the base
     assert one["largest"] == pytest.approx(two["largest"], rel=2e-3)
 
 

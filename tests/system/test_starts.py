@@ -176,9 +176,10 @@ def test_commands_say_how_it_begins(gbeam: Callable[..., Answer], tmp_path: Path
     words = "begins undeformed (it floats), joints at their initial values"
     answer = gbeam("run", file, "--out", tmp_path)
     after = answer.out[answer.out.index("ground: done") :].splitlines()
-    assert after[1].strip() == words
+    assert words in [line.strip() for line in after]
     relief = gbeam("run", file, "--set", "response.initial.state=relief", "--json").json["motions"]["ground"]
-    assert relief["initial"] == relief["lines"][0] == "begins in inertia relief, joints at their initial values"
+    assert relief["initial"] == "begins in inertia relief, joints at their initial values"
+    assert relief["initial"] in relief["lines"]
     refused = gbeam("run", file, "--set", "response.initial.state=releif")
     assert refused.status == 2 and "did you mean 'relief'" in refused.err
     drawn_aside = gbeam("run", file, "--set", 'response.initial.displacement={"panel.tip" = {y = "2 mm"}}', "--json")

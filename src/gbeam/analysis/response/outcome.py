@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gbeam.analysis.accuracy.estimate import NO_MESH
 from gbeam.analysis.response.loss import holds, worst_loss
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
@@ -160,7 +161,8 @@ def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
         return ()
     if math.isnan(errors.displacement.step) and not run.missed:
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
-    return doubts(errors, settings.tolerance, _cure_of_step(settings))
+    warnings = doubts(errors, settings.tolerance, _cure_of_step(settings))
+    return tuple(warning for warning in warnings if warning != NO_MESH)  # which is said of the error itself
 
 
 def _cure_of_step(settings: ResponseSettings) -> str:

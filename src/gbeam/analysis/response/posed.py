@@ -215,7 +215,7 @@ def prepared(structure: Structure | System, motion: Motion | None, settings: Res
     if motion is not None:
         motion = motion.over(settings.start, settings.start + settings.duration)
     subject = subject_of(structure, motion)
-    if subject.body and motion is None:
+    if motion is None and structure is not subject.system:
         raise InputError("motion", "is missing", "give a Flight, a Hub or a Centrifuge; Flight(z=0.0) is at rest")
     structure.require_damping("the response")
     if subject.ground is not None and subject.ground.free:

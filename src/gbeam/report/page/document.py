@@ -23,7 +23,7 @@ from gbeam.report.page.scene import scene, shapes
 from gbeam.report.words import as_json
 from gbeam.results.result import Result
 
-VERBS = {  # of kinds that have a page
+VERBS = {  # of kinds that have a page of their own
     "Study": "run",
     "Comparison": "run",
     "SolidStress": "run",
@@ -54,7 +54,7 @@ def html(
     """Return a whole page; `figures` are read from `facts` and `variables` where they are not given."""
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = facts.get("form", {}).get("kind", "")
-    if kind not in VERBS:
+    if not kind:
         fix = f"give the result of {', '.join(dict.fromkeys(f'gbeam {verb}' for verb in VERBS.values()))}"
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
@@ -62,7 +62,7 @@ def html(
     header: dict[str, Any] = {"plots": [], "maps": []}
     described = figures_in(kind, facts, variables or {}) if figures is None else figures
     plots = drawn((each() for each in described.values()), numbers, header)
-    verb = VERBS[kind]
+    verb = VERBS.get(kind) or (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
     header |= viewer(kind, facts, variables or {}, numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
     warned, noted = remarks_of(facts)
