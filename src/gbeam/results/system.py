@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -9,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from gbeam.guards.checks import index_of
-from gbeam.results.declared import declared, labels, part, quantity
+from gbeam.results.declared import fact, labels, part, quantity
 from gbeam.results.parts import VectorPeaks
 from gbeam.results.result import Floats, Part
 
@@ -27,22 +28,16 @@ class Invariants(Part):
     )
     energy: Floats = quantity("J", "energy: kinetic, elastic and of gravity", "time form")
 
-    def _drift(self, history: Floats) -> float:
-        size = np.abs(history).max(initial=0.0)
-        return float(np.abs(history - history[0]).max(initial=0.0) / size) if size > 0 else 0.0
-
-    @declared("", "largest change of the momentum, over its largest size", role="fact")
-    def momentum_change(self) -> float:
-        return self._drift(self.momentum)
-
-    @declared("", "largest change of the angular momentum, over its largest size", role="fact")
-    def angular_momentum_change(self) -> float:
-        return self._drift(self.angular_momentum)
-
-    @declared("", "largest change of the energy, over the largest of its parts", role="fact")
-    def energy_change(self) -> float:
-        total, size = self.energy.sum(axis=1), np.abs(self.energy).max(initial=0.0)
-        return float(np.abs(total - total[0]).max(initial=0.0) / size) if size > 0 else 0.0
+    momentum_change: float = fact(
+        "largest change of the momentum at any step, over its largest size", note="NaN where a run is traced",
+        default=math.nan,
+    )  # fmt: skip
+    angular_momentum_change: float = fact(
+        "largest change of the angular momentum at any step, over its largest size", default=math.nan
+    )
+    energy_change: float = fact(
+        "largest change of the energy at any step, over the largest of its parts", default=math.nan
+    )
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -213,8 +213,14 @@ class Histories:
     def sampled(self) -> dict[str, Any]:
         """Histories of points, coordinates, efforts and the ground's load at the response's times, by field."""
         every = {key: values[self.kept] for key, values in self.over_time.items()}
-        constant = [every.pop(key) for key in ("momentum", "angular_momentum", "energy") if key in every]
-        return every | ({"invariants": Invariants(*constant)} if constant else {})
+        if "energy" not in every:
+            return every
+        names = "momentum", "angular_momentum", "energy"
+        kept, steps = ([values.pop(name) for name in names] for values in (every, dict(self.over_time)))
+        changes = (
+            [] if self.run.traced else [_change(steps[0]), _change(steps[1]), _change(steps[2].sum(axis=1), steps[2])]
+        )
+        return every | {"invariants": Invariants(*kept, *changes)}
 
 
 def kind_of(motion: Any) -> str:
@@ -303,6 +309,12 @@ def _stated(run: Run, errors: Errors, outcome: str) -> float:
 def _sampled(loop: Loop, steps: Indices) -> Loop:
     """Record of the controllers at some of the steps."""
     return replace(loop, **{key: values[steps] for key, values in along_time(loop).items()})
+
+
+def _change(history: Floats, parts: Floats | None = None) -> float:
+    """Largest change of a history (t, ...) from its start, over its largest size or that of its parts."""
+    size = np.abs(history if parts is None else parts).max(initial=0.0)
+    return float(np.abs(history - history[0]).max(initial=0.0) / size) if size > 0 else 0.0
 
 
 def _during(over_time: Mapping[str, Any], part: slice) -> dict[str, Any]:
