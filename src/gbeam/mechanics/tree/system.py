@@ -374,8 +374,8 @@ class System(Value):
     def require_damping(self, answer: str) -> None:
         """Raise InputError where a body has no damping ratio and an `answer` depends on it."""
         for name, body in self.flexible.items():
-            own = self.alone is body and name == "beam"  # [beam] of a scenario
-            with naming("beam.damping_ratio" if own else f"bodies.{name}.damping_ratio"):
+            table = "beam" if self.alone is body and name == "beam" else f"bodies.{name}"  # of a scenario
+            with naming(f"{table}.damping_ratio"):
                 body.require_damping(answer)
 
     @property
