@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from gbeam.guards.limits import BOUNDLESS
 from gbeam.mechanics.plausibility import bent_far, elastic_bend, of_first_order
 from gbeam.mechanics.structure import Structure
 from gbeam.results.body_response import BodyResponse
-from gbeam.results.errors import Errors
+from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.parts import Base, LoadPeaks
 from gbeam.results.result import NOT_KNOWN
 
@@ -161,6 +161,8 @@ def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
         return ()
     if math.isnan(errors.displacement.step) and not run.missed:
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
+    if run.posed.system.alone is not None:  # all that its points move is its deflection
+        errors = replace(errors, place=ErrorEstimate())
     warnings = doubts(errors, settings.tolerance, _cure_of_step(settings))
     return tuple(warning for warning in warnings if warning != NO_MESH)  # which is said of the error itself
 
