@@ -86,8 +86,8 @@ def test_stress_of_a_mesh_in_a_system_stands_in_every_output(tmp_path: Path) -> 
     assert "strip: von Mises" in words and "strip: margin on yield not known" in words
     flight.save(tmp_path / "flight.nc")
     with xr.open_datatree(tmp_path / "flight.nc") as tree:
-        assert tree["strip_point_von_mises"].dims == ("time", "strip_point")
-        np.testing.assert_allclose(tree["strip_von_mises"], flight.bodies["strip"].solid.von_mises, rtol=1e-6)
+        assert tree["strip_solid_point_von_mises"].dims == ("time", "strip_point")
+        np.testing.assert_allclose(tree["strip_solid_von_mises"], flight.bodies["strip"].solid.von_mises, rtol=1e-6)
 
 
 def test_a_scenario_of_a_mesh_on_a_plate_is_judged_by_its_stress(
