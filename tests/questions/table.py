@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.system.histories import beams_of
 from gbeam.errors import GbeamError
 from gbeam.questions import QUESTIONS
 from gbeam.report.page.result import report_of, shown
@@ -271,7 +270,7 @@ def _initial(scenario: Scenario) -> Any:
 def _stations(scenario: Scenario) -> Any:
     kind = scenario.kind
     text = kind.alone()
-    if beams_of(scenario.alone.system):
+    if any(body.sections is not None for body in scenario.alone.system.flexible.values()):
         text = text.replace('kind = "beam"\n', 'kind = "beam"\nstations = ["50 mm"]\n')
     response = response_of(scenario.case(text))
     response.point("point", kind.point)

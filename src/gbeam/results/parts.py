@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from gbeam.arrays.tree import record
-from gbeam.results.declared import BESIDE, INSIDE, along_time, declared, fact, internal, part, quantity
+from gbeam.results.declared import BESIDE, INSIDE, declared, fact, internal, part, quantity
 from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
@@ -356,10 +356,6 @@ class Loads(Part):
     )
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
     fatigue_exponent: float = internal("", "exponent of the material's Wöhler curve", default=math.nan)
-
-    def during(self, part: slice) -> Loads:
-        """Return the loads at a slice of the times."""
-        return replace(self, **{name: values[part] for name, values in along_time(self).items()})
 
     @declared("Pa", "largest size of the normal stress over the section", "time section", key="")
     def stress(self) -> Floats:

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, Self, TypeVar
 
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Complex as Complex
 from gbeam.arrays.types import Flags as Flags
 from gbeam.arrays.types import Floats as Floats
 from gbeam.guards.arguments import typed
-from gbeam.results.declared import document, fact
+from gbeam.results.declared import along_time, document, fact
 
 if TYPE_CHECKING:
     from gbeam.plots import Panels
@@ -72,6 +72,11 @@ class Part(Value):
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         document(cls)
+
+    def during(self, times: Any) -> Self:
+        """Return the part at some of its `times`, an index or slice of them."""
+        part: Any = self
+        return replace(part, **{name: values[times] for name, values in along_time(self).items()})
 
     def __repr__(self) -> str:
         return brief(self)

@@ -29,12 +29,11 @@ from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import level_factor, notes_on
 from gbeam.progress import Progress
 from gbeam.results.body_response import BodyResponse
-from gbeam.results.declared import along_time
 from gbeam.results.errors import Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Influence, Loads, Peaks
+from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
-from gbeam.results.system import Invariants, Loop
+from gbeam.results.system import Invariants
 from gbeam.structure.beam import names_at
 
 Known = Mapping[str, tuple[Floats, Peaks]]  # displacements (t, s, 3) m at all steps, and their peaks, by the body
@@ -102,14 +101,14 @@ class Histories:
         """Describe a body that deforms, or a rigid specimen."""
         run, posed, traced = self.run, self.run.posed, self.run.traced
         structure, state, settings = posed.system.flexible[name], self.bodies[name], posed.settings
-        motion, alone = posed.subject.motion, posed.system.alone is structure
+        motion = posed.subject.motion if name == posed.subject.body else None  # what carries a body that is alone
         kept, columns = state.at(self.kept), posed.columns(name)
         if name in self.known:
             moved, peaks = self.known[name]
         else:
             moved = structure.displacement(run.flight.q[:, columns])
             (peaks,) = displacement_peaks(structure, [run.flight], columns, moved[None], settings.residual_from)
-        loads = self._loads(name) if settings.loads else None
+        loads = self._loads_in(name, state, self.time) if settings.loads else None
         if loads is not None and not traced:
             at = self._loads_between(name)
             peaks = replace(peaks, loads=load_peaks(loads.during(self.flown), run.flight.time, at, self.every))
@@ -137,26 +136,16 @@ class Histories:
             frequencies=structure.rest[0],
             damping_ratio=structure.damping_ratio,
             shapes=None if source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
-            influence=influence(structure)
-            if isinstance(motion, Centrifuge) and alone and straight and not traced
-            else None,
-            outline=outline_of(structure, motion if alone or name == posed.subject.body else None, time, kept.q)
-            if drawn
-            else None,
+            influence=influence(structure) if isinstance(motion, Centrifuge) and straight and not traced else None,
+            outline=outline_of(structure, motion, time, kept.q) if drawn else None,
             **(self._recovered(name, state, peaks) if drawn else {}),
         )
 
-    def _loads(self, name: str) -> Loads:
-        """Loads along a body at the steps that are looked at, of a beam on a hub with the torque on it."""
-        return self._loads_in(name, self.bodies[name], self.time)
-
     def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
         """Loads along a body in a state at times (t,) s, of a beam on a hub with the torque on it."""
-        subject, structure = self.run.posed.subject, self.run.posed.system.flexible[name]
-        loads = loads_of(structure, state, time)
-        if name != subject.body and subject.system.alone is not structure:
-            return loads
-        return about_the_hub(loads, subject.motion, state.base.alpha_WB_B)
+        subject = self.run.posed.subject
+        loads = loads_of(subject.system.flexible[name], state, time)
+        return about_the_hub(loads, subject.motion, state.base.alpha_WB_B) if name == subject.body else loads
 
     def _loads_between(self, name: str) -> Callable[[Indices], Loads]:
         """Function that returns the loads along a body at indices of all steps of the flight."""
@@ -181,18 +170,20 @@ class Histories:
             parts["solid"] = parts["solid"].sampled(self.kept)
         return parts
 
-    def hub(self, bodies: Mapping[str, BodyResponse]) -> HubResult | None:
-        """Motion of the hub that carries the body; None without one."""
+    def hub(self, base: Base | None, bodies: Mapping[str, BodyResponse]) -> HubResult | None:
+        """Motion of the hub that carries the body, by that of the ground, which rests under a free one; None without a
+        hub.
+        """
         over_time, time = self.over_time, self.time[self.kept]
         motion: Any = self.run.posed.subject.motion
         if motion is None or motion.kind != "hub":
             return None
-        if motion.free:
+        if base is None:
             angle, rate = (over_time[key][self.kept][:, 0] for key in ("q", "qd"))
             acceleration = self.run.trajectory.at(self.steps[self.kept]).qdd[:, 0]
             fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
             return HubResult(angle, rate, acceleration, motion.torque(time), fastest=fastest)
-        axis, base = motion.mount.R_HB[2], motion.base(time)
+        axis = motion.mount.R_HB[2]
         torque = next((each.loads.drive_torque for each in bodies.values() if each.loads is not None), None)
         return HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque)
 
@@ -212,7 +203,7 @@ class Histories:
 
     def sampled(self) -> dict[str, Any]:
         """Histories of points, coordinates, efforts and the ground's load at the response's times, by field."""
-        every = {key: values[self.kept] for key, values in self.over_time.items()}
+        every = _during(self.over_time, self.kept)
         if "energy" not in every:
             return every
         names = "momentum", "angular_momentum", "energy"
@@ -245,6 +236,7 @@ def response_of(
     motion, read = subject.motion, Histories.of(run, name, known)
     time = read.time[read.kept]
     bodies = {body: read.body(body) for body in system.flexible}
+    base = None if posed.motion is None else posed.motion.base(time)
     axes = None if traced or not isinstance(motion, Centrifuge) else axes_of(motion, time)
     outcome, message, errors, warnings = "done", "", Errors(), tuple[str, ...]()
     if not traced:
@@ -255,8 +247,8 @@ def response_of(
             from_run += stressed_and_bent(run, bodies)
             errors, of_bodies = run.errors(step_errors, progress)
             from_run += of_bodies + inaccuracies(run, errors) + effort(settings, len(run.flight.time) - 1, run.stride)
-        base = next((each.base for body, each in bodies.items() if body == subject.body), None)
-        inputs = subject.doubts(name, base, span=(time[0], time[-1]))
+        root = next((each.base for body, each in bodies.items() if body == subject.body), None)
+        inputs = subject.doubts(name, root, span=(time[0], time[-1]))
         warnings = inputs + settings.warnings + run.doubts + from_run + (() if axes is None else axes.warnings)
     flown = motion.flight if isinstance(motion, Centrifuge) else motion
     span = settings.start, settings.start + settings.duration
@@ -275,9 +267,9 @@ def response_of(
         coordinates=system.coordinates,
         units=units_of(system),
         bodies=bodies,
-        base=None if posed.motion is None else posed.motion.base(time),
-        loop=None if run.loop is None else _sampled(run.loop, read.steps[read.kept]),
-        hub=read.hub(bodies),
+        base=base,
+        loop=None if run.loop is None else run.loop.during(read.steps[read.kept]),
+        hub=read.hub(base, bodies),
         axes=axes,
         assembly=assembly_of(system) if settings.loads and not traced else None,
         initial=begun_in_words(system, settings.begin),
@@ -306,17 +298,12 @@ def _stated(run: Run, errors: Errors, outcome: str) -> float:
     return step if stepped and math.isnan(total) else total
 
 
-def _sampled(loop: Loop, steps: Indices) -> Loop:
-    """Record of the controllers at some of the steps."""
-    return replace(loop, **{key: values[steps] for key, values in along_time(loop).items()})
-
-
 def _change(history: Floats, parts: Floats | None = None) -> float:
     """Largest change of a history (t, ...) from its start, over its largest size or that of its parts."""
     size = np.abs(history if parts is None else parts).max(initial=0.0)
     return float(np.abs(history - history[0]).max(initial=0.0) / size) if size > 0 else 0.0
 
 
-def _during(over_time: Mapping[str, Any], part: slice) -> dict[str, Any]:
+def _during(over_time: Mapping[str, Any], part: Any) -> dict[str, Any]:
     """Histories at some of their times, by key."""
     return {key: values[part] for key, values in over_time.items()}

@@ -104,12 +104,6 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
     return deflections(body, q[:, deforming(system.coordinates, name)])[:, k]
 
 
-def beams_of(system: System) -> dict[str, Structure]:
-    """Bodies that have sections, by name."""
-    flexible = system.flexible
-    return {name: flexible[name] for name in system.order if name in flexible and flexible[name].sections is not None}
-
-
 def carried(system: System, state: State, name: str, acting: list[list[Acting]]) -> Carried:
     """State of one flexible body over time; `acting` has the wrenches on the points of every body."""
     k = system.order.index(name)
