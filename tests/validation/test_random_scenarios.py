@@ -19,3 +19,12 @@ def test_stated_errors_hold_in_random_scenarios() -> None:
     of = ratios([each.tip for each in known])
     assert (3 * of >= 1).all() and (of >= 0.1).all()
     assert np.median(of) == pytest.approx(1.0, abs=0.3)
+
+
+def test_no_error_of_the_force_hides_behind_one_of_the_moment() -> None:
+    """TLAM's force along the beam is wrong by 0.027 %; 0.0082 % was stated, that of the moment, which the theory of
+    slender beams makes more wrong in all."""
+    of = judge(290, draw(290))
+    assert of is not None
+    stated, true = of.loads
+    assert true > 2e-4 and true < stated < 3 * true

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol
 
@@ -17,8 +18,9 @@ PARTS = ("shapes", "model", "beam_theory", "mesh", "total")
 SHAPES, MODEL = "estimated error from too few shapes", "estimated error of the model against exact"
 PEAK = "estimated error of the largest values in all"
 WHENEVER = "of loads and stress over time, whenever they are reached; the others are of the same instants"
-WHOLE = ("total", "peak")  # errors of all causes together
+WHOLE = ("slender", "total", "peak")  # errors of several causes together
 THEORY, TOTAL = "estimated error of the theory of slender beams", "estimated error in all"
+AGAINST_SLENDER = "estimated error against an exact slender beam"
 FRICTION, SMOOTH = "estimated error of the smooth law of friction", "of systems, by another rate below which it is so"
 MESH, COARSER = "estimated error of a solid's mesh", "by the difference to a coarser one"
 UNKNOWN = "what is not estimated, and why"
@@ -49,7 +51,10 @@ def largest_known(*values: float) -> float:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ErrorEstimate(Lacking, Part):
-    """Estimated errors of one quantity, or a vector's length, as fractions of its largest; NaN where there is none."""
+    """Estimated errors of a quantity, or a vector's length, as fractions of its largest; NaN where there is none.
+
+    Of several quantities each is the largest: causes, `slender` and `total` may be of different ones.
+    """
 
     step: float = quantity("", "estimated error of the time steps", default=math.nan)
     shapes: float = quantity("", SHAPES, note="against the same model with more", default=math.nan)
@@ -57,8 +62,14 @@ class ErrorEstimate(Lacking, Part):
     beam_theory: float = quantity("", THEORY, note=SLENDER, default=math.nan)
     mesh: float = quantity("", MESH, note=COARSER, default=math.nan)
     friction: float = quantity("", FRICTION, note=SMOOTH, default=math.nan)
+    slender: float = quantity("", AGAINST_SLENDER, note="all but that of the beam theory", default=math.nan)
     total: float = quantity("", TOTAL, note="the largest of all together, maybe less than their sum", default=math.nan)
     peak: float = quantity("", PEAK, note=WHENEVER, optional=True, default=math.nan)
+
+    def __post_init__(self) -> None:
+        if math.isnan(self.slender):
+            theory = 0.0 if math.isnan(self.beam_theory) else self.beam_theory
+            object.__setattr__(self, "slender", self.total - theory)
 
     @property
     def causes(self) -> dict[str, float]:
@@ -77,15 +88,19 @@ class ErrorEstimate(Lacking, Part):
         """Error of the theory of slender beams; zero where it is not known."""
         return largest_known(self.beam_theory)
 
-    @property
-    def slender(self) -> float:
-        """Total error but for that of the beam theory: against an exact slender beam."""
-        return self.total - (0.0 if math.isnan(self.beam_theory) else self.beam_theory)
-
     def adding(self, **parts: float) -> ErrorEstimate:
         """Return the errors with others added to the total: `beam_theory`, `mesh`, `friction`; NaN adds nothing."""
         added = {name: share for name, share in parts.items() if not math.isnan(share)}
-        return replace(self, total=self.total + sum(added.values()), **added)
+        whole = sum(added.values())
+        slender = self.slender + whole - added.get("beam_theory", 0.0)
+        return replace(self, slender=slender, total=self.total + whole, **added)
+
+    @classmethod
+    def largest(cls, errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
+        """Return the largest error of several quantities by each cause, and in all; unknown if there are none."""
+        every = list(errors)
+        largest = (np.fmax.reduce([getattr(each, part.name) for each in every] or [math.nan]) for part in fields(cls))
+        return cls(*map(float, largest))
 
     def __repr__(self) -> str:
         parts = self.causes | {"total": self.total, "of the peak": self.peak}

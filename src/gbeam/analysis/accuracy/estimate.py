@@ -201,8 +201,8 @@ class Judgement(NamedTuple):
         return min(max(float(np.nansum(causes)), ROUNDING), total)
 
     def loads(self, body: str) -> ErrorEstimate:
-        """The larger error of the force and the moment at a body's root."""
-        return worst(self.error((body, load)) for load in ("force", "moment"))
+        """The larger errors of the force and the moment at a body's root."""
+        return ErrorEstimate.largest(self.error((body, load)) for load in ("force", "moment"))
 
 
 def worst(errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
