@@ -100,10 +100,6 @@ CASES = {
     "shape that is no text": (
         '"rectangle"', "3", "beam.section.shape", "unknown choice 3", "choose one of rectangle", "3",
     ),
-    "integrator of version 0.2": (
-        "[response]", '[response]\nintegrator = "adaptive"', "response.integrator",
-        "'adaptive' is no longer offered", 'use "gauss"', '"adaptive"',
-    ),
     "unknown model": (
         'kind = "FOAM"', 'kind = "foam"', "model.kind", "unknown choice 'foam'", "did you mean 'FOAM'?",
         '"foam"',

@@ -25,7 +25,6 @@ from gbeam.errors import InputError
 from gbeam.printable import printable
 
 if TYPE_CHECKING:
-    from gbeam.io.netcdf import Stored
     from gbeam.results.provenance import Provenance
     from gbeam.results.study import Reproduction
 
@@ -172,23 +171,9 @@ def _of_netcdf(file: Path) -> Reproduction:
         if is_run(stored):
             return run_again(file, stored, watch)
     origin = origin_of(file, stored)
-    return _compared(file, facts, origin) if (facts := facts_of(stored)) else _file_again(file, stored, origin)
-
-
-def _file_again(file: Path, before: Stored, origin: Provenance) -> Reproduction:
-    """Run the verb of a file without facts again, as version 0.2 wrote searches, and compare the files' variables."""
-    from gbeam.io.netcdf import read_stored
-    from gbeam.scenario.rerun import as_read, computed, reproduction, units_in
-
-    with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes, defaults = as_read(str(file), origin, Path(folder))
-        out = Path(folder) / "out"
-        _answered(file, origin, Path(folder), tuple(changes), out)
-        written = [*out.glob("*.nc")]
-        if not written:
-            raise InputError(str(file), "holds no figures to compare", "give the JSON of its verb")
-        after = read_stored(written[0])
-    return reproduction(str(file), computed(before), computed(after), origin, defaults, units_in(before))
+    if not (facts := facts_of(stored)):
+        raise InputError(str(file), "holds no figures to compare", "give the JSON of its verb")
+    return _compared(file, facts, origin)
 
 
 def answer_again(file: Path) -> Reproduction:
@@ -207,7 +192,7 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
     from gbeam.scenario.rerun import as_read, reproduction
 
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes, defaults = as_read(str(file), origin, Path(folder))
+        changes = as_read(origin, Path(folder))
         again = _answered(file, origin, Path(folder), tuple(changes))
     kind = again.get("form", {}).get("kind")
     declared = paths_of(tree_of_answers(KINDS[kind])) if kind in KINDS else ()
@@ -222,7 +207,7 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
         return "" if unit == "unit" else unit  # a unit that another key says
 
     then, now = ({name: value for name, _, value in _leaves(each)} for each in (facts, again))
-    return reproduction(str(file), then, now, origin, defaults, unit_of)
+    return reproduction(str(file), then, now, origin, unit_of)
 
 
 _ROWS = {"A": "states", "B": "states", "C": "outputs", "D": "outputs"}  # of a state-space model, with their units
@@ -255,9 +240,7 @@ def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
         raise InputError(str(file), "is no JSON of gbeam with a provenance", fix) from None
 
 
-def _answered(
-    file: Path, origin: Provenance, folder: Path, changes: tuple[str, ...], out: Path | None = None
-) -> dict[str, Any]:
+def _answered(file: Path, origin: Provenance, folder: Path, changes: tuple[str, ...]) -> dict[str, Any]:
     """Run the command of a provenance again, on its scenario with changes; return the JSON that it prints."""
     from gbeam.cli.program import parsed
 
@@ -274,6 +257,7 @@ def _answered(
     parameters, asked = bound.signature.parameters, arguments.get("output", Output())
     unwritten = {"write": None, "write_back": False}  # no scenario is written
     arguments |= {"scenario": scenario} | {name: value for name, value in unwritten.items() if name in parameters}
+    out = None
     if "resume" in parameters:  # a sweep always has a store; its cluster may be gone
         out = folder / "out"
         arguments |= {"resume": False, "scheduler": None}

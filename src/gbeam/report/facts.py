@@ -92,9 +92,7 @@ def reproduction_json(again: Reproduction) -> dict[str, Any]:
         "tolerance": again.tolerance,
         "rounded": again.rounded,
         "differences": [asdict(each) for each in again.differences],
-        "restated": [asdict(each) for each in again.restated],
         "changed": {name: {"then": then, "now": now} for name, (then, now) in again.changed.items()},
-        "defaults": dict(again.defaults),
     }
 
 

@@ -214,17 +214,12 @@ class Reproduction(Part):
     file: str = fact("the file")
     compared: int = fact("number of variables and attributes compared")
     differences: tuple[Difference, ...] = rows("differences, the largest first", "difference")
-    restated: tuple[Difference, ...] = rows(
-        "what else differs, and does not count: errors and words, which another version states otherwise, what one "
-        "version alone holds, numbers in words, and times of peaks, of which equal ones may change places by rounding",
-        "restated",
+    rounded: int = fact(
+        "number of those that differ by rounding alone, beside the largest value of their unit, in the numbers of "
+        "sentences, or in which of equal peaks is the first"
     )
-    rounded: int = fact("number of those that differ by rounding alone, beside the largest value of their unit")
     changed: Mapping[str, tuple[str, str]] = fact(
         "what of gbeam, Python, the platform and the dependencies is otherwise: then, and now"
-    )
-    defaults: Mapping[str, str] = fact(
-        "defaults of the version that wrote the file, where today's are others: the scenario is read with them"
     )
 
     @property
@@ -247,7 +242,7 @@ class Reproduction(Part):
         """``to the last digit``; ``within rounding``, with other versions or elsewhere; or ``NOT reproduced``."""
         if not self.reproduced:
             return "NOT reproduced"
-        return "within rounding" if self.differences or self.rounded or self.restated else "to the last digit"
+        return "within rounding" if self.differences or self.rounded else "to the last digit"
 
     def __repr__(self) -> str:
         lines = [f"Reproduction of {self.file}: {self.agreement}, {self.compared} values and arrays compared"]
@@ -256,15 +251,8 @@ class Reproduction(Part):
         return "\n  ".join(lines)
 
     def circumstances(self) -> list[str]:
-        """Lines on what has changed since the file was written, and on its version's defaults that were read."""
-        lines = [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
-        if self.restated:
-            kinds = "stated errors, words, times of equal peaks and quantities of one version alone"
-            lines.insert(0, f"besides {len(self.restated)} {kinds} are otherwise")
-        if self.defaults:
-            words = ", ".join(f"{key} = {value}" for key, value in self.defaults.items())
-            lines.insert(0, f"read with the defaults of gbeam {self.changed['gbeam'][0]}: {words}")
-        return lines
+        """Lines on what has changed since the file was written."""
+        return [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
 
 
 # Every kind of result by its name.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import re
 from collections.abc import Callable, Iterable, Iterator
 from copy import deepcopy
 from dataclasses import replace
@@ -19,7 +18,7 @@ from pydantic import ValidationError
 from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED, PROBLEMS
 from gbeam.scenario.schema import Environments, Flight, Scenario, kind_of_scenario
-from gbeam.scenario.schema.fields import files, former_defaults
+from gbeam.scenario.schema.fields import files
 from gbeam.scenario.schema.profile import Record
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
@@ -158,17 +157,6 @@ def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = (
 def _environments(source: Source) -> Environments:
     kind = kind_of_scenario(source.data)
     return _validated(Environments if kind is Scenario and not {"beam", "model"} & source.data.keys() else kind, source)
-
-
-def defaults_of(
-    version: str, text: str, name: str, overrides: Iterable[str], folder: str | os.PathLike[str]
-) -> dict[str, str]:
-    """Defaults by path that a version had for keys that a scenario leaves out, and that differ from today's."""
-    release = tuple(int(number) for number in re.findall(r"\d+", version))
-    if len(release) < 2:  # no version that gbeam ever had
-        return {}
-    source = _source(text, name, overrides, folder, distributions=True)
-    return dict(former_defaults(_environments(source), release))
 
 
 def _source(

@@ -23,20 +23,15 @@ from gbeam.progress import Progress
 from gbeam.results.provenance import Provenance, present
 from gbeam.results.study import Difference, Reproduction
 from gbeam.scenario.build import build
-from gbeam.scenario.load import defaults_of, fingerprint, loads
+from gbeam.scenario.load import fingerprint, loads
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
 
 if TYPE_CHECKING:
     from gbeam.io.netcdf import Stored
 
-# Names, in files and in JSON, of estimates of errors, shares where no unit is said, and of sentences too, which both
-# differ between versions.
-_ERRORS = r"error_\w+|errors?|total_error|run_error"
-_SHARE = re.compile(rf"(^|[@./])({_ERRORS})($|[.])")
-_STATED = re.compile(
-    rf"(^|[@./])({_ERRORS}|accurate_to|warnings|notes|verdict|summary|message|note|theory|reason|not_varied)($|[.])"
-)
+# Names, in files and in JSON, of estimates of errors, which are shares where no unit is said.
+_SHARE = re.compile(r"(^|[@./])(error_\w+|errors?|total_error|run_error)($|[.])")
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")  # in words
 # Names of times of peaks: rounding may decide between equal peaks. The peaks themselves are compared.
 _WHEN = re.compile(r"_time($|_)|(^|[./])time_|time_of_|limits\.\d+\.time$")
@@ -66,14 +61,12 @@ def rerun(path: str | os.PathLike[str], *, progress: Progress = None) -> Reprodu
     Reproduction
         It is reproduced where nothing differs, or, with other versions or on another platform, by no more than
         rounding: 1e-12 of the largest value of its unit, or 1e-9 of its own.
-        Of another version of gbeam the scenario is read with its defaults, `defaults`, and its errors and words, which
-        a version states in its way, and what it alone holds or lacks are apart, `restated`.
 
     Raises
     ------
     InputError
-        If the file cannot be read or holds no responses or no scenario, or the scenario or a record is not the one
-        that was run.
+        If the file cannot be read, is of another release of gbeam, holds no responses or no scenario, or the scenario
+        or a record is not the one that was run.
     ComputationError
         If there is no answer any more.
 
@@ -108,9 +101,7 @@ def facts_of(stored: Stored) -> dict[str, Any]:
 def is_run(stored: Stored) -> bool:
     """True if a file holds responses."""
     form = facts_of(stored).get("form")
-    if isinstance(form, dict):  # version 0.2 did not say
-        return form.get("kind") == "Study"
-    return any(name.startswith("motions/") or name == "coordinate_rates" for name in stored.variables)
+    return isinstance(form, dict) and form.get("kind") in ("Study", "Response")
 
 
 def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
@@ -130,13 +121,8 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
     from gbeam.io.netcdf import stored
 
     origin = origin_of(path, before)
-    assert origin.environment is not None
-    if not any(name.rpartition("/")[2] == "place" for name in before.variables):
-        version = origin.environment.gbeam
-        problem = f"holds responses in the layout of gbeam {version}, which is not read any more"
-        raise InputError(str(path), problem, f"compute it again by gbeam {version}, or run its scenario anew")
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes, defaults = as_read(str(path), origin, Path(folder))
+        changes = as_read(origin, Path(folder))
         scenario = loads(origin.scenario, str(path), [*origin.overrides, *changes], folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         after = stored(answers)
@@ -149,7 +135,7 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
         place = f"motions/{motion}"
         response = {name.removeprefix(place).lstrip("/"): each for name, each in now.items() if name.startswith(place)}
         now = {name: each for name, each in now.items() if name in then} | response  # such as the study's notes
-    return reproduction(os.fspath(path), then, now, origin, defaults, units_in(before))
+    return reproduction(os.fspath(path), then, now, origin, units_in(before))
 
 
 def units_in(stored: Stored) -> Callable[[str], str]:
@@ -157,15 +143,9 @@ def units_in(stored: Stored) -> Callable[[str], str]:
     return lambda name: str(stored.attrs.get(name, {}).get("units", ""))
 
 
-def as_read(file: str, origin: Provenance, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """Write the records into a folder. Return changes PATH=VALUE by which the scenario reads them and has the defaults
-    of its version of gbeam, and these defaults by path.
-    """
-    assert origin.environment is not None
-    changes = [*_records(origin, folder)]
-    text, overrides = origin.scenario, [*origin.overrides, *changes]
-    defaults = defaults_of(origin.environment.gbeam, text, file, overrides, folder)
-    return [*changes, *(f"{path}={value}" for path, value in defaults.items())], defaults
+def as_read(origin: Provenance, folder: Path) -> list[str]:
+    """Write the records into a folder. Return changes PATH=FILE by which the scenario reads them."""
+    return [*_records(origin, folder)]
 
 
 def reproduction(
@@ -173,13 +153,11 @@ def reproduction(
     then: Mapping[str, Any],
     now: Mapping[str, Any],
     origin: Provenance,
-    defaults: Mapping[str, str],
     unit_of: Callable[[str], str],
 ) -> Reproduction:
     """Compare variables of a file, by name, with those computed again; `unit_of` gives the unit of a name."""
     assert origin.environment is not None
     changed = origin.environment.changes(present())
-    other = "gbeam" in changed
     names = [*then, *(name for name in now if name not in then)]
     scales = _scales(then, [name for name in then if name in now], unit_of) if changed else {}
 
@@ -190,30 +168,30 @@ def reproduction(
     compared = [_difference(name, then.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names]
     differences = sorted((each for each in compared if each and each.size), key=lambda each: -each.size)
 
-    def does_not_count(each: Difference) -> bool:
-        peak_time = _WHEN.search(each.name) is not None and math.isfinite(each.size)
+    def by_rounding(each: Difference) -> bool:
+        """True of times of peaks, of which equal ones change places, and of numbers in words, compared themselves."""
         old, new = then.get(each.name), now.get(each.name)
-        only_numbers = False  # of words, which are compared themselves
         if isinstance(old, str) and isinstance(new, str):
-            only_numbers = _NUMBER.sub("", old) == _NUMBER.sub("", new)
-        of_one = (each.name in then) != (each.name in now)
-        stated = other and (of_one or _STATED.search(each.name) is not None)
-        return stated or (bool(changed) and (peak_time or only_numbers))
+            return _NUMBER.sub("", old) == _NUMBER.sub("", new)
+        return _WHEN.search(each.name) is not None and math.isfinite(each.size)
 
-    restated = [each for each in differences if does_not_count(each)]
+    moved = [each for each in differences if changed and by_rounding(each)]
     return Reproduction(
         file=file,
         compared=len(names),
-        differences=tuple(each for each in differences if each not in restated),
-        restated=tuple(restated),
-        rounded=sum(each is not None and not each.size for each in compared),
+        differences=tuple(each for each in differences if each not in moved),
+        rounded=len(moved) + sum(each is not None and not each.size for each in compared),
         changed=changed,
-        defaults=defaults,
     )
 
 
 def checked(file: str, origin: Provenance) -> None:
-    """Raise InputError unless there is a scenario, and it is the one that was run."""
+    """Raise InputError unless there is a scenario, the one that was run, by this release of gbeam."""
+    assert origin.environment is not None
+    version, ours = origin.environment.gbeam, present().gbeam
+    if version.split(".")[:2] != ours.split(".")[:2]:
+        fix = f"compute it again by gbeam {version}, or run its scenario anew"
+        raise InputError(file, f"was computed by gbeam {version}, and this is {ours}", fix)
     if not origin.scenario:
         fix = "give the result of a scenario: a result.nc of `gbeam run`, or a verb's JSON"
         raise InputError(file, "holds no scenario to run again", fix)

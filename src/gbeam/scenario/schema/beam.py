@@ -16,7 +16,6 @@ from gbeam.scenario.schema.fields import (
     Density,
     Exponent,
     File,
-    Formerly,
     Length,
     Lengths,
     Loc,
@@ -368,7 +367,7 @@ class Beam(Table):
     root: Root = Field(default_factory=Root, description="springs that hold the root, which is rigid where left out")
     loads: tuple[Load, ...] = listed("forces and moments on the beam: [ { at, force, moment, distributed, follower } ]")
     points: tuple[Point, ...] = listed("points of output beside the tip: [ { name, at } ]")
-    rotary_inertia: Annotated[StrictBool, Formerly("false", until=(0, 2))] = Field(
+    rotary_inertia: StrictBool = Field(
         default=True,
         description="false for sections that do not resist turning by their own second moments, each a point on the "
         "axis: the theory of Euler and Bernoulli",

@@ -109,14 +109,6 @@ class Vector(Table):
 
 
 @dataclass(frozen=True)
-class Formerly:
-    """Annotation of a key whose default changed: the former one, as a scenario writes it, and its last version."""
-
-    default: str
-    until: tuple[int, int]
-
-
-@dataclass(frozen=True)
 class Quantity:
     """Annotation of a float that is read from a number in SI or from text with a unit."""
 
@@ -243,19 +235,6 @@ def quantities(table: BaseModel) -> dict[str, tuple[float, str]]:
     """Value in SI and kind, a key of ``KINDS``, of every quantity of a scenario, by its path."""
     numbers = ((path, value, _kind_in(parts)) for path, value, parts in _leaves(table) if type(value) in (int, float))
     return {path_text(path): (float(value), kind) for path, value, kind in numbers if kind}
-
-
-def former_defaults(tables: Any, version: tuple[int, ...], path: Path = ()) -> Iterator[tuple[str, str]]:
-    """Yield path and former default of keys that tables leave out and that had another default in a version."""
-    if isinstance(tables, BaseModel):
-        for (key, field), name in zip(fields_of(type(tables)).items(), type(tables).model_fields, strict=True):
-            for part in field.metadata if name not in tables.model_fields_set else ():
-                if isinstance(part, Formerly) and version[:2] <= part.until:
-                    yield path_text((*path, key)), part.default
-            yield from former_defaults(getattr(tables, name), version, (*path, key))
-    elif isinstance(tables, (Mapping, tuple)):
-        for step, value in tables.items() if isinstance(tables, Mapping) else enumerate(tables):
-            yield from former_defaults(value, version, (*path, step))
 
 
 def files(tables: Any, path: Path) -> Iterator[tuple[str, str]]:

@@ -13,7 +13,6 @@ from pydantic import (
     StrictBool,
     StrictInt,
     ValidationInfo,
-    field_validator,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -26,7 +25,6 @@ from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
     Duration,
-    Formerly,
     Loc,
     Offset,
     Position,
@@ -165,7 +163,7 @@ class Response(Table):
         "answers of one time are asked for, such as modes"
     )
     step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Annotated[Integrator, Formerly("newmark", until=(0, 2))] = Field(
+    integrator: Integrator = Field(
         default="gauss",
         description="time integrator: gauss, of fourth order; or newmark, the papers' method, hht or "
         "generalized-alpha, of second order, which need more steps",
@@ -204,14 +202,6 @@ class Response(Table):
         """Parameters of the integrator that are written."""
         named = {name: getattr(self, name) for name in PARAMETERS[self.integrator]}
         return {name: value for name, value in named.items() if value is not None}
-
-    @field_validator("integrator", mode="before")
-    @classmethod
-    def _offered(cls, value: object) -> object:
-        """Refuse an integrator that earlier versions offered."""
-        if value == "adaptive":
-            raise wrong("{value} is no longer offered", 'use "gauss" with step = "auto": as accurate, and faster')
-        return value
 
     @model_validator(mode="after")
     def _consistent(self) -> Response:
