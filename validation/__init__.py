@@ -33,4 +33,5 @@ MODULES: tuple[str, ...] = (
     "published.closed_forms",
     "accuracy.random_scenarios",
     "accuracy.integrators",
+    "accuracy.kinds",
 )
