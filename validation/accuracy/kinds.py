@@ -78,7 +78,8 @@ def judged(kind: str, specimen: Any, truth: Any, motion: Any, settings: gb.Respo
         for load in ("root_force", "root_moment")
     ]
     errors = response.errors
-    stated = (each.step if math.isnan(each.slender) else each.slender for each in (errors.displacement, errors.loads))
+    unjudged = truth is specimen  # but for the steps
+    stated = (each.step if unjudged else each.slender for each in (errors.displacement, errors.loads))
     true = max(deflections, default=0.0), max(loads, default=0.0)
     return Judged(kind, *zip(stated, true, strict=True))
 
