@@ -249,6 +249,30 @@ def test_plan_run_and_place_agree_on_the_largest_load(scenario: Path, capsys: py
     assert {each["place_machine"] for each in answer} == {"the tip"} and answer[0]["ratio"] > 1.03
 
 
+PEAK = ["--set", "motion.flight.acceleration.z={ profile = 'table', times = [0, 1, 1.2345, 1.5, 3], "
+        "values = ['2 g', '2 g', '5.321 g', '3 g', '3 g'] }"]  # fmt: skip
+
+
+def test_plan_and_run_say_the_same_numbers_of_the_load(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The peak is a corner of the flight, between the times of the plan and the steps of both responses."""
+    scenario.write_text(PLAN.replace('"flat"', '"planned"') + BEAM, encoding="utf-8")
+    answers = []
+    for verb, *more in (("plan",), ("run", *STEP)):
+        assert main([verb, str(scenario), *PEAK, "--json", "--ignore-limits", *more]) == 0
+        facts = json.loads(capsys.readouterr().out)
+        answers.append(
+            (facts["motions"]["spin"], facts["motions"]["spin"] if verb == "plan" else facts["comparisons"][0])
+        )
+    (machine, planned), (spun, judged) = answers
+    for name in ("tracking_error", "flight_error", "limits", "axes"):
+        assert machine[name] == spun[name], name
+    assert planned["accounting"] == judged["accounting"]
+    assert planned["peaks"]["largest_load"] == judged["peaks"]["largest_load"]
+    assert planned["findings"][:3] == judged["findings"][:3]
+    largest = max(judged["accounting"]["peaks"], key=lambda peak: peak["load"])
+    assert (largest["time"], largest["load"]) == pytest.approx((1.2345, 5.321 * 9.80665), rel=1e-12)
+
+
 def test_the_load_is_compared_with_the_flight_and_not_only_with_the_rounded_target(
     scenario: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
