@@ -68,12 +68,12 @@ class Shortfall:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Held(Part):
-    """A stretch in which a target is held instead of the flight's load."""
+class Departure(Part):
+    """A stretch in which the target is not the flight's load."""
 
-    start: float = entry("s", "start of a stretch in which the target is held", name="from")
+    start: float = entry("s", "start of a stretch in which the target is not the flight's load", name="from")
     end: float = entry("s", "its end", name="to")
-    reason: str = entry("", "why it is held")
+    reason: str = entry("", "why it is not")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -89,9 +89,9 @@ class AxesResult(Part):
     actual: Floats = entry("m/s^2", "load that the axes make at the control point", "time axis", name="load_actual")
     not_followed: Flags = entry(
         "",
-        "whether the target is held instead of the flight's load",
+        "whether the target is another than the flight's load",
         "time",
-        flags=("follows_flight", "held"),
+        flags=("flight", "another"),
         note="spin-up and spin-down among them",
     )
     episodes: tuple[tuple[float, float, str], ...] = internal(
@@ -102,10 +102,8 @@ class AxesResult(Part):
         "where the machine cannot make the flight's load", "shortfall", name="shortfall_", default=()
     )
     control_point: float = entry("m", "control point, from the root along the beam", default=math.nan)
-    warnings: tuple[str, ...] = internal("", "where the inverse does not keep what it promises", "warning", default=())
-    idle: float = entry(
-        "m/s^2", "least load that the target is held up to; 0 where there is none", key=None, default=0.0
-    )
+    warnings: tuple[str, ...] = internal("", "where the inverse follows worse than it aims at", "warning", default=())
+    idle: float = entry("m/s^2", "least load of the target; 0 where there is none", key=None, default=0.0)
     jerk: Floats | None = entry(
         "rad/s^3", "jerk of the centrifuge's axes", "time machine_axis", name="axis_jerk", default=None
     )
@@ -143,10 +141,15 @@ class AxesResult(Part):
     imitated: Imitated | None = internal("", "flight and machine at times of their own", default=None)
 
     @declared(
-        "", "stretches in which the target is held", "episode", role="rows", name="not_followed_", key="not_followed"
+        "",
+        "stretches in which the target is not the flight's load",
+        "episode",
+        role="rows",
+        name="not_followed_",
+        key="not_followed",
     )
-    def held(self) -> tuple[Held, ...]:
-        return tuple(Held(*each) for each in self.episodes)
+    def departures(self) -> tuple[Departure, ...]:
+        return tuple(Departure(*each) for each in self.episodes)
 
     @property
     def within_limits(self) -> bool:

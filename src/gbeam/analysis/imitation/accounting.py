@@ -1,4 +1,4 @@
-"""A flight's load as a machine makes it: its peaks, the stretches not followed, and preloads beyond it."""
+"""A flight's load as a machine makes it: its peaks, the stretches not followed, and loads beyond it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.rigid import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
-from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
+from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, Overload, PeakPair
 from gbeam.results.machine import Imitated, used_up
 from gbeam.results.parts import Base
 
@@ -114,8 +114,9 @@ def account(
     shares: Mapping[str, Floats] | None = None,
     span: tuple[float, float] | None = None,
 ) -> Accounting:
-    """Account for a flight's load over time (t,), from the first to the last or over a `span` about them, s: its peaks, the stretches in which the machine's load differs by more
-    than the tolerance, with reasons by its `episodes` and its limits' `shares`, and loads beyond the flight's.
+    """Account for a flight's load over time (t,), from the first time to the last, or over a `span` that ends nearby,
+    s: its peaks, the stretches in which the machine's load differs by more than the tolerance, with reasons by its
+    `episodes` and its limits' `shares`, and loads beyond the flight's.
     """
     size, machine_size = flight.size, machine.size
     instant = tolerance_of == "instant"
@@ -157,7 +158,7 @@ def account(
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
-        preloads=tuple(_preloads(edges, time, size, machine_size, most + (tolerance * most if instant else allowed))),
+        overloads=tuple(_overloads(edges, time, size, machine_size, most + (tolerance * most if instant else allowed))),
     )
 
 
@@ -232,12 +233,12 @@ def _peak(
     )
 
 
-def _preloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Preload]:
+def _overloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Overload]:
     """Yield the stretches in which the machine's load exceeds `most` (t,)."""
     for run in true_runs(machine_size > most):
         i = run.start + int(np.argmax((machine_size - most)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
-        yield Preload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
+        yield Overload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
 
 
 _ALIKE = 1e-9  # of the load: points whose loads differ by less have the same

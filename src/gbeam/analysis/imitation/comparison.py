@@ -21,7 +21,7 @@ from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import KINDS_OF_LIMITS, STRESS_AT, Limits, checked_limits
 from gbeam.results.machine import Imitated
 from gbeam.results.measures import (
-    Mismatch,
+    LoadDifference,
     RootHistory,
     RootLoads,
     Shock,
@@ -114,9 +114,9 @@ def compare(
     Returns
     -------
     Comparison
-        Over the flight's times: peaks and accounting of all of them, the rest without those at which the target was
-        held. Root loads and spectra need the responses' loads, the mismatch's bounds their influence, trend and
-        vibration their frequencies.
+        Over the flight's times: peaks and accounting of all of them, the rest of those at which the target is the
+        flight's load. Root loads and spectra need the responses' loads, the bounds of the load's difference their
+        influence, trend and vibration their frequencies.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def compare(
         accounting=accounting,
         accept=limits,
         stations=_statistics(time, covered, reference, actual, spun, tip),
-        mismatch=_mismatch(covered, spun, (turning - growth)[..., 0], tip),
+        load_difference=_load_difference(covered, spun, (turning - growth)[..., 0], tip),
         root=root,
         shock=shock,
         fatigue=fatigue(flown, spun, damage_at),
@@ -278,9 +278,9 @@ def _statistics(
     )
 
 
-def _mismatch(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -> Mismatch | None:
-    """Mismatch along a straight beam by the gradient (t, 3) 1/s², and bounds of its effects; None of other specimens,
-    and without a control point on the beam.
+def _load_difference(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -> LoadDifference | None:
+    """Difference of the load along a straight beam by the gradient (t, 3) 1/s², and bounds of its effects; None of
+    other specimens, and without a control point on the beam.
     """
     axes, body = machine.response.axes, machine.body
     influence = None if body is None else body.influence
@@ -293,7 +293,7 @@ def _mismatch(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -
     def bound(linear: Floats, uniform: Floats) -> Floats:
         return np.abs(linear - x_c * uniform) * largest
 
-    return Mismatch(
+    return LoadDifference(
         control_point=x_c,
         gradient=gradient,
         max_gradient=largest,

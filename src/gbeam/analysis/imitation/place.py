@@ -43,7 +43,7 @@ from gbeam.results.response import Response
 
 @record
 class _Carried:
-    """A base that translates with the load of a centrifuge at its control point, so that no point has a mismatch."""
+    """A base that translates with the load of a centrifuge at its control point, so that no point's load differs."""
 
     kind: ClassVar[str] = "flight"
     free: ClassVar[bool] = False
@@ -377,7 +377,7 @@ class _Trials:
                 control_point=float(at[0]),
                 beside=(float(at[1]), float(at[2])),
                 turn=machine.turn,
-                mismatch=size(at),
+                difference=size(at),
                 total_error=size(at, True),
                 accelerations=accelerations,
                 share=most.share,

@@ -14,7 +14,7 @@ from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
-from gbeam.motion.centrifuge.kinematics import axis_angles, imitated
+from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles, times_between
 from gbeam.motion.protocol import implausible_motion
 from gbeam.progress import Progress, tell
 from gbeam.results.accounting import TOLERANCE
@@ -76,9 +76,10 @@ def plan(
     limits = checked_limits(accept)
     ends = {} if specimen is None else ends_of(subject_of(specimen, None).system)
     tell(progress, "axis motions", 0.0)
-    run = imitated(motion)
-    axes = run.axes
-    assert axes is not None  # it is a centrifuge
+    time = times_between(*(float(end) for end in motion.extent))
+    axes = axes_result(motion, time)
+    run = axes.imitated
+    assert run is not None  # it is a centrifuge
     outcome = "done" if axes.within_limits else BROKEN
     where, span = f"motion.{name}" if name else "motion", motion.target.span
     warnings = implausible_motion(motion, where, span)
@@ -91,7 +92,7 @@ def plan(
         arm=float(motion.geometry.arm),
         outcome=outcome,
         message=axes.exceeding,
-        time=run.time,
+        time=time,
         axes=axes,
         accounting=accounting,
         gravity=float(motion.geometry.gravity),

@@ -91,23 +91,23 @@ def axis_angles(axes: Axes, times: Any) -> Floats:
     return np.stack([first, np.unwrap(axes.angle2), np.unwrap(axes.angle3)], axis=1)
 
 
-_GRID, _MANY = 1e-3, 50_000  # s between times at which a load is evaluated; the most of them, corners aside
+_GRID, _FINE, _MANY = 2e-3, 1e-3, 50_000  # s between times: of histories, of loads that are judged; the most of them
 
 
-def times_between(first: float, last: float) -> Floats:
+def times_between(first: float, last: float, spacing: float = _GRID) -> Floats:
     """Evenly spaced times, s, at which a motion without a response is evaluated."""
-    return np.linspace(first, last, min(int(np.ceil((last - first) / _GRID)), _MANY) + 1)
+    return np.linspace(first, last, min(int(np.ceil((last - first) / spacing)), _MANY) + 1)
 
 
 def imitated(motion: Centrifuge) -> Imitated:
     """Motions of a centrifuge and its flight from the machine's beginning to its end, at the flight's corners too."""
     (begin, end), span = (float(time) for time in motion.extent), motion.target.span
     corners = motion.flight.corners((span[1] - span[0]) / _MANY)
-    time = np.union1d(times_between(begin, end), [*span, *corners[(corners > span[0]) & (corners < span[1])]])
+    time = np.union1d(times_between(begin, end, _FINE), [*span, *corners[(corners > span[0]) & (corners < span[1])]])
     flown = motion.flight.base(np.clip(time, *span))
     axes = _axes_at(motion, time, flown.a_WO_B)
     axes = replace(axes, limits=motion.usage())
-    axes = replace(axes, warnings=(*_broken_promise(motion, time, axes), *_short_ramps(motion)))
+    axes = replace(axes, warnings=(*_followed_worse(motion, time, axes), *_short_ramps(motion)))
     return Imitated(time, flown, motion.base(time), axes)
 
 
@@ -149,8 +149,8 @@ def _axes_at(motion: Centrifuge, time: Floats, flown: Floats) -> AxesResult:
 _FELT, _MOST = 0.1, 0.5  # of a miss: what less ease takes from it is told from there on, and told first
 
 
-def _broken_promise(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
-    """Warn where the load is followed worst, if worse than the inverse promises, with what makes the miss there."""
+def _followed_worse(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
+    """Warn where the load is followed worst, if worse than the inverse aims at, with what makes the miss there."""
     size = axes.tracking_error
     share = np.where(axes.not_followed, 0.0, size / np.maximum(np.linalg.norm(axes.reference, axis=1), 1e-12))
     missed = share > motion.inverse.within
