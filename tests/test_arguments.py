@@ -349,7 +349,7 @@ class Samples:
             self.beam, self.beam.section, self.case, self.centrifuge.over(0.0, 0.2), self.flight, self.hub, self.hinge,
             self.settings, self.structure, box, gb.Feedback(self.law, ["hinge.angle"], ["hinge.angle"], 0.01),
             gb.Line.of_pieces([0.3]), gb.Sensor(), gb.Sine(1.0, 1.0, 0.0), gb.SmoothStep(1.0, 1.0, 0.0),
-            gb.SplineProfile(1.0, [0.0] * 12), gb.Sum((gb.constant(1.0), gb.constant(2.0))), comparison.mismatch,
+            gb.SplineProfile(1.0, [0.0] * 12), gb.Sum((gb.constant(1.0), gb.constant(2.0))), comparison.load_difference,
             self.responses[0].errors, gb.System({"bar": self.bar}, {"hinge": self.hinge}),
         ]  # fmt: skip
         matrices = gb.Section.of_matrices(np.eye(6), np.diag([0.2, 0.2, 0.2, 2e-5, 1e-5, 1e-5]))

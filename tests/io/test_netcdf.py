@@ -145,7 +145,7 @@ def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
     assert "error_estimate" not in flight.attrs  # none was made
     compared = tree["comparisons/spin"]
     assert compared.attrs["verdict"] == study.comparisons[0].verdict == tree.attrs["verdict"]
-    assert compared.attrs["accepted"] == "false" and "Study 'a title': not accepted" in tree.attrs["summary"]
+    assert compared.attrs["accepted"] == "false" and "Study 'a title': NOT ACCEPTED" in tree.attrs["summary"]
     assert list(compared["criterion_name"].values) == ["tip"] and float(compared["criterion_most_allowed"][0]) == 0.02
     assert float(compared["criterion_value"][0]) == pytest.approx(0.05)
     assert [float(compared[f"largest_load_{each}"]) for each in ("flight", "machine")] == [80.0, 90.0]

@@ -58,7 +58,7 @@ class Centrifuge:
         True if the flight's load is specific force, of which gravity is a part on the machine; False if it is
         acceleration.
     idle : float, optional
-        Load below which the target is held up to this magnitude, m/s².
+        Least size of the target's load, m/s²: idle.
     smoothing : float or None
         Width of the kernel that rounds the target's corners, s; None or 0, the default, leaves them sharp.
     mounting : str
@@ -76,7 +76,7 @@ class Centrifuge:
         Time from standstill to the flight's first time, and from its last to standstill, s. Left out, the time in
         which the arm turns once on the way, or as much more as nine tenths of every limit need.
     clip : bool
-        Whether to carry on with a held target where the gimbals cannot reach; to give `idle` does so too.
+        Whether to carry on with another target where the gimbals cannot reach; to give `idle` does so too.
     ease : float
         Of ``planned``: weight of gentle motion of the axes beside the tracking error, times the usual one.
     span : tuple of float, optional
