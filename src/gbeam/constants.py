@@ -32,4 +32,5 @@ Rate = Literal[Coordinate, "wx", "wy", "wz"]
 Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]  # of questions
 Across = Literal["y", "z"]  # the beam
 Axis = Literal["x", "y", "z"]
+Along = Literal["+x", "-x", "+y", "-y", "+z", "-z"]  # directions along axes
 Direction = Literal["x", "y", "z", "rx", "ry", "rz"]  # the last three components of a rotation vector

@@ -226,6 +226,22 @@ class Tracking:
     fraction: float = entry("", "that of the load then")
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class ArmLevel(Part):
+    """Level that a plain arm holds at its control point: the centripetal acceleration there, gravity beside it."""
+
+    level: float = entry("m/s^2", "largest centripetal acceleration at the control point, without gravity")
+    radius: float = entry("m", "from the arm's axis to the control point")
+    control_point: Floats = entry("m", "control point, from the root", "axis")
+    load: Floats = entry("", "direction in which the level accelerates the specimen: towards the arm's axis", "axis")
+    up: Floats = entry("", "direction that is up: along the arm's axis", "axis")
+    rate: float = entry("rad/s", "largest rate of the arm")
+    onset: float = entry("m/s^3", "largest rate at which the level rises")
+    tangential: float = entry("m/s^2", "largest tangential acceleration at the control point, on the way up or down")
+    reached: float = entry("s", "time at which the level is reached")
+    ends: float = entry("s", "time until which it is held")
+
+
 class Driven:
     """A result with the motion of a centrifuge's axes, if any, over its times."""
 

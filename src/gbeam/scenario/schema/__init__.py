@@ -10,6 +10,7 @@ from gbeam.scenario.schema.beam import Drawn as Drawn
 from gbeam.scenario.schema.beam import Line as Line
 from gbeam.scenario.schema.beam import Load as Load
 from gbeam.scenario.schema.beam import PointMass as PointMass
+from gbeam.scenario.schema.motion import Arm as Arm
 from gbeam.scenario.schema.motion import AxisLimit as AxisLimit
 from gbeam.scenario.schema.motion import Centrifuge as Centrifuge
 from gbeam.scenario.schema.motion import Flight as Flight
