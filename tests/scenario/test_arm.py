@@ -82,5 +82,11 @@ def test_what_is_refused_is_named(tmp_path, text, words):
 @pytest.mark.parametrize("key", ["radius", "control_point", "level", "dwell", "up"])
 def test_what_is_missing_is_named_with_an_example(tmp_path, key):
     lines = [line for line in BOX.splitlines() if not line.startswith(f"{key} =")]
-    with pytest.raises(gb.InputError, match=f"{key} of the direction fore is missing"):
+    with pytest.raises(gb.InputError, match=f"{key} is missing\n(.|\n)*= add {key} ="):
         read(tmp_path, "\n".join(lines) + "\n" + SIX)
+
+
+def test_what_only_some_directions_lack_is_named_with_them(tmp_path):
+    text = BOX.replace('level = "9 g"\n', "") + 'directions = { fore = { load = "+x", level = "2 g" }, up = "+z" }\n'
+    with pytest.raises(gb.InputError, match="level is missing in the directions up"):
+        read(tmp_path, text)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from gbeam.scenario.schema.arm import Arm as Arm
 from gbeam.scenario.schema.beam import Beam as Beam
 from gbeam.scenario.schema.beam import Drawn as Drawn
 from gbeam.scenario.schema.beam import Line as Line
 from gbeam.scenario.schema.beam import Load as Load
 from gbeam.scenario.schema.beam import PointMass as PointMass
-from gbeam.scenario.schema.motion import Arm as Arm
 from gbeam.scenario.schema.motion import AxisLimit as AxisLimit
 from gbeam.scenario.schema.motion import Centrifuge as Centrifuge
 from gbeam.scenario.schema.motion import Flight as Flight

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_validator
-from pydantic_core import PydanticCustomError
 
-from gbeam.constants import Along, InverseName, MachineName, Mounting, Pointing, Start, ToleranceOf
+from gbeam.constants import InverseName, MachineName, Mounting, Pointing, Start, ToleranceOf
 from gbeam.results.criteria import RULES
+from gbeam.scenario.schema.arm import Arm
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     Acceleration,
+    ControlPoint,
     Duration,
-    Jerk,
     Length,
-    Loc,
-    Place3,
     Position,
     Quantity,
     Table,
@@ -25,6 +22,7 @@ from gbeam.scenario.schema.fields import (
     Turn3,
     Vector,
     by_name,
+    missing_one_of,
     optional,
     refuse,
     wrong,
@@ -38,8 +36,6 @@ Ratios = Annotated[Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, Ratio],
 _Leak = Annotated[float, Quantity("ratio")]
 _Reading = tuple[_Leak, _Leak, _Leak]
 Levels = Annotated[Annotated[Level, Tag("one")] | Annotated[tuple[Level, Level], Tag("list")], ONE_OR_LIST]
-ControlPoint = Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST]
-
 _TYPES: dict[str, Any] = {"most": Share, "least": Share, "ratio": Ratios, "level": Levels}
 _FIELDS: dict[str, Any] = {rule.name: (_TYPES[rule.kind] | None, optional(rule.words)) for rule in RULES.values()}
 _Limits = create_model("_Limits", __base__=Table, **_FIELDS)
@@ -97,11 +93,6 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         return {name: value for name, value in self if value not in (None, {})}
 
 
-def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
-    hint = f"add one of them: {first} = ... or {second} = ..."
-    return (), wrong(f"{first} or {second} is missing", hint, mark="key")
-
-
 class Components(Vector):
     """An acceleration by components in base axes; those left out are zero."""
 
@@ -129,7 +120,7 @@ class Flight(Table):
     @model_validator(mode="after")
     def _one_source(self) -> Flight:
         if self.record is None and self.acceleration is None:
-            refuse([_missing("record", "acceleration")])
+            refuse([missing_one_of("record", "acceleration")])
         if self.record is not None and self.acceleration is not None:
             hint = "keep record or acceleration, not both"
             refuse([(("acceleration",), wrong("is given beside record", hint, mark="key"))])
@@ -278,137 +269,8 @@ class Hub(Table):
     @model_validator(mode="after")
     def _one_drive(self) -> Hub:
         if self.rate is None and self.torque is None:
-            refuse([_missing("rate", "torque")])
+            refuse([missing_one_of("rate", "torque")])
         return self
-
-
-_Component = Annotated[float, Quantity("ratio")]
-_AlongOrVector = Annotated[
-    Annotated[Along, Tag("one")] | Annotated[tuple[_Component, _Component, _Component], Tag("list")], ONE_OR_LIST
-]
-
-
-def _one_words_or_vector(value: Any) -> str:
-    if not isinstance(value, (list, tuple)):
-        return "one"
-    return "words" if value and all(isinstance(each, str) for each in value) else "list"
-
-
-def _one_vector_or_table(value: Any) -> str:
-    return "one" if isinstance(value, str) else "list" if isinstance(value, (list, tuple)) else "table"
-
-
-_Up = Annotated[
-    Annotated[Along, Tag("one")]
-    | Annotated[tuple[Along, ...], Tag("words")]
-    | Annotated[tuple[_Component, _Component, _Component], Tag("list")],
-    Discriminator(_one_words_or_vector),
-]
-
-
-class _Held(Table):
-    """Keys of a plain arm that a direction may have of its own."""
-
-    level: Annotated[float, Quantity("acceleration", "positive")] | None = optional(
-        "centripetal acceleration at the control point; gravity comes on top, across it"
-    )
-    up: _Up | None = optional(
-        'direction of the specimen that is up: "+z", a vector, or several such as ["+z", "+x"], of which the first '
-        "that is not along load is taken"
-    )
-    onset: Jerk | None = optional("largest rate at which the level rises; or ramp")
-    ramp: Duration | None = optional("time from rest to the level; or onset")
-    dwell: Duration | None = optional("time at the level")
-    down: Duration | None = optional("time from the level to rest; as long as that up where it is left out")
-    radius: Length | None = optional("from the arm's axis to the control point")
-    control_point: ControlPoint | None = optional(
-        "point of the specimen at which the level holds, from the root: along x, or [x, y, z]"
-    )
-
-    @model_validator(mode="after")
-    def _one_way_up(self) -> Self:
-        if self.onset is not None and self.ramp is not None:
-            refuse([(("ramp",), wrong("is given beside onset", "keep onset or ramp, not both", mark="key"))])
-        return self
-
-    @property
-    def held(self) -> dict[str, Any]:
-        """Keys that are written, by name."""
-        return {key: value for key in _Held.model_fields if (value := getattr(self, key)) is not None}
-
-
-class TestDirection(_Held):
-    """One direction in which a plain arm tests its specimen, with keys that differ from the arm's."""
-
-    load: _AlongOrVector = Field(
-        description='direction of the specimen that points to the arm\'s axis: the level accelerates it that way, "+x"'
-    )
-
-
-class Arm(_Held):
-    """A plain arm: one axis that turns up to a level, holds it and stops, with a specimen in a fixed mounting."""
-
-    kind: Literal["arm"] = Field(description="kind of the motion")
-    load: _AlongOrVector | None = optional(
-        "direction of the specimen that points to the arm's axis: the level accelerates it that way, such as "
-        '"+x", or a vector; or directions'
-    )
-    directions: dict[
-        str,
-        Annotated[
-            Annotated[Along, Tag("one")]
-            | Annotated[tuple[_Component, _Component, _Component], Tag("list")]
-            | Annotated[TestDirection, Tag("table")],
-            Discriminator(_one_vector_or_table),
-        ],
-    ] = by_name(
-        "several directions by name, each a motion of its own, NAME-DIRECTION: the load's direction, or a table with "
-        'keys that differ: { fore = "+x", up = { load = "+z", level = "6 g" } }'
-    )
-    gravity: StrictBool = Field(
-        default=True, description="false to leave out the weight, which a test on the ground always has"
-    )
-
-    @property
-    def motions(self) -> dict[str, dict[str, Any]]:
-        """Keys of the motion of every direction, by its name; of one direction the name is empty."""
-        common = self.held
-        if not self.directions:
-            return {"": common | {"load": self.load}}
-        return {name: _merged(common, each) for name, each in self.directions.items()}
-
-    @model_validator(mode="after")
-    def _complete(self) -> Arm:
-        refuse(self._problems())
-        return self
-
-    def _problems(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        if self.load is None and not self.directions:
-            yield _missing("load", "directions")
-        if self.load is not None and self.directions:
-            yield ("load",), wrong("is given beside directions", "keep load or directions, not both", mark="key")
-        for name, keys in self.motions.items():
-            where: Loc = ("directions", name) if name else ()
-            for key, example in (
-                ("radius", '"3.3 m"'), ("control_point", "[0, 0, 0]"), ("level", '"9 g"'), ("up", '["+z", "+x"]'),
-                ("dwell", '"60 s"'),
-            ):  # fmt: skip
-                if key not in keys:
-                    of = f" of the direction {name}" if name else ""
-                    yield where, wrong(f"{key}{of} is missing", f"add {key} = {example}", mark="key")
-            if "onset" not in keys and "ramp" not in keys:
-                hint = 'add onset = "0.5 g/s", or ramp = "20 s"'
-                yield where, wrong("onset or ramp is missing", hint, mark="key")
-
-
-def _merged(common: dict[str, Any], direction: Any) -> dict[str, Any]:
-    """Keys of an arm with those that one of its directions has of its own."""
-    if not isinstance(direction, TestDirection):
-        return common | {"load": direction}
-    changed = direction.held
-    other = {"onset": "ramp", "ramp": "onset"}
-    kept = {key: value for key, value in common.items() if other.get(key) not in changed}
-    return kept | changed | {"load": direction.load}
 
 
 Motion = Annotated[Flight | Centrifuge | Hub | Arm, Discriminator("kind")]

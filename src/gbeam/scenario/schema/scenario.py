@@ -22,6 +22,7 @@ from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, S
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
 from gbeam.printable import advise, level_words, shortened, unprintable
 from gbeam.questions import QUESTIONS
+from gbeam.scenario.schema.arm import Arm
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -41,7 +42,7 @@ from gbeam.scenario.schema.fields import (
     refuse,
     wrong,
 )
-from gbeam.scenario.schema.motion import Arm, Centrifuge, Flight, Hub, Motion, Sensor
+from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
 from gbeam.scenario.schema.profile import PartOfRecord, Record
 
 if TYPE_CHECKING:
