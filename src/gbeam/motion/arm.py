@@ -14,10 +14,11 @@ from gbeam.guards.checks import positive, vector
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.combine import Sum
 from gbeam.motion.profiles.pulse import SmoothStep
-from gbeam.results.machine import ArmLevel
+from gbeam.results.machine import ArmLevel, Imbalance
 
 STEEPEST = 2.521152657241058  # largest derivative of s(x)² on 0 < x < 1, s(x) = x - sin(2πx)/2π: the rate's SmoothStep
 PARALLEL = 1e-6  # of a vector: less of it across another is none
+ROUNDING = 1e-9  # of the whole load on an arm: less of it is no imbalance
 SAMPLES = 2001  # between corners of the rate
 
 
@@ -158,3 +159,27 @@ def level_of(motion: Any) -> ArmLevel | None:
         reached=float(held[0]),
         ends=float(held[-1]),
     )
+
+
+def imbalance_of(motion: Any, level: ArmLevel | None, time: Floats, force: Floats, moment: Floats) -> Imbalance | None:
+    """Imbalance of what loads a plain arm with forces and moments on its root (t, 3), N and N m, at times (t,), s.
+
+    By the mean over the second half of the time at the level, in which what deforms and swings comes to rest; None
+    without a level, before it, or where the weight is not along the axis.
+    """
+    if level is None or (motion.gravity is not None and np.any(np.asarray(motion.gravity)[:2])):
+        return None
+    held = (time >= (level.reached + level.ends) / 2) & (time <= level.ends)
+    if not held.any():
+        return None
+    place, R_HB = np.asarray(motion.mount.place), np.asarray(motion.mount.R_HB)
+    on_arm, about_root = R_HB @ force[held].mean(axis=0), R_HB @ moment[held].mean(axis=0)
+    about_axis = about_root + np.cross(place, on_arm)
+    # In the arm's axes: F = Ω² Σ m r, and M = z × (Ω² Σ m z r + g Σ m r), r from the axis.
+    weight = 0.0 if motion.gravity is None else -float(motion.gravity[2])
+    static = on_arm * (1, 1, 0) / level.rate**2
+    dynamic = (np.cross(about_axis, (0, 0, 1)) - weight * static) / level.rate**2
+    rounding = ROUNDING * float(np.linalg.norm(on_arm)) / level.rate**2
+    static[np.abs(static) < rounding] = 0.0
+    dynamic[np.abs(dynamic) < rounding * level.radius] = 0.0
+    return Imbalance(static, dynamic, level.radius)

@@ -29,6 +29,22 @@ def levels(motions: Facts) -> Block:
     return table(rows, cells, caption if felt else "Level at the control point", optional=("centre, g", "corners, g"))
 
 
+def balance(motions: Facts) -> Block:
+    """Table of the imbalance of what plain arms carry, and the counterweight, a row for each of them."""
+    rows = [{"name": name, **each["hub"]["imbalance"], "radius": each["hub"]["level"]["radius"]}
+            for name, each in motions.items() if "imbalance" in each.get("hub", {})]  # fmt: skip
+    cells: Columns = {
+        "motion": "name",
+        "imbalance, kg m": "size",
+        "from the arm, deg": "angle",
+        "counterweight, kg": "counterweight",
+        "at, m": "radius",
+        "above the control point, mm": "height",
+        "left over, kg m²": "left",
+    }
+    return table(rows, cells, "Imbalance about the arm's axis, without the arm itself, and the counterweight across it")
+
+
 def _felt(motion: Facts) -> Facts:
     """Largest loads of the centre and of every corner of the only rigid specimen, m/s²; nothing of other bodies."""
     specimens = [each["specimen"] for each in motion.get("bodies", {}).values() if "specimen" in each]
