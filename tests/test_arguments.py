@@ -124,7 +124,8 @@ class Samples:
             "Hub": (
                 (),
                 {
-                    "radius": 0.5, "rate": 1.0, "inertia": 2.0, "pointing": "outward", "setting_angle": 0.0,
+                    "radius": 0.5, "rate": 1.0, "inertia": 2.0, "pointing": "outward",
+                    "setting_angle": None, "turn": (0.0, 0.0, 1.0), "control_point": (0.1, 0.0, 0.0),
                     "gravity": (0.0, 0.0, -9.8), "stiffness": 0.0, "damping": 0.0,
                 },
             ),
@@ -320,6 +321,13 @@ class Samples:
             "simulate_batch": (
                 ([(self.structure, self.still)],),
                 {"together": 2, "one_structure": False, "progress": None, **settings},
+            ),
+            "plain_arm": (
+                (),
+                {
+                    "radius": 3.3, "control_point": (0.1, 0.0, 0.0), "load": (1.0, 0.0, 0.0), "up": (0.0, 0.0, 1.0),
+                    "level": 90.0, "onset": None, "ramp": 20.0, "dwell": 60.0, "down": 10.0, "gravity": True,
+                },
             ),
             "smoothed": ((gb.constant(1.0), 0.1), {}),
             "solve_equilibrium": ((self.structure, base), {"time": 0.0}),

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from gbeam.printable import level_words
+from gbeam.report.arm import balance, levels
 from gbeam.report.blocks import (
     FIGURES,
     Block,
@@ -241,6 +242,7 @@ def study(facts: Facts) -> Blocks:
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
+    yield Section("Arm", (levels(motions), balance(motions)))
     alone = {name: each for name, each in bodies.items() if not several(each["of"])}
     response = _tips(bodies, head), stations_table(alone), loads_table(bodies, head), *parts_tables(bodies, head)
     yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))

@@ -245,6 +245,56 @@ class Tracking:
     fraction: float = entry("", "that of the load then")
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class ArmLevel(Part):
+    """Level that a plain arm holds at its control point: the centripetal acceleration there, gravity beside it."""
+
+    level: float = entry("m/s^2", "largest centripetal acceleration at the control point, without gravity")
+    radius: float = entry("m", "from the arm's axis to the control point")
+    control_point: Floats = entry("m", "control point, from the root", "axis")
+    load: Floats = entry("", "direction in which the level accelerates the specimen: towards the arm's axis", "axis")
+    up: Floats = entry("", "direction that is up: along the arm's axis", "axis")
+    rate: float = entry("rad/s", "largest rate of the arm")
+    onset: float = entry("m/s^3", "largest rate at which the level rises")
+    tangential: float = entry("m/s^2", "largest tangential acceleration at the control point, on the way up or down")
+    reached: float = entry("s", "time at which the level is reached")
+    ends: float = entry("s", "time until which it is held")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Imbalance(Part):
+    """Imbalance of all that a plain arm carries, without the arm itself, and the counterweight that cures it.
+
+    In axes of the arm: x from its axis to the control point, z up along it, from the control point's height.
+    """
+
+    static: Floats = entry("kg m", "mass times place from the arm's axis, Σ m r", "axis", frame="arm")
+    dynamic: Floats = entry("kg m^2", "that times the height above the control point, Σ m z r", "axis", frame="arm")
+    radius: float = entry("m", "from the arm's axis to the control point", key=None)
+
+    @declared("kg m", "size of the static imbalance", name=None)
+    def size(self) -> float:
+        return float(np.linalg.norm(self.static))
+
+    @declared("rad", "direction of the static imbalance about up, from the arm", name=None)
+    def angle(self) -> float:
+        return float(np.arctan2(self.static[1], self.static[0]))
+
+    @declared("kg", "counterweight across the axis, as far from it as the control point", name=None)
+    def counterweight(self) -> float:
+        return self.size / self.radius
+
+    @declared("m", "height of the counterweight above the control point", name=None)
+    def height(self) -> float:
+        return float(self.static @ self.dynamic) / self.size**2 if self.size > 0 else 0.0
+
+    @declared(
+        "kg m^2", "dynamic imbalance that it leaves, which takes two counterweights at different heights", name=None
+    )
+    def left(self) -> float:
+        return float(np.linalg.norm(self.dynamic - self.height * self.static))
+
+
 class Driven:
     """A result with the motion of a centrifuge's axes, if any, over its times."""
 
