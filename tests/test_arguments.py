@@ -124,7 +124,8 @@ class Samples:
             "Hub": (
                 (),
                 {
-                    "radius": 0.5, "rate": 1.0, "inertia": 2.0, "pointing": "outward", "setting_angle": 0.0,
+                    "radius": 0.5, "rate": 1.0, "inertia": 2.0, "pointing": "outward",
+                    "setting_angle": None, "turn": (0.0, 0.0, 1.0), "control_point": (0.1, 0.0, 0.0),
                     "gravity": (0.0, 0.0, -9.8), "stiffness": 0.0, "damping": 0.0,
                 },
             ),
@@ -321,6 +322,13 @@ class Samples:
                 ([(self.structure, self.still)],),
                 {"together": 2, "one_structure": False, "progress": None, **settings},
             ),
+            "plain_arm": (
+                (),
+                {
+                    "radius": 3.3, "control_point": (0.1, 0.0, 0.0), "load": (1.0, 0.0, 0.0), "up": (0.0, 0.0, 1.0),
+                    "level": 90.0, "onset": None, "ramp": 20.0, "dwell": 60.0, "down": 10.0, "gravity": True,
+                },
+            ),
             "smoothed": ((gb.constant(1.0), 0.1), {}),
             "solve_equilibrium": ((self.structure, base), {"time": 0.0}),
             "static": ((self.structure, self.still), {"time": 0.0, "name": "flight", "progress": None}),
@@ -349,7 +357,7 @@ class Samples:
             self.beam, self.beam.section, self.case, self.centrifuge.over(0.0, 0.2), self.flight, self.hub, self.hinge,
             self.settings, self.structure, box, gb.Feedback(self.law, ["hinge.angle"], ["hinge.angle"], 0.01),
             gb.Line.of_pieces([0.3]), gb.Sensor(), gb.Sine(1.0, 1.0, 0.0), gb.SmoothStep(1.0, 1.0, 0.0),
-            gb.SplineProfile(1.0, [0.0] * 12), gb.Sum((gb.constant(1.0), gb.constant(2.0))), comparison.mismatch,
+            gb.SplineProfile(1.0, [0.0] * 12), gb.Sum((gb.constant(1.0), gb.constant(2.0))), comparison.load_difference,
             self.responses[0].errors, gb.System({"bar": self.bar}, {"hinge": self.hinge}),
         ]  # fmt: skip
         matrices = gb.Section.of_matrices(np.eye(6), np.diag([0.2, 0.2, 0.2, 2e-5, 1e-5, 1e-5]))

@@ -24,7 +24,7 @@ from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kinds, below, kind_
 from gbeam.guards.units import unit_of
 from gbeam.mechanics.tree.joints import OF_COORDINATES
 from gbeam.results.errors import Errors
-from gbeam.results.measures import Mismatch
+from gbeam.results.measures import LoadDifference
 
 from .test_arguments import PUBLIC, Samples, called
 
@@ -255,7 +255,7 @@ def methods() -> dict[str, Callable[..., Any]]:
     """Methods, of every class that users get hold of, that take quantities or plain numbers."""
     classes = [each for name in gb.__all__ if isinstance(each := getattr(gb, name), type)]
     taken = {}
-    for kind in [*classes, Mismatch, Errors]:
+    for kind in [*classes, LoadDifference, Errors]:
         for name, method in inspect.getmembers(kind, of_gbeam):
             names = signature(method).parameters if inspect.isfunction(method) else ()
             if any(kind_of_argument(name, each, {}) for each in names):

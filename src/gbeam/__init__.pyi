@@ -41,6 +41,7 @@ from gbeam.mechanics.tree.system import Place as Place
 from gbeam.mechanics.tree.system import PointForce as PointForce
 from gbeam.mechanics.tree.system import RigidBody as RigidBody
 from gbeam.mechanics.tree.system import System as System
+from gbeam.motion.arm import plain_arm as plain_arm
 from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
 from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
 from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits

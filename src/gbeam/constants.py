@@ -20,6 +20,14 @@ SectionShape = Literal["rectangle", "circle", "tube", "general", "matrices"]
 JointKind = Literal["fixed", "revolute", "prismatic", "cylindrical", "universal", "spherical", "free"]
 Measure = Literal["root-shear", "root-moment", "vibration", "tip", "load"]  # of a place for a specimen
 MachineName = Literal["human-7.6m", "specimen-3.3m", "large-15m"]
+PresetName = Literal[  # of tests by standards, on a plain arm
+    "mil-std-810h-513-structural",
+    "mil-std-810h-513-operational",
+    "mil-std-810h-513-crash",
+    "aectp-400-404",
+    "ecss-e-st-10-03c-acceleration",
+    "iec-60068-2-7-ga",
+]
 RecordQuantity = Literal["specific-force", "acceleration"]
 # Of records, in whose place a text may give the size of a count, such as "1 g / 2048".
 AccelerationUnit = Literal["g", "m/s^2", "ft/s^2", "mg", "mm/s^2", "cm/s^2", "in/s^2"]
@@ -32,4 +40,5 @@ Rate = Literal[Coordinate, "wx", "wy", "wz"]
 Verb = Literal["run", "static", "modes", "critical-speed", "plan", "place", "campbell"]  # of questions
 Across = Literal["y", "z"]  # the beam
 Axis = Literal["x", "y", "z"]
+Along = Literal["+x", "-x", "+y", "-y", "+z", "-z"]  # directions along axes
 Direction = Literal["x", "y", "z", "rx", "ry", "rz"]  # the last three components of a rotation vector

@@ -105,8 +105,8 @@ def test_stretches_and_share(compared: Comparison) -> None:
     assert sum(accounting.shares.values()) == pytest.approx(1 - accounting.followed_share)
 
 
-def test_preload_is_what_exceeds_flight_and_idle(compared: Comparison) -> None:
-    first, second = compared.accounting.preloads
+def test_overload_is_what_exceeds_flight_and_idle(compared: Comparison) -> None:
+    first, second = compared.accounting.overloads
     assert (first.load / G, first.flight / G) == pytest.approx((3.16, 0.5))
     assert (first.start, first.end) == pytest.approx((6.5, 8.0))
     assert second.load / G == pytest.approx(7.0)
@@ -169,7 +169,7 @@ def test_accepted_by_each_limit(pair: tuple[Response, Response]) -> None:
     assert next(judged_lines(good)).startswith(kept)
     # What is not known decides nothing.
     unknown = compare(*reproduced(), accept={"root_moment": 0.5})
-    assert unknown.decision == "not decided" and str(unknown.criteria[0]) == "root moment unknown (limit 50 %)"
+    assert unknown.decision == "NOT DECIDED" and str(unknown.criteria[0]) == "root moment unknown (limit 50 %)"
 
 
 @pytest.mark.parametrize("accept", [{"tips": 0.1}, {"tip": -0.1}, {"tip": float("nan")}])
@@ -180,7 +180,7 @@ def test_limits_that_mean_nothing(accept: dict[str, float]) -> None:
 
 def test_the_tolerance_decides(pair: tuple[Response, Response]) -> None:
     wide = compare(*pair, tolerance=0.5).accounting
-    assert wide.followed_share == pytest.approx(1.0) and not wide.preloads
+    assert wide.followed_share == pytest.approx(1.0) and not wide.overloads
     # Of a peak's own size: 3.55 g made as 1.4 g, and 5 g turned by 30°, are within half of 10 g.
     assert [(peak.load / G, peak.error > 0.5) for peak in wide.missed] == [(pytest.approx(s), True) for s in (3.55, 5)]
     for tolerance in (0.01, 0.02, 0.1, 0.2, 0.51, 0.55, 0.7):
@@ -205,9 +205,9 @@ def test_a_tolerance_of_the_load_at_the_time_does_not_take_1_4_g_for_1_2(pair: t
     assert compare(*pair).accounting.followed_share > 0.25
     assert next(lines(instant.accounting)) == "followed means within 5 % of the load at the time"
     assert instant.accepted is False
-    # Below idle what the idling machine makes is no preload, whatever the load of the time is.
-    assert [each.time for each in instant.accounting.preloads] == [
-        each.time for each in compare(*pair).accounting.preloads
+    # Below idle what the idling machine makes is no overload, whatever the load of the time is.
+    assert [each.time for each in instant.accounting.overloads] == [
+        each.time for each in compare(*pair).accounting.overloads
     ]
     assert instant.accounting.allowed == pytest.approx(0.5 * G)
 

@@ -378,5 +378,5 @@ def test_options_are_the_command_lines(verb: str) -> None:
 
 
 def test_every_verb_of_a_scenario_is_on_the_page() -> None:
-    apart = {"app", "new", "check", "schema", "report", "rerun"}  # of the page itself, or of no scenario
+    apart = {"app", "new", "check", "presets", "schema", "report", "rerun"}  # of the page itself, or of no scenario
     assert {*program()} - {*offered()} == apart and {*offered()} <= {*program()}

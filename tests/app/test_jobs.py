@@ -113,11 +113,14 @@ def test_files_of_a_run_are_known_kinds_in_its_folder(tmp_path: Path) -> None:
         ('{"error": []}', "failed"),
         ("in words", "failed"),
         ('{"outcome": "diverged", "state": "diverged"}', "diverged"),
-        ('{"outcome": "done", "state": "not accepted"}', "not accepted"),
-        ('{"outcome": "done", "state": "machine limits exceeded"}', "machine limits exceeded"),
+        ('{"outcome": "done", "state": "NOT ACCEPTED"}', "NOT ACCEPTED"),
+        (
+            '{"outcome": "done", "state": "NOT ACCEPTED, machine limits exceeded"}',
+            "NOT ACCEPTED, machine limits exceeded",
+        ),
         ('{"outcome": "some cases not accepted"}', "some cases not accepted"),
         ('{"outcome": "done", "state": "done, largest load peak missed"}', "done, largest load peak missed"),
-        ('{"outcome": "done", "state": "accepted"}', "done"),
+        ('{"outcome": "done", "state": "PASS"}', "done"),
     ],
 )
 def test_a_result_that_is_not_what_was_asked_for_says_so(tmp_path: Path, answer: str, said: str) -> None:

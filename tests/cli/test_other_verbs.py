@@ -60,6 +60,15 @@ def test_schema(gbeam: Call) -> None:
     assert "beam" in gbeam("schema").json["properties"]
 
 
+def test_presets_are_listed_and_read(gbeam: Call) -> None:
+    listed = gbeam("presets")
+    assert "mil-std-810h-513-structural" in listed.out and "IEC 60068-2-7" in listed.out
+    text = gbeam("presets", "mil-std-810h-513-structural").out
+    assert 'dwell = "60 s"' in text and "table 513.8-I" in text
+    assert gbeam("presets", "aectp-400-404", "--json").json["asked"].keys() == {"level", "dwell", "directions"}
+    assert gbeam("presets", "mil-std").status == 2
+
+
 def test_version(gbeam: Call) -> None:
     assert gbeam("--version").out.strip()
 

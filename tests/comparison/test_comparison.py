@@ -30,25 +30,28 @@ def compared(pair: tuple[Any, Any]) -> Comparison:
 
 @pytest.mark.parametrize(("at", "advised"), [(0.15, True), (0.2, False), (0.218, False), (0.22, False), (0.24, True)])
 def test_what_is_placed_is_not_to_be_placed_again(compared: Comparison, at: float, advised: bool) -> None:
-    assert compared.mismatch is not None
-    moved = replace(compared, mismatch=replace(compared.mismatch, control_point=at))
+    assert compared.load_difference is not None
+    moved = replace(compared, load_difference=replace(compared.load_difference, control_point=at))
     assert ("gbeam place" in " ".join(lines(moved))) is advised
     small = replace(moved, peak_flight=1000 * moved.peak_flight)
     assert "gbeam place" not in " ".join(lines(small))
 
 
-def test_mismatch_bounds_are_those_of_a_uniform_cantilever(compared: Comparison) -> None:
-    mismatch = compared.mismatch
-    assert mismatch is not None and mismatch.control_point == 0.15 and mismatch.length == L
-    gradient = mismatch.max_gradient[2]
-    np.testing.assert_allclose(mismatch.force_bound[2], 0, atol=1e-12)
-    np.testing.assert_allclose(mismatch.moment_bound[2], M * L**3 * abs(1 / 3 - 1 / 4) * gradient, rtol=1e-9)
-    np.testing.assert_allclose(mismatch.tip_bound[2], M * L**5 / EI * abs(11 / 120 - 1 / 16) * gradient, rtol=2e-3)
-    np.testing.assert_allclose(mismatch.tip_envelope.max(axis=0), mismatch.tip_bound)
-    assert mismatch.max_acceleration[2] == pytest.approx(0.15 * gradient)
-    assert mismatch.best == pytest.approx((2 / 3 * L, 11 / 15 * L), rel=2e-3)
+def test_bounds_of_the_loads_difference_are_those_of_a_uniform_cantilever(compared: Comparison) -> None:
+    load_difference = compared.load_difference
+    assert load_difference is not None and load_difference.control_point == 0.15 and load_difference.length == L
+    gradient = load_difference.max_gradient[2]
+    np.testing.assert_allclose(load_difference.force_bound[2], 0, atol=1e-12)
+    np.testing.assert_allclose(load_difference.moment_bound[2], M * L**3 * abs(1 / 3 - 1 / 4) * gradient, rtol=1e-9)
     np.testing.assert_allclose(
-        mismatch.field(np.array([0.15, 0.3]))[:, :, 2].T, [0 * mismatch.gradient[:, 2], 0.15 * mismatch.gradient[:, 2]]
+        load_difference.tip_bound[2], M * L**5 / EI * abs(11 / 120 - 1 / 16) * gradient, rtol=2e-3
+    )
+    np.testing.assert_allclose(load_difference.tip_envelope.max(axis=0), load_difference.tip_bound)
+    assert load_difference.max_acceleration[2] == pytest.approx(0.15 * gradient)
+    assert load_difference.best == pytest.approx((2 / 3 * L, 11 / 15 * L), rel=2e-3)
+    np.testing.assert_allclose(
+        load_difference.field(np.array([0.15, 0.3]))[:, :, 2].T,
+        [0 * load_difference.gradient[:, 2], 0.15 * load_difference.gradient[:, 2]],
     )
 
 
@@ -78,7 +81,7 @@ def test_statistics_root_and_verdict(compared: Comparison, pair: tuple[Any, Any]
     assert pair_of["root_moment"].flight == pytest.approx(moment, rel=1e-4)
     assert pair_of["stress"].flight == pytest.approx(compared.root.stress_flight, rel=1e-3)
     assert pair_of["root_force"].flight == pytest.approx(M * L * 98.0665, rel=5e-3)
-    # The corner's vibration, 0.0836 mm on 2.88 mm, and the mismatch on top.
+    # The corner's vibration, 0.0836 mm on 2.88 mm, and the load's difference on top.
     assert 1.02 < pair_of["tip"].ratio < 1.1 and "above the flight's" in compared.findings[-1]
     (peak,) = compared.accounting.peaks
     assert peak.load == pytest.approx(98.0665) and peak.error < 1e-3 and compared.accounting.followed_share == 1
@@ -161,7 +164,7 @@ def test_comparison_needs_no_loads(pair: tuple[Any, Any]) -> None:
     flight, arm = (with_body(each, loads=None, acceleration=None, frequencies=np.empty(0)) for each in pair)
     bare = compare(flight, arm)
     assert bare.root is None and bare.shock is None and bare.stations is None
-    assert bare.mismatch is not None
+    assert bare.load_difference is not None
 
 
 def test_shock_spectrum(compared: Comparison) -> None:

@@ -100,7 +100,7 @@ def test_every_peak_above_idle_is_made() -> None:
     assert size(built - flight)[size(flight) >= IDLE].max() < 0.07 * G
 
 
-def test_below_idle_the_arm_keeps_idle_and_the_specimen_is_not_preloaded() -> None:
+def test_below_idle_the_arm_keeps_idle_and_the_specimen_is_loaded_no_more() -> None:
     machine = spin("f16_pulls_and_push")
     t = np.linspace(0, LAST["f16_pulls_and_push"], 36001)
     arm = np.sqrt((R * machine.axes(t).rate1 ** 2) ** 2 + G**2)

@@ -166,7 +166,7 @@ def test_the_answer_is_applied(tmp_path: Path, capsys: pytest.CaptureFixture[str
     first = json.loads(capsys.readouterr().out)
     assert first["set"] == ["motion.spin.control_point=217.955 mm"] and first["written"] is None
     for measure in MEASURES:  # all of them, before and after
-        assert first["mismatch"]["current"][measure] > 0 and first["total_error"]["best"][measure] > 0
+        assert first["difference"]["current"][measure] > 0 and first["total_error"]["best"][measure] > 0
     assert first["verifications"]["best"]["vibration"] < 0.1 * first["verifications"]["current"]["vibration"]
     assert main([*command, "--no-proof", "--set", first["set"][0], "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
@@ -181,7 +181,7 @@ def test_the_answer_is_applied(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_a_placement_says_when_the_load_itself_dominates() -> None:
     jerk = LimitUse("axis 2", "jerk", "rad/s^3", 10.0, 10.0, 1.25)
     best = Candidate("upright", 0.06, 0.22, 0.001, 0.041, (1.0, 2.0, 0.0), 1.0, most_used=jerk, tracking=0.04)
-    before = replace(best, control_point=0.15, mismatch=0.01, total_error=0.043)
+    before = replace(best, control_point=0.15, difference=0.01, total_error=0.043)
     placement = Placement("f", "s", {"tip": 1.0}, 0.3, best, (best,), 0.15, {}, before=before)
     assert placement.changes == {"control_point": "220 mm"}
     assert "no lever" in placement.message and "makes 4 %, and axis 2 jerk 10 of 10" in placement.message

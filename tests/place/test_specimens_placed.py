@@ -116,7 +116,7 @@ def test_what_does_not_rest_is_refused(flight: Any, spin: Any, settings: Any) ->
         placed(moved, flight, spin, settings, "tip")
     held = gb.Joint(**hinge, rate=0.0)
     best = placed(gb.System({"strip": structure}, {"hinge": held}), flight, spin, settings, "tip")
-    assert best.best.mismatch < 1e-3 and not best.warnings
+    assert best.best.difference < 1e-3 and not best.warnings
     rubbed = gb.Joint(**hinge, stiffness=100.0, friction=0.1)
     assert (
         "friction of hinge.angle is left out: its joint moves freely"
@@ -193,7 +193,7 @@ def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_
     along = place(
         CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine, along="x"
     )
-    assert along.best.place[1:] == (0.0, 0.0) and along.best.mismatch > 100 * placement.best.mismatch
+    assert along.best.place[1:] == (0.0, 0.0) and along.best.difference > 100 * placement.best.difference
     with pytest.raises(gb.InputError, match="along is 'q'"):
         place(CASE.structure, ROUND, choice_of(machine), SPELL, {"load": 1.0}, current=machine, along="q")
 
@@ -245,7 +245,7 @@ def test_where_and_which_way_round_beats_a_grid_of_both() -> None:
             away = np.asarray(CASE.corners)[None] - places[:, None]
             apart = np.einsum("tij,pcj->tpci", growth, away)
             least = min(least, float(np.linalg.norm(apart, axis=-1).max(axis=(0, 2)).min() / in_flight))
-    assert placement.best.mismatch < least
+    assert placement.best.difference < least
     best = spun(control_point=placement.best.place, turn=placement.best.turn, mounting=placement.best.mounting)
     assert largest_difference(best, times) == pytest.approx(placement.totals["best"]["load"], rel=0.05)
     assert largest_difference(best, times) < 0.6 * largest_difference(machine, times)
@@ -276,7 +276,7 @@ def test_a_place_in_space_is_written_and_read_again(tmp_path: Path, capsys: pyte
     assert main([*command, *settings, "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again["set"] == []
-    assert again["before"]["mismatch"] == pytest.approx(first["options"][0]["mismatch"], rel=1e-4)
+    assert again["before"]["difference"] == pytest.approx(first["options"][0]["difference"], rel=1e-4)
     assert main([*command, "--write", "--out", str(tmp_path / "out"), "--report"]) == 0
     assert "turned by (" in capsys.readouterr().out and "# kept" in file.read_text(encoding="utf-8")
     assert "turned by (" in (tmp_path / "out" / "place.html").read_text(encoding="utf-8")

@@ -43,8 +43,8 @@ def used(machine_plan: MachinePlan, axis: str, quantity: str) -> float:
 @pytest.mark.parametrize(
     ("inverse", "largest", "rms", "rate", "acceleration"),
     [
-        ("quasi-static", 14.0, 4.5, 74.8, 48.5e3),
-        ("flat", 4.2, 0.83, 381, 348e3),
+        ("quasi-static", 14.0, 4.5, 79.2, 55.4e3),
+        ("flat", 4.2, 0.83, 572, 391e3),
         ("exact", 8.2e-7, 2.5e-8, 13.0, 591),
     ],
 )

@@ -25,7 +25,7 @@ from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import declarations
 from gbeam.results.equilibrium import BodyRest, Rest
 from gbeam.results.machine import LimitUse
-from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock
+from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock
 from gbeam.results.parts import Base, Loads
 from gbeam.results.response import Response
 from gbeam.results.study import Study
@@ -294,7 +294,7 @@ def test_comparison(study: Study) -> None:
     gradient = np.outer(np.linspace(0, -4, len(compared.time)), [1.0, 2.0, 3.0])
     bounds = {name: np.array([1e-6, 2e-6, 3e-6]) for name in ("tip_bound", "force_bound", "moment_bound")}
     most = np.abs(gradient).max(axis=0)
-    full = replace(compared, mismatch=Mismatch(0.1, gradient, most, 0.2 * most, **bounds, length=0.3))
+    full = replace(compared, load_difference=LoadDifference(0.1, gradient, most, 0.2 * most, **bounds, length=0.3))
     (panel,) = plot_comparison(full, "t").axes
     lines = _lines(panel)
     np.testing.assert_allclose(lines["at the root"], -0.1 * gradient[:, 2])

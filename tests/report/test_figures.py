@@ -18,7 +18,7 @@ from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
 from gbeam.results.comparison import Comparison
-from gbeam.results.measures import Mismatch, RootHistory, RootLoads, Shock, Sizes
+from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock, Sizes
 from gbeam.results.measures import Statistics as Apart
 from gbeam.results.result import Result
 from gbeam.results.study import Study
@@ -103,14 +103,16 @@ def _column(*, follower: bool, **modes: int) -> gb.Structure:
 
 
 def _apart(compared: Comparison) -> Comparison:
-    """A comparison with root loads, a mismatch, trends and vibrations."""
+    """A comparison with root loads, a difference of the load, trends and vibrations."""
     t, one = compared.time, np.ones((1, 3))
     waves = [np.outer(k + np.sin(t), [1.0, 2.0, 3.0]) for k in range(9)]
     root = RootLoads(*(np.arange(3.0) + k for k in range(6)), 1.0, 2.0, 3.0, RootHistory(*waves[:4]))
     most = np.abs(waves[4]).max(axis=0)
-    mismatch = Mismatch(0.1, waves[4], most, 0.2 * most, most, most, most, length=0.3)
+    load_difference = LoadDifference(0.1, waves[4], most, 0.2 * most, most, most, most, length=0.3)
     sizes = [Sizes(one, one, one) for _ in range(3)]
-    return replace(compared, root=root, mismatch=mismatch, stations=Apart(np.array([0.3]), 5.0, *sizes, *waves[5:]))
+    return replace(
+        compared, root=root, load_difference=load_difference, stations=Apart(np.array([0.3]), 5.0, *sizes, *waves[5:])
+    )
 
 
 def _sparse(plan: gb.MachinePlan) -> gb.MachinePlan:

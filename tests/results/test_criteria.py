@@ -99,12 +99,12 @@ def test_what_is_not_known_is_not_decided() -> None:
         "stress unknown (limit 50 %)",
         "damage unknown (limit 0.111 to 9)",
     ]
-    assert unknown.accepted is None and unknown.decision == unknown.acceptance == "not decided"
+    assert unknown.accepted is None and unknown.decision == unknown.acceptance == "NOT DECIDED"
     assert unknown.refusal == "stress unknown (limit 50 %), damage unknown (limit 0.111 to 9)"
-    assert state_of("done", [unknown]) == state_of("done", [unknown, Imitation({"tip": 0.06})]) == "not decided"
+    assert state_of("done", [unknown]) == state_of("done", [unknown, Imitation({"tip": 0.06})]) == "NOT DECIDED"
     missed = Imitation({"stress": 0.5, "tip": 0.01})
     assert missed.accepted is False and missed.refusal == "tip +5.0 % (limit 1 %)"
-    assert state_of("done", [unknown, missed]) == "not accepted"
+    assert state_of("done", [unknown, missed]) == "NOT ACCEPTED"
     none = PeakPair(flight=0.0, machine=1.26749)
     for machine, words in (
         (1.26749, "root moment unknown as flight has none and the machine makes 1.267 N m (limit 50 %)"),
@@ -119,15 +119,15 @@ def test_what_is_not_known_is_not_decided() -> None:
 def test_states() -> None:
     good, bad = Imitation({"tip": 0.06}), Imitation({"tip": 0.01})
     assert state_of("diverged", [bad]) == "diverged"
-    assert state_of("done", [good, bad]) == "not accepted"
-    assert state_of("done", [good], exceeded=True) == "machine limits exceeded"
+    assert state_of("done", [good, bad]) == "NOT ACCEPTED"
+    assert state_of("done", [good], exceeded=True) == "NOT ACCEPTED, machine limits exceeded"
     assert (state_of("done", [good]), state_of("done", [Imitation({})]), state_of("done", [])) == (
-        "accepted",
+        "PASS",
         "done",
         "done",
     )
     good.accounting = Accounting(0.05, 4.0, 14.0, (0.0, 9.0), 0.8, (MISSED,), ())
-    assert state_of("done", [good]) == "accepted, largest load peak missed"
+    assert state_of("done", [good]) == "PASS, largest load peak missed"
 
 
 @pytest.mark.parametrize(

@@ -77,9 +77,24 @@ def test_a_machine_beyond_its_limits_does_not_pass() -> None:
 
 
 def test_a_plan_does_not_pass_what_needs_a_response() -> None:
-    imitation = Imitation({"tip": 0.5, "followed": 0.9})
+    imitation = Imitation({"tip": 0.5, "followed": 0.9}, known=("largest_load",))
     imitation.with_response = False
-    check(imitation, "NOT DECIDED: 1 limit needs `gbeam run`; kept: followed 93 % of the time (limit 90 % or more)")
+    check(
+        imitation,
+        "Machine alone, no limit missed: followed 93 % of the time (limit 90 % or more); largest load 0.979 g",
+    )
+    assert imitation.findings[-1] == "Specimen: its limits of tip are judged by `gbeam run`."
+    without = Imitation(ALL)
+    without.peaks, without.with_response = imitation.peaks, False
+    without.accept = {name: limit for name, limit in ALL.items() if RULES[name].response}
+    check(without, "Machine alone, no limit judged: largest load 0.979 g (flight 0.816 g), followed 93 % of the time")
+    assert without.findings[-1] == "Specimen: its limits of tip, root force and 2 more are judged by `gbeam run`."
+
+
+def test_the_headline_names_the_point_that_is_judged() -> None:
+    imitation = Imitation({"tip": 0.1})
+    imitation.point = "camera"
+    check(imitation, "NOT ACCEPTED: camera +20 % (limit 10 %); largest load 0.979 g")
 
 
 def test_a_missed_limit_of_the_same_kind_stands_beside() -> None:

@@ -142,7 +142,7 @@ def test_spectra_at_the_corner_of_a_rigid_box() -> None:
 def test_damage_is_unknown_where_there_is_no_stress() -> None:
     box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.0, 0.0, 0.05))
     compared = gb.compare(*runs(box.structure), accept={"damage": 2.0})
-    assert compared.fatigue is None and compared.decision == "not decided"
+    assert compared.fatigue is None and compared.decision == "NOT DECIDED"
 
 
 def test_the_plane_where_a_stress_ranges_most() -> None:

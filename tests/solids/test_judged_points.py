@@ -39,10 +39,10 @@ def test_a_point_of_a_beam_and_of_its_solid_is_judged_alike() -> None:
     assert theirs.peak_flight[2] == np.abs(of_beam()[0].displacement[:, station, 2])[theirs.covered].max()
     assert theirs.peaks["tip"].flight < 0.4 * whole.peaks["tip"].flight
     assert theirs.criteria[0].value == theirs.peaks["tip"].ratio - 1 != whole.criteria[0].value
-    assert theirs.stations is not None and theirs.stations.tip == station and theirs.mismatch is not None
+    assert theirs.stations is not None and theirs.stations.tip == station and theirs.load_difference is not None
     moved, both = of_beam()[0].displacement[:, station], theirs.stations
     np.testing.assert_allclose(both.trend_flight + both.vibration_flight, moved, atol=1e-15)
-    assert np.isnan(theirs.mismatch.tip_bound).all() and np.isfinite(whole.mismatch.tip_bound).any()  # type: ignore[union-attr]
+    assert np.isnan(theirs.load_difference.tip_bound).all() and np.isfinite(whole.load_difference.tip_bound).any()  # type: ignore[union-attr]
     with pytest.raises(gb.InputError, match="point is 'nose'; choose from half, tip"):
         gb.compare(*of_beam(), point="nose")
 

@@ -147,7 +147,7 @@ def test_where_a_tenth_of_the_nodes_would_be_left_out_the_largest_stress_is_not_
     options: Any = {"duration": 2.0, "step": 0.01, "integrator": "gauss", "estimate": False}
     runs = [gb.simulate(structure, motion, **options) for motion in (turn, machine)]
     compared = gb.compare(*runs, accept={"stress": 0.5, "damage": 9.0})
-    assert compared.decision == "not decided" and compared.accepted is None
+    assert compared.decision == "NOT DECIDED" and compared.accepted is None
     assert "limits not known: stress unknown (limit 50 %), damage unknown" in " ".join(comparison_lines(compared))
     assert gb.compare(*runs, stress_at="middle", accept={"stress": 9.0}).accepted is True
 
@@ -355,5 +355,5 @@ def test_a_run_whose_limit_is_not_decided_ends_with_status_1(
     assert "motion.spin NOT DECIDED: stress unknown (limit 50 %)\n" in answer.err
     facts = json.loads(answer.out)
     (compared,) = facts["comparisons"]
-    assert (facts["outcome"], facts["state"], compared["accepted"]) == ("done", "not decided", None)
+    assert (facts["outcome"], facts["state"], compared["accepted"]) == ("done", "NOT DECIDED", None)
     assert {each["name"]: each["passed"] for each in compared["criteria"]} == {"stress": None, "tip": True}

@@ -119,7 +119,7 @@ def test_a_bracket_with_a_corner_is_flown_and_spun_as_two_beams_at_right_angles(
         "largest_load"
     ]
     assert (
-        compared.mismatch is None
+        compared.load_difference is None
         and spun.body.influence is None
         and growth.machine == pytest.approx(largest.machine, rel=1e-3)
     )

@@ -161,7 +161,7 @@ def test_how_probable_it_is_that_a_machine_is_accepted(fast: Path, gbeam: Call) 
     command = ("--measure", "verdict.tip, verdict.accepted", "--samples", "6", "--out", "there", "--netcdf")
     answer = gbeam("sweep", fast, *command)
     assert answer.status == 0 and "verdict.accepted, of 6 draws" in answer.out and "probability" in answer.out
-    assert "not accepted" in answer.out and "are not done" not in answer.out
+    assert "NOT ACCEPTED" in answer.out and "are not done" not in answer.out
     with xr.open_zarr("there/sweep.zarr") as data, xr.open_dataset("there/sweep.nc") as same:
         accepted = data["verdict.accepted"].values
         assert np.array_equal(accepted == 1, np.abs(data["verdict.tip"].values) <= 2e-4) and 0 < accepted.sum() < 6

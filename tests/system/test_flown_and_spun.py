@@ -112,7 +112,7 @@ def read(structure: str, tmp_path: Path, *changes: str) -> Any:
 
 def test_a_scenario_of_a_system_is_judged_as_one_of_a_beam(tmp_path: Path) -> None:
     beam, system = (gb.study(read(each, tmp_path)) for each in (OF_BEAM, OF_SYSTEM))
-    assert isinstance(system, gb.Study) and system.state == beam.state == "not accepted"
+    assert isinstance(system, gb.Study) and system.state == beam.state == "NOT ACCEPTED"
     (one,), (other,) = beam.comparisons, system.comparisons
     for a, b in zip(one.criteria, other.criteria, strict=True):
         assert (a.name, a.passed) == (b.name, b.passed)

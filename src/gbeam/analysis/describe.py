@@ -16,6 +16,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
+from gbeam.motion.arm import level_of
 from gbeam.motion.protocol import notes_on
 from gbeam.results.description import (
     BodyDescription,
@@ -74,6 +75,7 @@ def describe(case: Case) -> Description:
         motions={name: motion.kind for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
         spans=dict(case.spans),
+        levels={name: level for name, each in case.motions.items() if (level := level_of(each)) is not None},
         scales={name: each.level_factor for name, each in flights.items() if each.level_factor is not None},
         records={name: each.record for name, each in flights.items() if each.record is not None},
         notes=notes_on({name: motion for name, motion in case.motions.items() if name not in flights}),

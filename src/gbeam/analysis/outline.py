@@ -162,7 +162,7 @@ def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
-    """Radius and orientation of the hub that carries a beam; empty without a hub."""
-    if motion is None or motion.kind != "hub":
+    """Radius and orientation of the hub that carries a beam; empty without a hub, or with a root beside its x axis."""
+    if motion is None or motion.kind != "hub" or np.any(motion.mount.place[1:]):
         return {}
-    return {"radius": float(motion.mount.radius), "R_HB": np.asarray(motion.mount.R_HB)}
+    return {"radius": float(motion.mount.place[0]), "R_HB": np.asarray(motion.mount.R_HB)}

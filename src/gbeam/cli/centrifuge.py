@@ -44,8 +44,9 @@ def plan(
     Prints what the axes do, what that uses of the machine's limits, which peaks of the load are reproduced and why not
     the others, and the largest load on the specimen, which a [beam] or bodies give its size. Limits of
     [motion.NAME.accept] that need no response are judged. With --out also writes the axis motions at the controller's
-    sample time (commands_NAME.csv and .mat) and plots, with --report plan.html. Exit status: 0 done, 1 a limit of the
-    machine is exceeded or one of acceptance not kept, 2 the input is wrong.
+    sample time (commands_NAME.csv and .mat) and plots, with --report plan.html. A plan judges the machine, a run the
+    specimen: limits that need its response are named, and do not count. Exit status: 0 done, 1 a limit of the machine
+    is exceeded or one of acceptance not kept or not known, 2 the input is wrong.
     """
     folder = output.folder(scenario)
 
@@ -61,7 +62,7 @@ def plan(
         raise InputError("--sample", f"is {sample}", 'give a positive time, such as "5 ms"')
 
     from gbeam.analysis.imitation import plan as analysis
-    from gbeam.results.criteria import in_capitals, judging
+    from gbeam.results.criteria import judging
 
     origin = provenance(environments, command())
     tables = {name: table for name, table in environments.motion.items() if isinstance(table, schema.Centrifuge)}
@@ -94,7 +95,7 @@ def plan(
         complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
     refused = [each for each in plans if each.refusal]
     for each in refused:
-        complain(f"motion.{each.name} {in_capitals(each.decision)}: {each.refusal}")
+        complain(f"motion.{each.name} {each.decision}: {each.refusal}")
     return FAILED if refused or (broken and not ignore_limits) else 0
 
 
@@ -145,7 +146,7 @@ def place(
 
     Prints the --set options that apply the answer; --write writes it, and no change made by --set, into the scenario
     file, whose comments stay. Options that exceed the machine's limits are listed but not chosen, unless
-    --ignore-limits is given. With --out also writes place.json and a plot of the mismatch, with --report
+    --ignore-limits is given. With --out also writes place.json and a plot of the load's difference, with --report
     place.html. Exit status: 0 done, 1 every option exceeds the limits, 2 the input is wrong.
     """
     weights = None if measure is None else parse(measure)

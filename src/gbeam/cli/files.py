@@ -1,10 +1,10 @@
-"""Verbs of files: ``gbeam check``, ``new`` and ``schema``; and ``gbeam app``, which edits and runs them."""
+"""Verbs of files: ``gbeam check``, ``new``, ``presets``, ``schema``; and ``gbeam app``, which edits and runs them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -14,6 +14,7 @@ from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option, read, 
 from gbeam.cli.outputs import list_files, show, write_json
 from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
+from gbeam.constants import PresetName
 from gbeam.errors import InputError
 from gbeam.printable import printable
 
@@ -99,6 +100,28 @@ def _removed_if_incomplete(file: Path) -> Iterator[None]:
     except OSError:  # the disk is full
         file.unlink()
         raise
+
+
+def presets(
+    name: Annotated[PresetName | None, Parameter(help="Of a preset, to print its text.")] = None,
+    /,
+    *,
+    json: Json = False,
+) -> int:
+    """Tests of standards on a plain arm, with their figures and clauses: their names, or the text of one.
+
+    A scenario takes one by its name at the key preset of a motion of kind arm, and gives what it asks for.
+    """
+    from gbeam.scenario.presets import PRESETS, preset_of, text_of
+
+    if name is not None:
+        show(text_of(name).rstrip("\n"), asdict(preset_of(name)), json)
+        return 0
+    known = {each: preset_of(each) for each in PRESETS}
+    widest = max(map(len, known))
+    lines = [f"{each:<{widest}}  {preset.standard}: {preset.title}" for each, preset in known.items()]
+    show("\n".join(lines), {each: asdict(preset) for each, preset in known.items()}, json)
+    return 0
 
 
 def schema(

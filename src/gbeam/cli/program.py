@@ -38,6 +38,7 @@ _FILES = {
     "app": ("files", "Edit, run and compare scenarios in a browser, on this computer only."),
     "check": ("files", "Say what a scenario means, without computing a response."),
     "new": ("files", "Write a commented scenario to start from."),
+    "presets": ("files", "Tests of standards on a plain arm, with their figures and clauses."),
     "schema": ("files", "Print the JSON schema of scenario files, for editors."),
 }
 _INTERRUPTED = 130

@@ -49,7 +49,7 @@ def run(
         Thread(target=_import_leaves, daemon=True).start()
 
     from gbeam.analysis.environments import study
-    from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, in_capitals
+    from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED
 
     with Watch() as watch, loaded.placing():
         answer = study(loaded.case, watch)
@@ -62,7 +62,7 @@ def run(
     refused = {NOT_ACCEPTED: answer.not_accepted, NOT_DECIDED: answer.not_decided}
     for decision, reasons in refused.items():
         for name, which in reasons.items():
-            complain(f"motion.{name} {in_capitals(decision)}: {which}")
+            complain(f"motion.{name} {decision}: {which}")
     kept = not any(refused.values()) and (ignore_limits or not answer.exceeding)
     return 0 if answer.outcome == "done" and kept else FAILED
 

@@ -231,7 +231,7 @@ def _compared(study: Study, title: str) -> dict[str, Describe]:
     described: dict[str, Describe] = {}
     for compared in study.comparisons:
         of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")
-        parts = compared.root or compared.stations or compared.mismatch
+        parts = compared.root or compared.stations or compared.load_difference
         # Without parts a comparison is the difference that a tip's figure has.
         apart = parts or not any(response.at_tip(compared, body) for body in response.bodies(study))
         described |= {name: each for name, each in of_pair.items() if apart or name.startswith("shock")}

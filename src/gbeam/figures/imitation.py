@@ -1,4 +1,4 @@
-"""Differences of a centrifuge's response from the flight's: root loads, slow and fast parts, mismatch, spectra."""
+"""Differences of a centrifuge's response from the flight's: root loads, slow and fast parts, loads, spectra."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _Part = tuple[str, str, str, dict[str, Floats]]  # what it shows, SI unit, quant
 
 
 def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
-    """Describe root loads, tip and mismatch along an axis over time, as a comparison has them; else the difference."""
+    """Describe root loads, tip and load along an axis over time, as a comparison has them; else the difference."""
     c = comparison
-    shown = [*_root(c, axis), *_tip(c, axis), *_mismatch(c, axis)]
+    shown = [*_root(c, axis), *_tip(c, axis), *_load_difference(c, axis)]
     shown = shown or [("tip displacement", "m", "difference", {_less(c): c.difference[:, axis]})]
     height = 0.85 if len(shown) > 1 else 1.6
     spans = stretches(None, c.time, c.accounting)
@@ -29,7 +29,7 @@ def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
 
 
 def _panel(c: Comparison, title: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
-    """Panel of lines by name, that of flight broad, scaled to the times at which the target is not held."""
+    """Panel of lines by name, that of flight broad, scaled to the times at which the target is the flight's load."""
     covered = c.covered if c.covered.any() else ~c.covered
     scale, unit = scale_of(si, *(each[covered] for each in lines.values()))
     others = [name for name in lines if name != c.flight]
@@ -63,24 +63,24 @@ def _root(c: Comparison, axis: int) -> Iterator[_Part]:
 
 
 def _tip(c: Comparison, axis: int) -> Iterator[_Part]:
-    """Slow difference of the tip, beside that which a slow mismatch implies, and the tip's elastic vibrations."""
+    """Slow difference of the tip, beside what a slow difference of the load implies, and its elastic vibrations."""
     stations = c.stations
     if stations is None:
         return
     lines = {_less(c): stations.trend_difference[:, axis]}
-    if c.mismatch is not None and np.isfinite(c.mismatch.tip_bound[axis]):
-        envelope = c.mismatch.tip_envelope[:, axis]
+    if c.load_difference is not None and np.isfinite(c.load_difference.tip_bound[axis]):
+        envelope = c.load_difference.tip_envelope[:, axis]
         lines |= {"what a slow difference of load implies": envelope, "and its negative": -envelope}
     yield f"tip's trend, below {stations.cutoff:.3g} Hz", "m", "difference", lines
     lines = {c.flight: stations.vibration_flight[:, axis], c.centrifuge: stations.vibration_centrifuge[:, axis]}
     yield f"tip's elastic vibration, above {stations.cutoff:.3g} Hz", "m", "displacement", lines
 
 
-def _mismatch(c: Comparison, axis: int) -> Iterator[_Part]:
-    if c.mismatch is not None:
-        field = c.mismatch.field(np.array([0.0, c.mismatch.length]))[:, :, axis]
+def _load_difference(c: Comparison, axis: int) -> Iterator[_Part]:
+    if c.load_difference is not None:
+        field = c.load_difference.field(np.array([0.0, c.load_difference.length]))[:, :, axis]
         lines = {"at the root": field[:, 0], "at the tip": field[:, 1]}
-        yield "load on the machine less in flight", "m/s^2", "mismatch", lines
+        yield "load on the machine less in flight", "m/s^2", "difference", lines
 
 
 def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
@@ -99,7 +99,7 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
 
 
 def placement(result: Placement, title: str = "") -> Figure:
-    """Describe what a placement leaves of each measure of the mismatch, beside other control points."""
+    """Describe what a placement leaves of each measure of the load's difference, beside other control points."""
     measures = tuple(next(iter(result.values.values()), {}))
     bars = {place: 100 * np.array([values[each] for each in measures]) for place, values in result.values.items()}
     panel = Panel(

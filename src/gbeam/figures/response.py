@@ -125,11 +125,11 @@ def _displacement(study: Study, moved: Mapping[str, BodyResponse], axis: int, *,
 
 
 def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span, ...]) -> Panel:
-    """Panel of the difference from flight along an axis, scaled to the times at which the target was not held."""
+    """Panel of the difference from flight along an axis, scaled to times at which the target is the flight's."""
     difference, covered = compared.difference[:, axis], compared.covered
     counted = difference[covered] if covered.any() else difference
     scale, unit = scale_of("m", counted)
-    # A difference from flight while the target is held must not set the scale.
+    # A difference from flight while the target is another load must not set the scale.
     limits = ends_of(covered, scale * difference)
     beyond = limits is not None and largest(difference) > 1.05 * largest(counted)
     title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")

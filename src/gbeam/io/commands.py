@@ -80,7 +80,9 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
         "Units: time s, angles rad, rates rad/s, accelerations rad/s^2.",
         *FRAME,
     ]
-    lines[1:1] = [f"TARGET HELD {start:.3f} to {end:.3f} s: {why}" for start, end, why in plan.axes.episodes]
+    lines[1:1] = [
+        f"TARGET OTHER THAN FLIGHT {start:.3f} to {end:.3f} s: {why}" for start, end, why in plan.axes.episodes
+    ]
     if plan.provenance is not None:
         lines += origin_lines(plan.provenance)
     if plan.outcome != "done":

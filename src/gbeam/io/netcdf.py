@@ -64,7 +64,7 @@ def response_group(response: Response) -> Group:
 def plan_group(plan: MachinePlan) -> Group:
     """Return what a file holds of a plan."""
     axes, load, group = group_of(plan.axes), group_of(plan.accounting), whole_group(plan)
-    # Where the target is held, and where the load is not the flight's, are two things.
+    # Where the target is not the flight's load, and where the load is not the flight's, are two things.
     judged = {f"load_{name}" if name in axes.variables else name: each for name, each in load.variables.items()}
     variables = axes.variables | limits_variables(plan.axes.limits) | known(judged) | group.variables
     return completed(Group(variables, group.coordinates, group.attrs))

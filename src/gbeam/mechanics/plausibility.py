@@ -328,7 +328,9 @@ def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
 
 def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterator[str]:
     """A beam that a hub speeds up or slows down against its stiff direction, where nothing says that this is meant."""
-    if motion is None or motion.kind != "hub" or motion.setting_angle is not None or structure.source is None:
+    if motion is None or motion.kind != "hub" or structure.source is None:
+        return
+    if motion.setting_angle is not None or motion.turn is not None:
         return
     if not (motion.free or (base is not None and np.any(base.alpha_WB_B))):
         return

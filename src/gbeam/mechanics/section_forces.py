@@ -223,6 +223,7 @@ def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loa
     xp = namespace(loads.force, hub.mount.R_HB)
     turned = xp.asarray(hub.mount.R_HB).T
     force_H, moment_H, alpha_H = (x @ turned for x in (loads.root_force, loads.root_moment, alpha_WB_B))
-    torque = moment_H[:, 2] + hub.mount.radius * force_H[:, 1]
+    along, across = hub.mount.place[0], hub.mount.place[1]
+    torque = moment_H[:, 2] + along * force_H[:, 1] - across * force_H[:, 0]
     drive = None if hub.inertia is None else torque + hub.inertia * alpha_H[:, 2]
     return replace(loads, beam_torque=torque, drive_torque=drive)

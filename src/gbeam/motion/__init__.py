@@ -4,6 +4,7 @@ Every motion is a :class:`Motion`: it has a `kind`, ``base(t)`` (a :class:`Base`
 end)``; a hub that is `free` to turn has a torque in place of a motion.
 """
 
+from gbeam.motion.arm import plain_arm as plain_arm
 from gbeam.motion.centrifuge.centrifuge import Centrifuge as Centrifuge
 from gbeam.motion.centrifuge.limits import AxisLimit as AxisLimit
 from gbeam.motion.centrifuge.limits import MachineLimits as MachineLimits

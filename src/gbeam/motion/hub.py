@@ -13,9 +13,10 @@ from gbeam.arrays.types import Floats
 from gbeam.constants import Pointing
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, positive, possible
+from gbeam.guards.checks import finite, positive, possible, vector
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
+from gbeam.motion.rigid import rotation_of, turn_of
 from gbeam.results.parts import Base
 
 POINTINGS = get_args(Pointing)
@@ -23,14 +24,23 @@ POINTINGS = get_args(Pointing)
 
 @record
 class Mount:
-    """The beam's root on the x axis of the hub's axes H, turned by a constant rotation: by the arguments of a Hub."""
+    """The root in the hub's axes H, turned by a constant rotation, its control point on their x axis: by the arguments
+    of a Hub.
+    """
 
-    radius: Any  # from the hub's axis to the root, m; may be zero
+    radius: Any  # from the hub's axis to the control point, m; may be zero
     R_HB: Any
+    place: Any  # (3,) m, of the root in hub axes
     gravity: Any  # (3,) m/s² in hub axes at hub angle zero, or None
 
     def __init__(
-        self, radius: Any, pointing: Pointing = "outward", setting_angle: Any = 0.0, gravity: Any | None = None
+        self,
+        radius: Any,
+        pointing: Pointing = "outward",
+        setting_angle: Any = 0.0,
+        gravity: Any | None = None,
+        turn: ArrayLike | None = None,
+        control_point: Any | None = None,
     ) -> None:
         if pointing not in POINTINGS:
             raise InputError("pointing", f"is {pointing!r}", f"choose one of {', '.join(POINTINGS)}")
@@ -46,24 +56,29 @@ class Mount:
         c, s = xp.cos(angle), xp.sin(angle)
         about_x = xp.asarray([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
         about_z = np.diag([1.0, 1.0, 1.0] if pointing == "outward" else [-1.0, -1.0, 1.0])
+        R_HB = about_z @ about_x if turn is None else rotation_of(turn)
+        place = radius * np.array([1.0, 0.0, 0.0])
         assign(
             self,
             radius=radius,
-            R_HB=about_z @ about_x,
+            R_HB=R_HB,
+            place=place if control_point is None else place - R_HB @ control_point,
             gravity=gravity,
         )
 
     def base(self, angle: Any, rate: Any, acceleration: Any) -> Base:
         """Motion of the base, specific force where gravity acts, at angles, rates and accelerations of one shape."""
-        xp = namespace(angle, rate, acceleration, self.radius, self.R_HB, self.gravity)
+        xp = namespace(angle, rate, acceleration, self.place, self.R_HB, self.gravity)
         a_WO_H = xp.stack(xp.broadcast_arrays(*self.root_acceleration(angle, rate, acceleration)), axis=-1)
         axis = self.R_HB[2]
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)
 
     def root_acceleration(self, angle: Any, rate: Any, acceleration: Any) -> tuple[Any, Any, Any]:
         """Acceleration of the root, specific force where gravity acts, by components along the hub's axes, m/s²."""
-        xp = namespace(angle, rate, acceleration, self.radius, self.gravity)
-        x, y, z = -self.radius * rate**2, self.radius * acceleration, xp.zeros_like(rate)
+        xp = namespace(angle, rate, acceleration, self.place, self.gravity)
+        along, across = self.place[0], self.place[1]
+        x, y = -along * rate**2 - across * acceleration, along * acceleration - across * rate**2
+        z = xp.zeros_like(rate)
         if self.gravity is None:
             return x, y, z
         c, s = xp.cos(angle), xp.sin(angle)
@@ -87,7 +102,7 @@ class Hub:
     Parameters
     ----------
     radius : float
-        From the axis to the root, m; may be zero.
+        From the axis to the root, or to the control point where one is given, m; may be zero.
     rate : Profile or float, optional
         Ω(t) about z, rad/s; the angle is zero at time zero.
     inertia : float, optional
@@ -99,6 +114,11 @@ class Hub:
     setting_angle : float, optional
         Turn of the section's y and z axes about the beam, from the beam's y axis in the plane of rotation, rad; zero
         unless given. A beam much stiffer in that plane than out of it is then warned of.
+    turn : (3,), optional
+        Rotation vector of the root's axes in the hub's, rad, in place of `pointing` and `setting_angle`: any mounting.
+    control_point : (3,), optional
+        Point that lies at the radius, from the root in its axes, m; the root itself if left out. The level there is
+        part of the results.
     gravity : sequence of three floats, optional
         Acceleration of free fall, m/s², in hub axes at hub angle zero; it stays where it is as the hub turns.
     stiffness, damping : float
@@ -108,8 +128,8 @@ class Hub:
     Raises
     ------
     InputError
-        If a value is impossible, a torque is given beside a rate or without an inertia, or a spring or damper beside a
-        rate.
+        If a value is impossible, a torque is given beside a rate or without an inertia, a spring or damper beside a
+        rate, or a turn beside a setting angle.
 
     Examples
     --------
@@ -127,6 +147,8 @@ class Hub:
     damping: Any
     free: bool = static()
     setting_angle: Any | None
+    turn: tuple[float, float, float] | None = static()
+    control_point: Any | None
     times: Any
     angles: Any
 
@@ -139,6 +161,8 @@ class Hub:
         torque: Profile | Any | None = None,
         pointing: Pointing = "outward",
         setting_angle: Any | None = None,
+        turn: ArrayLike | None = None,
+        control_point: ArrayLike | None = None,
         gravity: ArrayLike | None = None,
         stiffness: Any = 0.0,
         damping: Any = 0.0,
@@ -155,7 +179,12 @@ class Hub:
                 fix = f"leave out {name}, or give inertia and no rate"
                 beside = " beside rate" if rate is not None else ""
                 raise InputError(name, f"is given{beside}, and the hub is not free to turn", fix)
-        mount = Mount(radius, pointing, 0.0 if setting_angle is None else setting_angle, gravity)
+        if turn is not None and (setting_angle is not None or pointing != "outward"):
+            beside = "setting_angle" if setting_angle is not None else "pointing"
+            raise InputError("turn", f"is given beside {beside}", "keep one: turn says all of the mounting")
+        turned = None if turn is None else turn_of(turn)
+        controlled = None if control_point is None else vector("control_point", control_point)
+        mount = Mount(radius, pointing, 0.0 if setting_angle is None else setting_angle, gravity, turned, controlled)
         assign(
             self,
             mount=mount,
@@ -166,6 +195,8 @@ class Hub:
             damping=damping,
             free=free,
             setting_angle=None if setting_angle is None else as_array(setting_angle),
+            turn=turned,
+            control_point=controlled,
         )
         # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
         times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
@@ -173,7 +204,7 @@ class Hub:
 
     @property
     def radius(self) -> Any:
-        """From the axis to the root, m."""
+        """From the axis to the control point, which is the root where none is given, m."""
         return self.mount.radius
 
     @property
@@ -187,7 +218,7 @@ class Hub:
         return self.mount.gravity
 
     def base(self, t: Any) -> Base:
-        """Motion of the base at times `t` (s, any shape): a_O = (−rΩ², r dΩ/dt, 0) in hub axes."""
+        """Motion of the base at times `t` (s, any shape): of a root at the radius (−rΩ², r dΩ/dt, 0), hub axes."""
         rate, acceleration = self._prescribed().derivatives(t)
         return self.mount.base(0.0 if self.mount.gravity is None else self.angle(t), rate, acceleration)
 

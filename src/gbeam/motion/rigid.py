@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import namespace
+from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.types import Floats
+from gbeam.errors import InputError
+from gbeam.guards.checks import vector
 from gbeam.results.parts import Base
 
 
@@ -24,3 +26,11 @@ def rotation_of(turn: Any) -> Floats:
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which few motions need
 
     return np.asarray(Rotation.from_rotvec(turn).as_matrix())
+
+
+def turn_of(turn: Any) -> tuple[float, float, float]:
+    """Return a rotation vector as three numbers, rad; InputError if it is none, or traced by JAX."""
+    if holds_jax(turn):
+        raise InputError("turn", "is traced by JAX", "give three numbers")
+    x, y, z = map(float, vector("turn", turn))
+    return x, y, z

@@ -20,6 +20,7 @@ _SHOWN = {
     "MPa": 1e-6,
     "µm/m": 1e6,
     "g": 1 / STANDARD_GRAVITY,
+    "g/s": 1 / STANDARD_GRAVITY,
     "deg": 180 / math.pi,
     "rpm": 30 / math.pi,
 }

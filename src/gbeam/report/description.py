@@ -9,8 +9,9 @@ from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.printable import level_words
-from gbeam.report.words import tidy
+from gbeam.report.words import along, tidy
 from gbeam.results.description import BodyDescription, Curves, Description, RecordSummary, Vector
+from gbeam.results.machine import ArmLevel
 from gbeam.results.result import part_words
 
 
@@ -20,6 +21,7 @@ def text(case: Description) -> str:
     motions = []
     for name, kind in case.motions.items():
         described = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
+        described += f", {_held(case.levels[name])}" if name in case.levels else ""
         motions.append(level_words(name, case.scales.get(name)) + (f": {described}" if described != name else ""))
     lines += _listed("motions", motions)
     for name, record in case.records.items():
@@ -36,6 +38,14 @@ def text(case: Description) -> str:
     lines += [f"  warning: {each}" for each in case.warnings]
     lines += [f"  note: {each}" for each in case.notes]
     return "\n".join([*lines, "Scenario valid."])
+
+
+def _held(level: ArmLevel) -> str:
+    """Words on what a plain arm holds."""
+    return (
+        f"{level.level / STANDARD_GRAVITY:.4g} g along {along(level.load)}, {along(level.up)} up: "
+        f"{30 / math.pi * level.rate:.4g} rpm at {level.radius:.4g} m, {level.reached:.4g} to {level.ends:.4g} s"
+    )
 
 
 def _listed(head: str, lines: Sequence[str]) -> list[str]:

@@ -27,7 +27,7 @@ from gbeam.report.blocks import (
 from gbeam.report.words import known, percent, sentence
 from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, against, change, in_g
 from gbeam.results.accounting import percent as share_of
-from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged, in_capitals
+from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
 from gbeam.results.machine import AxesResult, Driven, Shortfall
 from gbeam.results.result import Floats
 
@@ -132,8 +132,8 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
         )
     if len(stretches) > SHOWN:
         yield f"not followed {len(stretches) - SHOWN} times more: see --json"
-    if accounting.preloads:
-        worst = max(accounting.preloads, key=lambda each: each.load - max(each.flight, accounting.idle))
+    if accounting.overloads:
+        worst = max(accounting.overloads, key=lambda each: each.load - max(each.flight, accounting.idle))
         idle = f", idle {in_g(accounting.idle)}" if accounting.idle else ""
         yield (
             f"the machine loads the specimen more than the flight: {in_g(worst.load)} at {worst.time:.2f} s "
@@ -158,7 +158,7 @@ def machine_plan(facts: Facts) -> Blocks:
     """Plan of every machine: limits, tracking, stretches without a target, and the verdict."""
     for name, plan in facts["motions"].items():
         tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
-        title = f"{name} ({plan['arm']:g} m{tracks}): {in_capitals(plan['state'])}"
+        title = f"{name} ({plan['arm']:g} m{tracks}): {plan['state']}"
         tone = "good" if plan["state"] in GOOD else "bad"
         message = (Sentence(plan["message"], "bad"),) if plan["message"] else ()
         yield Section(title, message or (Sentence(""),), titled=True, tone=tone)

@@ -173,7 +173,7 @@ def placement(facts: Facts) -> Blocks:
         yield Sentence(facts["message"], "" if facts["outcome"] == "done" else "bad")
     places = _PLACES if facts["fraction_of_length"] else _PLACES | {"middle": "mid-way"}
     for title, key in (
-        ("Difference of the load along the specimen alone", "mismatch"),
+        ("Difference of the load along the specimen alone", "difference"),
         ("With smoothing and tracking", "total_error"),
     ):
         yield _measures(facts[key], places, title)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from gbeam.printable import level_words
+from gbeam.report.arm import balance, levels
 from gbeam.report.blocks import (
     FIGURES,
     Block,
@@ -181,11 +182,11 @@ def _machine_lines(response: Response) -> Iterator[str]:
         yield f"warning: and {len(not_held) - SHORTFALLS} more: see `gbeam plan`"
 
 
-_FELT = 0.01  # of flight's peak: a mismatch that bends the tip by less is no reason to move the specimen
+_FELT = 0.01  # of flight's peak: a difference that bends the tip by less is no reason to move the specimen
 
 
 def comparison_lines(comparison: Comparison) -> Iterator[str]:
-    """Yield sentences on acceptance, load peaks, differences, stress cycles, shock, vibration and mismatch."""
+    """Yield sentences on acceptance, load peaks, differences, stress cycles, shock, vibration and load along it."""
     main = comparison.main_axis
     if "." in comparison.point:
         yield f"the tip is {comparison.point}, the root the ground, the stress the largest of all beams and meshes"
@@ -222,13 +223,13 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
             f"elastic vibration of the tip {flight:.3g} mm in flight, {centrifuge:.3g} mm on the centrifuge "
             f"(above {comparison.stations.cutoff:.3g} Hz, zero phase)"
         )
-    if comparison.mismatch is not None:
-        mismatch = comparison.mismatch
-        bound = mismatch.tip_bound[main]
+    if comparison.load_difference is not None:
+        load_difference = comparison.load_difference
+        bound = load_difference.tip_bound[main]
         matters = bound > _FELT * comparison.peak_flight[main]
-        advice = "; `gbeam place` finds the best control point" if matters and not mismatch.placed else ""
+        advice = "; `gbeam place` finds the best control point" if matters and not load_difference.placed else ""
         bent = f", which bends the tip by up to {1e3 * bound:.3g} mm quasi-statically" if math.isfinite(bound) else ""
-        yield f"load along the beam differs by up to {in_g(mismatch.max_acceleration[main])}{bent}{advice}"
+        yield f"load along the beam differs by up to {in_g(load_difference.max_acceleration[main])}{bent}{advice}"
 
 
 HINT = "Drag across a plot to zoom all of them, double-click to see all again, click to take the viewer to that time."
@@ -241,6 +242,7 @@ def study(facts: Facts) -> Blocks:
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
+    yield Section("Arm", (levels(motions), balance(motions)))
     alone = {name: each for name, each in bodies.items() if not several(each["of"])}
     response = _tips(bodies, head), stations_table(alone), loads_table(bodies, head), *parts_tables(bodies, head)
     yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))

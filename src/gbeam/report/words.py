@@ -16,7 +16,11 @@ from gbeam.printable import percent as percent_of
 from gbeam.results.errors import WHOLE
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from gbeam.results.parts import LoadPeaks
+
+ALONG = 1e-9  # of a direction along an axis
 
 
 def as_json(value: Any) -> str:
@@ -131,3 +135,12 @@ def largest_loads(peaks: LoadPeaks) -> str:
 def sentence(text: str) -> str:
     """Words with a capital letter in front."""
     return text[:1].upper() + text[1:]
+
+
+def along(direction: ArrayLike) -> str:
+    """Return the word for a direction (3,): +x where it lies along an axis, else its components."""
+    components = np.asarray(direction, dtype=float)
+    largest = int(np.abs(components).argmax())
+    if abs(abs(components[largest]) - 1) < ALONG:
+        return f"{'-' if components[largest] < 0 else '+'}{'xyz'[largest]}"
+    return f"({', '.join(f'{each:.3g}' for each in tidy(components.tolist(), 1.0))})"

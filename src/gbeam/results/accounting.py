@@ -70,7 +70,7 @@ class NotFollowed(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Preload(Part):
+class Overload(Part):
     """A stretch in which the machine loads the specimen beyond both the flight and idle, by more than the tolerance."""
 
     start: float = quantity("s", "its start")
@@ -99,8 +99,8 @@ class Accounting(Part):
         "stretches not followed, in order of time", "stretch", name="not_followed_",
         note="with the time followed they make up the flight",
     )  # fmt: skip
-    preloads: tuple[Preload, ...] = rows(
-        "stretches that load the specimen beyond", "preload", name=None, key="preload", default=()
+    overloads: tuple[Overload, ...] = rows(
+        "stretches that load the specimen beyond", "overload", name=None, key="overload", default=()
     )
     tolerance_of: str = fact(
         "the load that `tolerance` is a share of",

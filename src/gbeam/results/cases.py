@@ -120,8 +120,8 @@ class Sweep(Figured[str]):
         "how each case ended",
         "case",
         key="outcomes",
-        note="as its verb: done, diverged, not converged, not known; not accepted where limits of acceptance are not "
-        "kept, not decided where a value is not known; machine limits exceeded or, of plan and place, limits exceeded; "
+        note="as its verb: done, diverged, not converged, not known; NOT ACCEPTED where limits of acceptance are not "
+        "kept, or the machine's are exceeded, NOT DECIDED where a value is not known; of place limits exceeded; "
         "refused where the scenario does not allow its values; failed where the computation broke down; pending where "
         "it has not been computed",
     )

@@ -8,18 +8,18 @@ from typing import Literal
 
 import numpy as np
 
-from gbeam.results.accounting import UNITS, Accounting, PeakPair
+from gbeam.results.accounting import UNITS, Accounting, PeakPair, in_g
 from gbeam.results.criteria import Limit, state_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
-from gbeam.results.measures import Fatigue, Mismatch, RootLoads, Shock, Statistics
+from gbeam.results.measures import Fatigue, LoadDifference, RootLoads, Shock, Statistics
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
 from gbeam.results.verdict import Verdict, Worded
 
 # The main axis has no letter.
 ComparisonFigure = Literal["parts", "parts x", "parts y", "parts z", "shock"]
-_ACROSS = "over the times at which the target was not held"
+_ACROSS = "over the times at which the target is the flight's load"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -54,8 +54,8 @@ class Comparison(Worded, Figured[ComparisonFigure]):
         "",
         "whether the time is compared",
         "time",
-        flags=("held", "compared"),
-        note="times at which the target was not held",
+        flags=("not_compared", "compared"),
+        note="times at which the target is the flight's load",
     )
     max_difference: Floats = quantity("m", f"largest difference {_ACROSS}", "axis")
     rms_difference: Floats = quantity("m", f"root mean square difference {_ACROSS}", "axis")
@@ -77,9 +77,9 @@ class Comparison(Worded, Figured[ComparisonFigure]):
         "displacement of every station, with trend and elastic vibration apart", name=".", key=INSIDE, optional=True,
         note="None where the record is too short", default=None,
     )  # fmt: skip
-    mismatch: Mismatch | None = part(
+    load_difference: LoadDifference | None = part(
         "acceleration that the centrifuge gives the beam's points and the flight does not, and what it implies",
-        name="mismatch_", optional=True, default=None,
+        name="load_difference_", optional=True, default=None,
     )  # fmt: skip
     root: RootLoads | None = part("loads of the root in both environments", name=".", optional=True, default=None)
     shock: Shock | None = part(
@@ -203,8 +203,8 @@ class MachinePlan(Worded, Driven, Figured[AxesFigure]):
         if error.size:
             first, last = self.axes.span
             flown = (self.time >= first) & (self.time <= last)  # without spin-up and spin-down
-            held = float(self.axes.not_followed[flown].mean()) if flown.any() else 0.0
-            lines.append(f"target followed within {error.max():.3g} m/s², held {held:.0%} of the flight's time")
+            aside = float(self.axes.not_followed[flown].mean()) if flown.any() else 0.0
+            lines.append(f"target followed within {in_g(error.max())}, not the flight's load {aside:.0%} of the time")
         return "\n  ".join(lines)
 
 

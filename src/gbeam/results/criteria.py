@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, get_args, 
 from gbeam.constants import ToleranceOf
 from gbeam.errors import InputError, placing_within
 from gbeam.printable import advise
-from gbeam.results.declared import declared, quantity
+from gbeam.results.declared import declared, internal, quantity
 
 if TYPE_CHECKING:
     from gbeam.results.accounting import Accounting, PeakPair
@@ -28,16 +28,10 @@ _AtPoint = Literal["damage_at", "stress_at"]
 AT_POINTS: tuple[_AtPoint, ...] = get_args(_AtPoint)  # settings that name a point with a stress
 OF_RESPONSES = ("point", "control", *AT_POINTS)  # settings of what responds
 STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen has
-NOT_ACCEPTED, NOT_DECIDED, EXCEEDED = "not accepted", "not decided", "machine limits exceeded"
+PASS, NOT_ACCEPTED, NOT_DECIDED = "PASS", "NOT ACCEPTED", "NOT DECIDED"  # the verdicts
+EXCEEDED = f"{NOT_ACCEPTED}, machine limits exceeded"  # state of a run or a plan that keeps the limits of acceptance
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
-GOOD = ("done", "accepted")  # states of which nothing is to be said
-_CAPITALS = {"accepted": "PASS"} | {each: each.upper() for each in (NOT_ACCEPTED, NOT_DECIDED)}
-
-
-def in_capitals(state: str) -> str:
-    """Return a state as people read it, with PASS, NOT ACCEPTED or NOT DECIDED where it begins with a decision."""
-    decision, comma, missed = state.partition(",")
-    return _CAPITALS.get(decision, decision) + comma + missed
+GOOD = ("done", PASS)  # states of which nothing is to be said
 
 
 class Judged:
@@ -49,6 +43,7 @@ class Judged:
     shock: Shock | None = None
     fatigue: Fatigue | None = None
     whole: tuple[float, float] | None = None
+    point: str = ""  # that counts as the tip, where it is another
     with_response = True
 
     @declared("", "PASS, NOT ACCEPTED or NOT DECIDED, and why", role="fact")
@@ -83,7 +78,7 @@ class Judged:
     @declared("", "limits that can be judged", "criterion", role="rows", name="criterion_")
     def criteria(self) -> tuple[Criterion, ...]:
         return tuple(
-            Criterion(name, self.accept[name], *rule.worst(self, rule.bounds(self.accept[name])))
+            Criterion(name, self.accept[name], *rule.worst(self, rule.bounds(self.accept[name])), point=self.point)
             for name, rule in RULES.items()
             if name in self.accept and name not in self.not_judged
         )
@@ -95,22 +90,22 @@ class Judged:
     @declared("", "whether every limit is kept: true, false, or empty where there is none", role="fact", key=None,
               name="accepted")  # fmt: skip
     def acceptance(self) -> str:
-        return {"": "", "accepted": "true", NOT_ACCEPTED: "false"}.get(self.decision, self.decision)
+        return {PASS: "true", NOT_ACCEPTED: "false"}.get(self.decision, self.decision)
 
     @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
     def accepted(self) -> bool | None:
         """True if every limit that can be judged is kept; None where there is none, or that is not decided."""
-        return {"accepted": True, NOT_ACCEPTED: False}.get(self.decision)
+        return {PASS: True, NOT_ACCEPTED: False}.get(self.decision)
 
     @property
     def decision(self) -> str:
-        """Accepted; not accepted where a limit is not kept; else not decided where a value is not known; empty without
-        limits.
+        """PASS; NOT ACCEPTED where a limit is not kept; else NOT DECIDED where a value is not known; empty where none
+        can be judged.
         """
         kept = [each.passed for each in self.criteria]
         if False in kept:
             return NOT_ACCEPTED
-        return NOT_DECIDED if None in kept else "accepted" if kept else ""
+        return NOT_DECIDED if None in kept else PASS if kept else ""
 
     @property
     def refusal(self) -> str:
@@ -122,22 +117,23 @@ class Judged:
 def state_of(
     outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, kept: Sequence[bool | None] = ()
 ) -> str:
-    """Return the outcome of an answer in a few words, with what limits make of it; only :data:`GOOD` ones are good.
+    """Return the verdict on an answer, with what is to be said beside it, or its outcome where nothing is decided; only
+    :data:`GOOD` ones are good.
 
     `exceeded` is True if a limit of a machine is; `kept` are the verdicts on other limits, None where there is none.
     """
-    if outcome != "done":
+    if outcome not in ("done", BROKEN):
         return outcome
     decisions = [each.decision for each in imitations]
     if False in kept or NOT_ACCEPTED in decisions:
         return NOT_ACCEPTED
     if NOT_DECIDED in decisions:
         return NOT_DECIDED
-    if exceeded:
+    if exceeded or outcome == BROKEN:
         return EXCEEDED
     accepted = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
     missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
-    return ("accepted" if accepted or True in kept else "done") + (", largest load peak missed" if missed else "")
+    return (PASS if accepted or True in kept else "done") + (", largest load peak missed" if missed else "")
 
 
 @dataclass(frozen=True)
@@ -235,6 +231,7 @@ class Criterion:
     limit: Limit = quantity("", "the limit, as given", name=None)
     value: float = quantity("", "its value", note="NaN where it is not known, which decides nothing")
     where: str = quantity("", "where and when that is", note="empty where it belongs to the whole flight", default="")
+    point: str = internal("", "the point that counts as the tip, where it is another", default="")
 
     @declared("", "least value that is accepted", name="least_allowed", key=None)
     def least(self) -> float:
@@ -257,7 +254,9 @@ class Criterion:
     @property
     def words(self) -> str:
         """The quantity that the limit is on."""
-        return _SAID.get(self.name, self.name.replace("_", " "))
+        if self.name == "tip" and self.point:
+            return self.point
+        return in_words(self.name)
 
     @property
     def use(self) -> float:
@@ -302,6 +301,11 @@ class Criterion:
     def __str__(self) -> str:
         where = f" {self.where}" if self.where else ""
         return f"{self.words} {self.written}{where} ({self.limit_written})"
+
+
+def in_words(name: str) -> str:
+    """Return the quantity of a limit in words."""
+    return _SAID.get(name, name.replace("_", " "))
 
 
 _SAID = {"peaks": "error of peaks", "srs": "shock spectrum", "spread": "spread of the load"}

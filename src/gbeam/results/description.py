@@ -12,6 +12,7 @@ from typing import ClassVar
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.results.declared import declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a record has a field of that name
+from gbeam.results.machine import ArmLevel
 from gbeam.results.result import Floats, Part
 
 Vector = tuple[float, float, float]
@@ -242,6 +243,7 @@ class Kind(Part):
     kind: str = fact("kind of the motion")
     tracks: str = fact("name of the flight that it tracks", optional=True)
     scale: float | None = fact("level factor of its loads; None of 1", optional=True, default=None)
+    level: ArmLevel | None = part("level that a plain arm holds", optional=True, default=None)
     span: tuple[float, float] | None = entry(
         "s", "first and last time of the response in it, where they differ", "ends", optional=True, default=None
     )
@@ -275,6 +277,7 @@ class Description(Part):
         "s", "first and last time of the response in each motion, where these differ", default_factory=dict
     )
     scales: Mapping[str, float] = fact("level factors of flights but 1, by name", key=None, default_factory=dict)
+    levels: Mapping[str, ArmLevel] = internal("", "levels of plain arms, by name", default_factory=dict)
     records: Mapping[str, RecordSummary] = rows("records of flights, by name", "motion", default_factory=dict)
     warnings: tuple[str, ...] = fact("what is implausible", default=())
     notes: tuple[str, ...] = fact("what may be meant so, and is easily overlooked", optional=True, default=())
@@ -283,7 +286,9 @@ class Description(Part):
     @declared("", "kinds of motions, by name", "motion", role="rows", key="motions")
     def kinds(self) -> Mapping[str, Kind]:
         return {
-            name: Kind(kind, self.tracks.get(name, ""), self.scales.get(name), self.spans.get(name))
+            name: Kind(
+                kind, self.tracks.get(name, ""), self.scales.get(name), self.levels.get(name), self.spans.get(name)
+            )
             for name, kind in self.motions.items()
         }
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from gbeam.results.declared import BESIDE, declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a limit has a field of that name
+from gbeam.results.parts import Base
 from gbeam.results.result import Flags, Floats, Part
 
 AxesFigure = Literal["tracking", "axes_rate", "axes_acceleration", "axes_jerk"]
@@ -67,12 +68,12 @@ class Shortfall:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Held(Part):
-    """A stretch in which a target is held instead of the flight's load."""
+class Departure(Part):
+    """A stretch in which the target is not the flight's load."""
 
-    start: float = entry("s", "start of a stretch in which the target is held", name="from")
+    start: float = entry("s", "start of a stretch in which the target is not the flight's load", name="from")
     end: float = entry("s", "its end", name="to")
-    reason: str = entry("", "why it is held")
+    reason: str = entry("", "why it is not")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -88,9 +89,9 @@ class AxesResult(Part):
     actual: Floats = entry("m/s^2", "load that the axes make at the control point", "time axis", name="load_actual")
     not_followed: Flags = entry(
         "",
-        "whether the target is held instead of the flight's load",
+        "whether the target is another than the flight's load",
         "time",
-        flags=("follows_flight", "held"),
+        flags=("flight", "another"),
         note="spin-up and spin-down among them",
     )
     episodes: tuple[tuple[float, float, str], ...] = internal(
@@ -101,10 +102,8 @@ class AxesResult(Part):
         "where the machine cannot make the flight's load", "shortfall", name="shortfall_", default=()
     )
     control_point: float = entry("m", "control point, from the root along the beam", default=math.nan)
-    warnings: tuple[str, ...] = internal("", "where the inverse does not keep what it promises", "warning", default=())
-    idle: float = entry(
-        "m/s^2", "least load that the target is held up to; 0 where there is none", key=None, default=0.0
-    )
+    warnings: tuple[str, ...] = internal("", "where the inverse follows worse than it aims at", "warning", default=())
+    idle: float = entry("m/s^2", "least load of the target; 0 where there is none", key=None, default=0.0)
     jerk: Floats | None = entry(
         "rad/s^3", "jerk of the centrifuge's axes", "time machine_axis", name="axis_jerk", default=None
     )
@@ -139,12 +138,18 @@ class AxesResult(Part):
     turn: Floats | None = entry(
         "rad", "rotation vector of the specimen in the machine, where it is turned", "axis", name="turn", default=None
     )
+    imitated: Imitated | None = internal("", "flight and machine at times of their own", default=None)
 
     @declared(
-        "", "stretches in which the target is held", "episode", role="rows", name="not_followed_", key="not_followed"
+        "",
+        "stretches in which the target is not the flight's load",
+        "episode",
+        role="rows",
+        name="not_followed_",
+        key="not_followed",
     )
-    def held(self) -> tuple[Held, ...]:
-        return tuple(Held(*each) for each in self.episodes)
+    def departures(self) -> tuple[Departure, ...]:
+        return tuple(Departure(*each) for each in self.episodes)
 
     @property
     def within_limits(self) -> bool:
@@ -188,6 +193,20 @@ class AxesResult(Part):
         return np.asarray(np.linalg.norm(self.actual - self.reference, axis=1))
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class Imitated:
+    """Motions of a flight and of the machine that imitates it, from the machine's beginning to its end, and its axes.
+
+    Their times are close enough for peaks, and the same for every question: a plan and a response, whose steps are
+    others, read the peaks of the load, its errors and the use of limits from them alike.
+    """
+
+    time: Floats  # (t,) s
+    flight: Base  # at the first and the last time of the flight before it and after it
+    machine: Base
+    axes: AxesResult | None = None  # of a base that is no centrifuge none
+
+
 _BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which the limit holds an axis back
 
 
@@ -226,6 +245,56 @@ class Tracking:
     fraction: float = entry("", "that of the load then")
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class ArmLevel(Part):
+    """Level that a plain arm holds at its control point: the centripetal acceleration there, gravity beside it."""
+
+    level: float = entry("m/s^2", "largest centripetal acceleration at the control point, without gravity")
+    radius: float = entry("m", "from the arm's axis to the control point")
+    control_point: Floats = entry("m", "control point, from the root", "axis")
+    load: Floats = entry("", "direction in which the level accelerates the specimen: towards the arm's axis", "axis")
+    up: Floats = entry("", "direction that is up: along the arm's axis", "axis")
+    rate: float = entry("rad/s", "largest rate of the arm")
+    onset: float = entry("m/s^3", "largest rate at which the level rises")
+    tangential: float = entry("m/s^2", "largest tangential acceleration at the control point, on the way up or down")
+    reached: float = entry("s", "time at which the level is reached")
+    ends: float = entry("s", "time until which it is held")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Imbalance(Part):
+    """Imbalance of all that a plain arm carries, without the arm itself, and the counterweight that cures it.
+
+    In axes of the arm: x from its axis to the control point, z up along it, from the control point's height.
+    """
+
+    static: Floats = entry("kg m", "mass times place from the arm's axis, Σ m r", "axis", frame="arm")
+    dynamic: Floats = entry("kg m^2", "that times the height above the control point, Σ m z r", "axis", frame="arm")
+    radius: float = entry("m", "from the arm's axis to the control point", key=None)
+
+    @declared("kg m", "size of the static imbalance", name=None)
+    def size(self) -> float:
+        return float(np.linalg.norm(self.static))
+
+    @declared("rad", "direction of the static imbalance about up, from the arm", name=None)
+    def angle(self) -> float:
+        return float(np.arctan2(self.static[1], self.static[0]))
+
+    @declared("kg", "counterweight across the axis, as far from it as the control point", name=None)
+    def counterweight(self) -> float:
+        return self.size / self.radius
+
+    @declared("m", "height of the counterweight above the control point", name=None)
+    def height(self) -> float:
+        return float(self.static @ self.dynamic) / self.size**2 if self.size > 0 else 0.0
+
+    @declared(
+        "kg m^2", "dynamic imbalance that it leaves, which takes two counterweights at different heights", name=None
+    )
+    def left(self) -> float:
+        return float(np.linalg.norm(self.dynamic - self.height * self.static))
+
+
 class Driven:
     """A result with the motion of a centrifuge's axes, if any, over its times."""
 
@@ -248,31 +317,45 @@ class Driven:
     def axis_peaks(self) -> Mapping[str, AxisPeaks]:
         if self.axes is None:
             return {}
-        histories = zip(self.axes.rate.T, self.axes.acceleration.T, strict=True)
-        return {str(i): AxisPeaks(*(self._peak(each) for each in both)) for i, both in enumerate(histories, 1)}
+        time, axes = self._at_own_times(self.axes)
+        histories = zip(axes.rate.T, axes.acceleration.T, strict=True)
+        return {str(i): AxisPeaks(*(_peak(time, each) for each in both)) for i, both in enumerate(histories, 1)}
 
     @declared("", "largest error of the load against the target", role="part", name=None, optional=True)
     def tracking_error(self) -> Tracking | None:
         """Largest error of the load against the target, whose corners are rounded; None without a machine."""
-        return None if self.axes is None else self._tracking(self.axes, self.axes.reference)
+        if self.axes is None:
+            return None
+        time, axes = self._at_own_times(self.axes)
+        return _tracking(time, axes, axes.reference)
 
     @declared("", "largest error of the load against the flight's own", role="part", name=None, optional=True)
     def flight_error(self) -> Tracking | None:
         """Largest error of the load against the flight's own; None where that is not known."""
-        return None if self.axes is None or self.axes.flight is None else self._tracking(self.axes, self.axes.flight)
+        if self.axes is None or self.axes.flight is None:
+            return None
+        time, axes = self._at_own_times(self.axes)
+        return None if axes.flight is None else _tracking(time, axes, axes.flight)
 
-    def _peak(self, values: Floats) -> Peak:
-        i = int(np.argmax(np.abs(values)))
-        return Peak(float(abs(values[i])), float(self.time[i]))
+    def _at_own_times(self, axes: AxesResult) -> tuple[Floats, AxesResult]:
+        """Times and axes of the imitation where they are known; those of the result else."""
+        known = axes.imitated
+        return (self.time, axes) if known is None or known.axes is None else (known.time, known.axes)
 
-    def _tracking(self, axes: AxesResult, aim: Floats) -> Tracking:
-        """Largest error of the load against `aim` (t, 3) where the target is not held; NaN where it always is."""
-        if axes.not_followed.all():
-            return Tracking(math.nan, math.nan, math.nan)
-        error = np.where(axes.not_followed, -1.0, np.linalg.norm(axes.actual - aim, axis=1))
-        i = int(np.argmax(error))
-        size = float(np.linalg.norm(aim[i]))
-        return Tracking(float(error[i]), float(self.time[i]), float(error[i]) / size if size > 0 else math.nan)
+
+def _peak(time: Floats, values: Floats) -> Peak:
+    i = int(np.argmax(np.abs(values)))
+    return Peak(float(abs(values[i])), float(time[i]))
+
+
+def _tracking(time: Floats, axes: AxesResult, aim: Floats) -> Tracking:
+    """Largest error of the load against `aim` (t, 3) where the target is the flight's load; NaN where it never is."""
+    if axes.not_followed.all():
+        return Tracking(math.nan, math.nan, math.nan)
+    error = np.where(axes.not_followed, -1.0, np.linalg.norm(axes.actual - aim, axis=1))
+    i = int(np.argmax(error))
+    size = float(np.linalg.norm(aim[i]))
+    return Tracking(float(error[i]), float(time[i]), float(error[i]) / size if size > 0 else math.nan)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

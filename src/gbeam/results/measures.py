@@ -1,4 +1,4 @@
-"""Measures of an imitation: differences, mismatch, root loads, shock and fatigue."""
+"""Measures of an imitation: differences of tip, load and root loads, shock and fatigue."""
 
 from __future__ import annotations
 
@@ -123,13 +123,13 @@ class Statistics(Part):
 
 @typed_methods
 @dataclass(frozen=True, repr=False, eq=False)
-class Mismatch(Part):
+class LoadDifference(Part):
     """Acceleration that grows with the distance from the control point: Δa(x, t) = gradient(t) (x − x_c)."""
 
     control_point: float = fact("x_c, from the root", "m", name=None)
     gradient: Floats = quantity(
         "1/s^2",
-        "mismatch acceleration per distance from the control point",
+        "difference of the acceleration per distance from the control point",
         "time axis",
         note="centrifuge less flight of [−(ω_y² + ω_z²), ω_x ω_y + α_z, ω_x ω_z − α_y]",
     )

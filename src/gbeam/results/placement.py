@@ -33,7 +33,9 @@ class Candidate(Part):
     mounting: str = quantity("", "which way up the specimen is mounted", note="upright or inverted")
     smoothing: float = quantity("s", "width of the target's kernel")
     control_point: float = quantity("m", "control point, from the root along x", note="best for this candidate")
-    mismatch: float = quantity("", "weighted measure of the mismatch field", note="as a fraction of flight's peak")
+    difference: float = quantity(
+        "", "weighted measure of the load's difference along the specimen", note="as a fraction of flight's peak"
+    )
     total_error: float = quantity(
         "", "the same with what smoothing and tracking change", note="what candidates are chosen by"
     )
@@ -84,14 +86,14 @@ class Candidate(Part):
 
 @dataclass(frozen=True)
 class Verification:
-    """Simulation of the full model at a control point, over the times at which the target was not held."""
+    """Simulation of the full model at a control point, over the times at which the target is the flight's load."""
 
     name: str = quantity("", "best, current or middle")
     control_point: float = quantity("m", "control point, from the root")
     tip_difference: float = quantity("m", "largest difference of the tip from flight across the beam")
     vibration: float = quantity(
         "m",
-        "largest elastic vibration of the tip that the mismatch field causes",
+        "largest elastic vibration of the tip that the load's difference along the specimen causes",
         note="across the beam, against a base that carries the same load at the control point without turning",
     )
     moment_difference: float = quantity("N m", "largest difference of the bending moment at the root")
@@ -110,7 +112,7 @@ class Setting(Part):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Placement(Figured[Literal["mismatch"]]):
+class Placement(Figured[Literal["difference"]]):
     """The best control point, mounting and smoothing for a measure."""
 
     flight: str = fact("name of the flight")
@@ -125,9 +127,9 @@ class Placement(Figured[Literal["mismatch"]]):
         "the scenario's control point", "m", name="current_control_point", key="current_control_point"
     )
     values: Mapping[str, Mapping[str, float]] = fact(
-        "each measure of the mismatch field, as a fraction of flight's peak",
+        "each measure of the load's difference along the specimen, as a fraction of flight's peak",
         name=None,
-        key="mismatch",
+        key="difference",
         note="for best, current (the scenario's own mounting, smoothing and control point) and middle of the beam",
     )
     verifications: tuple[Verification, ...] = internal("", "simulations", "check", default=())
@@ -236,7 +238,7 @@ class Placement(Figured[Literal["mismatch"]]):
             f"Placement of {self.centrifuge!r}, tracking {self.flight!r}, by {measure}",
             f"control point {1e3 * best.control_point:.2f} mm from the root{share}, "
             f"{best.mounting}, smoothing {1e3 * best.smoothing:.4g} ms",
-            f"mismatch {100 * best.mismatch:.3g} % of flight's peak, in total {100 * best.total_error:.3g} %; "
-            f"{len(self.options)} candidates",
+            f"difference of the load {100 * best.difference:.3g} % of flight's peak, "
+            f"in total {100 * best.total_error:.3g} %; {len(self.options)} candidates",
         ]
         return "\n  ".join(lines)

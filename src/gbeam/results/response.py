@@ -17,7 +17,7 @@ from gbeam.results.accounting import seconds
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import Errors
-from gbeam.results.machine import AxesResult, Driven
+from gbeam.results.machine import ArmLevel, AxesResult, Driven, Imbalance
 from gbeam.results.one_body import MovedBody
 from gbeam.results.parts import Base
 from gbeam.results.result import Figured, Floats, Part, brief
@@ -54,6 +54,12 @@ class HubResult(Part):
         default=None,
     )
     fastest: float = internal("rad/s", "largest size of the rate at all steps", default=0.0)
+    level: ArmLevel | None = part(
+        "level at the control point, where one is given", name="arm_", optional=True, default=None
+    )
+    imbalance: Imbalance | None = part(
+        "imbalance at that level, about an axis that is upright", name="imbalance_", optional=True, default=None
+    )
 
     @declared("rad", "angle at the end", name=None)
     def angle_end(self) -> float:

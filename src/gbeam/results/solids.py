@@ -295,6 +295,10 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     def corner_max(self) -> Floats:
         return np.linalg.norm(self.acceleration, axis=-1).max(axis=0)
 
+    @declared("m/s^2", "largest size of the acceleration of the centre of mass", name=None, key="centre")
+    def centre_max(self) -> float:
+        return float(np.linalg.norm(self.centre, axis=-1).max())
+
     @declared("", "largest load at any corner", role="part", name="largest_", key="largest_load")
     def largest(self) -> CornerLoad:
         size = np.linalg.norm(self.acceleration, axis=-1)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from gbeam.printable import level_words
 from gbeam.results.accounting import NotFollowed, PeakPair, change, in_g, metres, percent
-from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Criterion, Judged, in_capitals
+from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Criterion, Judged, in_words
 
 _TIMES, _APART, _BRIEF = 3.0, 5e-4, 0.005  # a ratio is said as such from here on; shares alike; stretches to omit, s
 _IDLE = "below idle"
@@ -63,17 +63,16 @@ class Verdict:
             worst, decision, shown = None, NOT_ACCEPTED, 2
             reason = f"the machine exceeds its limits, {self.exceeded}"
         elif pending:
-            worst = max(criteria, key=lambda each: each.use, default=None)
-            decision, shown = NOT_DECIDED, 0 if criteria else 2
-            reason = f"{len(pending)} {'limit needs' if len(pending) == 1 else 'limits need'} `gbeam run`"
-            reason += f"; kept: {worst.brief}" if worst else ""
+            worst, decision = max(criteria, key=lambda each: each.use, default=None), ""
+            shown, reason = (1, worst.brief) if worst else (2, "")
         elif criteria:
             worst = max(criteria, key=lambda each: each.use)
             reason = worst.brief if len(criteria) == 1 else f"all limits are kept, the nearest: {worst.brief}"
         else:
             worst, shown, reason = None, 2, ""
         known = [words for name, words in context.items() if words and not (worst and worst.name == name)]
-        start = in_capitals(decision) if decision else "No limits set"
+        undecided = "Machine alone, no limit missed" if criteria else "Machine alone, no limit judged"
+        start = decision or (undecided if pending else "No limits set")
         flight = level_words("the flight", self.scale)
         start += f" for a part of {flight}" if judged.whole is not None else f" for {flight}" if self.scale else ""
         missed = judged.accounting.main is not None and judged.accounting.main.reason
@@ -83,7 +82,9 @@ class Verdict:
     @property
     def findings(self) -> tuple[str, ...]:
         """At most six sentences: largest load, peaks, time followed, tip, root, and what the machine could not do."""
-        said = (self._largest(), self._peaks(), self._time(), self._tip(), self._root(), self._machine())
+        said = (
+            self._largest(), self._peaks(), self._time(), self._tip(), self._root(), self._machine(), self._specimen()
+        )  # fmt: skip
         return tuple(filter(None, said))
 
     @property
@@ -107,7 +108,7 @@ class Verdict:
         """Limit of the first of these criteria, whether it is missed, and those of the others that are missed."""
         limits = {each.name: each for each in self.judged.criteria if each.name in names}
         first = limits.pop(names[0], None)
-        words = f"({otherwise})" if first is None else f"({_held(first)})"
+        words = f"({otherwise})" if first is None else f"({_with_miss(first)})"
         others = [each for each in limits.values() if each.passed is not True]
         return words + "".join(f"; missed: {each}" for each in others)
 
@@ -168,6 +169,11 @@ class Verdict:
         compared = _beside(pair, lambda size: f"{size:.4g} {unit}")
         return f"Root: {quantity} {pair.machine:.4g} {unit}, {compared} {limit}{yielding}."
 
+    def _specimen(self) -> str:
+        """Sentence on the limits that a plan does not judge, in place of those on tip and root."""
+        pending = self.judged.not_judged
+        return f"Specimen: its limits of {_listed(pending)} are judged by `gbeam run`." if pending else ""
+
     def _machine(self) -> str:
         """Sentence on the longest stretch that the machine cannot follow above idle, or else below it."""
         if self.exceeded:
@@ -188,7 +194,17 @@ class Verdict:
         return f"Machine: it cannot follow {in_g(worst.flight_peak)} {when} ({used}{worst.reason})."
 
 
-def _held(criterion: Criterion) -> str:
+_NAMED = 2  # limits that are named one by one
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Words for limits, ``tip and root moment``; of many the first and how many more."""
+    words = [in_words(name) for name in names]
+    shown, more = words[:_NAMED], len(words) - _NAMED
+    return f"{', '.join(shown)} and {more} more" if more > 0 else " and ".join(shown)
+
+
+def _with_miss(criterion: Criterion) -> str:
     missed = {False: ", missed", None: ", not known", True: ""}[criterion.passed]
     return criterion.limit_written + missed
 

@@ -6,6 +6,8 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.results.criteria import RULES, Acceptance
@@ -78,7 +80,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False, system: System | None =
         Case,
         title=scenario.heading(),
         system=system,
-        motions={name: motions[name] for name in scenario.motion},
+        motions={name: motions[name] for name in scenario.names},
         response=response,
         tracks={name: table.tracks for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)},
         accept=accept,
@@ -190,6 +192,7 @@ def _response(
     from gbeam.analysis.system.initial import Initial
     from gbeam.integrate.schemes import SCHEMES
     from gbeam.motion import Flight
+    from gbeam.motion.arm import extent_of
 
     table = scenario.response
     if table.parameters:
@@ -198,12 +201,17 @@ def _response(
     flights = {name: motion for name, motion in motions.items() if isinstance(motion, Flight)}
     records = {name: flight.record for name, flight in flights.items() if flight.record is not None}
     covered = {name: extent for name in records if (extent := flights[name].acceleration.extent) is not None}
+    arms = {name: extent for name, motion in motions.items() if (extent := extent_of(motion)) is not None}
+    covered |= arms
     start, duration, spans = max((first for first, _ in covered.values()), default=0.0), table.duration, Spans()
     if duration is None:
         if not covered:
             return None, spans
         duration = min(last for _, last in covered.values()) - start
-        if any(True for name, record in records.items() for _ in _not_all_of(name, record, start, start + duration)):
+        apart = [extent for extent in arms.values() if not np.allclose(extent, (start, start + duration))]
+        if apart or any(
+            True for name, record in records.items() for _ in _not_all_of(name, record, start, start + duration)
+        ):
             spans = covered | {
                 name: covered[each.tracks]
                 for name, each in scenario.motion.items()
@@ -216,6 +224,11 @@ def _response(
     if not spans:
         for name, record in records.items():
             parts.errors += _not_all_of(name, record, start, end)
+        for name, (_, last) in arms.items():
+            if end < last * (1 - 1e-9):
+                problem = f"ends at {end:g} s, and {name} comes to rest at {last:g} s"
+                fix = "leave it out: each motion has its own time then; a shorter dwell is one of the arm's keys"
+                parts.errors.append(InputError("response.duration", problem, fix))
     for first, last in spans.values() or [(start, end)]:
         if table.residual_from is not None and not first <= table.residual_from < last:
             fix = f"give a time from {first:g} s on, before {last:g} s"
@@ -242,11 +255,11 @@ def _response(
 
 
 def _without_time(motions: Iterable[str], spans: Spans) -> Iterator[InputError]:
-    """Refuse motions without a record beside records that last differently."""
+    """Refuse motions without a time of their own beside records and arms that last differently."""
     for name in motions:
         if name not in spans:
             listed = ", ".join(f"{other} {first:g} to {last:g} s" for other, (first, last) in spans.items())
-            problem = f"has no time of its own, and the records beside it last differently: {listed}"
+            problem = f"has no time of its own, and those beside it last differently: {listed}"
             yield InputError(f"motion.{name}", problem, "put it into a scenario of its own")
 
 

@@ -7,7 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from gbeam import motion
+from gbeam.errors import InputError
 from gbeam.motion import Profile
+from gbeam.motion.arm import across, direction
 from gbeam.motion.flight import body_rates
 from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, Recording
@@ -29,6 +31,8 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
         where = f"motion.{name}"
         if isinstance(table, schema.Hub):
             built[name] = _hub(parts, where, table)
+        elif isinstance(table, schema.Arm):
+            built |= _arms(parts, name, table)
         elif isinstance(table, schema.Flight):
             if table.record is not None:
                 source = table.record.of if isinstance(table.record, PartOfRecord) else name
@@ -97,6 +101,29 @@ def _hub(parts: Collector, where: str, table: schema.Hub) -> motion.Motion | Non
     if None in driven.values():
         return None
     return parts.attempt(where, motion.Hub, **driven, **values_of(table, "kind", "rate", "torque"))
+
+
+def _arms(parts: Collector, name: str, table: schema.Arm) -> dict[str, motion.Motion | None]:
+    """Build the arm's motion, or one for each of its directions, by name."""
+    built: dict[str, motion.Motion | None] = {}
+    for part, keys in table.motions.items():
+        where = f"motion.{name}.directions.{part}" if part else f"motion.{name}"
+        built["-".join(filter(None, (name, part)))] = parts.attempt(where, _arm, table.gravity, **keys)
+    return built
+
+
+def _arm(gravity: bool, *, load: Any, up: Any, control_point: Any, **keys: Any) -> motion.Hub:
+    """Build the motion of an arm in one direction; of several directions that may be up the first across the load."""
+    place = control_point if isinstance(control_point, tuple) else (control_point, 0.0, 0.0)
+    several = isinstance(up, tuple) and isinstance(up[0], str)
+    upwards = up if several else (up,)
+    inward = direction("load", load)
+    chosen = next((each for each in upwards if across(inward, direction("up", each))), None)
+    if chosen is None:
+        words = " and ".join(map(str, upwards))
+        fix = 'give a direction across it, or several, such as up = ["+z", "+x"], of which one always is'
+        raise InputError("up", f"is {words}, along load = {load}", fix)
+    return motion.plain_arm(gravity=gravity, load=load, up=chosen, control_point=place, **keys)
 
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:

@@ -1,4 +1,4 @@
-"""A flight's load as a machine makes it: its peaks, the stretches not followed, and preloads beyond it."""
+"""A flight's load as a machine makes it: its peaks, the stretches not followed, and loads beyond it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
 from gbeam.motion.rigid import moved
 from gbeam.numerics.samples import separate_peaks, true_runs
-from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, PeakPair, Preload
-from gbeam.results.machine import AxesResult, used_up
+from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, Overload, PeakPair
+from gbeam.results.machine import Imitated, used_up
+from gbeam.results.parts import Base
 
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
@@ -54,25 +55,37 @@ class History:
         return root / control - 1, float(ends[np.abs(ends).argmax()])
 
 
-def account_of(
-    time: Floats,
-    flight: History,
-    machine: History,
-    axes: AxesResult | None,
-    during: slice,
+def judge(
+    run: Imitated,
+    span: tuple[float, float],
+    ends: Mapping[str, Floats],
     *,
     tolerance: float,
     tolerance_of: ToleranceOf,
-) -> Accounting:
-    """Account for a flight on a machine at times (t,), the samples `during` the flight of its axes, if any."""
+) -> tuple[Accounting, PeakPair]:
+    """Account for a flight on a machine over a `span` of the flight's times, s, and compare the largest loads on a
+    specimen with these `ends`, on the machine over all of its run; NaN without ends.
+    """
     positive("tolerance", tolerance, "of the flight's load")
     choice("tolerance_of", tolerance_of, TOLERANCE_OF)
+    during = slice(*np.searchsorted(run.time, (span[0], np.nextafter(span[1], np.inf))))
+    flown, machine = (_part(base, during) for base in (run.flight, run.machine))
+    largest = PeakPair()
+    if ends:
+        largest = largest_pair(largest_load(run.time[during], flown, ends), largest_load(run.time, run.machine, ends))
+    span = max(span[0], float(run.time[0])), min(span[1], float(run.time[-1]))
+    axes, time, places = run.axes, run.time[during], beside_root(ends)
+    load = machine.a_WO_B if axes is None else axes.actual[during]
+    histories = (
+        History(flown.a_WO_B, flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B), places),
+        History(load, machine.a_WO_B, gradients(machine.w_WB_B, machine.alpha_WB_B), places),
+    )
     if axes is None:
-        return account(time, flight, machine, tolerance=tolerance, tolerance_of=tolerance_of)
-    return account(
+        return account(time, *histories, span=span, tolerance=tolerance, tolerance_of=tolerance_of), largest
+    accounting = account(
         time,
-        flight,
-        machine,
+        *histories,
+        span=span,
         tolerance=tolerance,
         tolerance_of=tolerance_of,
         idle=axes.idle,
@@ -80,6 +93,12 @@ def account_of(
         episodes=axes.episodes,
         shares={name: share[during] for name, share in axes.limit_shares.items()},
     )
+    return accounting, largest
+
+
+def _part(base: Base, during: slice) -> Base:
+    """Part of a base's motion over time."""
+    return Base(base.a_WO_B[during], base.w_WB_B[during], base.alpha_WB_B[during])
 
 
 def account(
@@ -93,16 +112,19 @@ def account(
     target: Floats | None = None,
     episodes: tuple[tuple[float, float, str], ...] = (),
     shares: Mapping[str, Floats] | None = None,
+    span: tuple[float, float] | None = None,
 ) -> Accounting:
-    """Account for a flight's load over time (t,): its peaks, the stretches in which the machine's load differs by more
-    than the tolerance, with reasons by its `episodes` and its limits' `shares`, and loads beyond the flight's.
+    """Account for a flight's load over time (t,), from the first time to the last, or over a `span` that ends nearby,
+    s: its peaks, the stretches in which the machine's load differs by more than the tolerance, with reasons by its
+    `episodes` and its limits' `shares`, and loads beyond the flight's.
     """
     size, machine_size = flight.size, machine.size
     instant = tolerance_of == "instant"
     least = _SLACK * float(size.max())
     allowed = np.maximum(tolerance * size, least) if instant else np.full(len(time), tolerance * float(size.max()))
     above = idle * (1 + _SLACK)
-    edges = np.concatenate([time[:1], (time[1:] + time[:-1]) / 2, time[-1:]])
+    begin, end = (float(time[0]), float(time[-1])) if span is None else span
+    edges = np.concatenate([[begin], (time[1:] + time[:-1]) / 2, [end]])
     low = (size < above) & (idle > 0)
     limits = {} if shares is None else shares
     missed = _apart(machine.load, flight.load) > allowed
@@ -120,7 +142,7 @@ def account(
         )
         for run in _runs(np.where(missed, reasons, -1))
     )
-    duration = float(time[-1] - time[0])
+    duration = end - begin
     lost = sum(stretch.end - stretch.start for stretch in stretches)
     floor = max(above, least)
     most = np.maximum(size, idle)
@@ -129,14 +151,14 @@ def account(
         tolerance_of=tolerance_of,
         allowed=float(allowed.max()),
         idle=idle,
-        span=(float(time[0]), float(time[-1])),
+        span=(begin, end),
         followed_share=1 - lost / duration if duration > 0 else float(not missed.any()),
         peaks=tuple(
             _peak(time, flight, machine, top, basin, tolerance, _NAMES[reasons[top]], limits)
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
-        preloads=tuple(_preloads(edges, time, size, machine_size, most + (tolerance * most if instant else allowed))),
+        overloads=tuple(_overloads(edges, time, size, machine_size, most + (tolerance * most if instant else allowed))),
     )
 
 
@@ -211,23 +233,17 @@ def _peak(
     )
 
 
-def _preloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Preload]:
+def _overloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Overload]:
     """Yield the stretches in which the machine's load exceeds `most` (t,)."""
     for run in true_runs(machine_size > most):
         i = run.start + int(np.argmax((machine_size - most)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
-        yield Preload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
+        yield Overload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
 
 
-_GRID, _MOST = 2e-3, 50_000  # s between times at which a load is evaluated; the most times
 _ALIKE = 1e-9  # of the load: points whose loads differ by less have the same
 
 Largest = tuple[float, float, str]  # m/s², s, place; "" if every point has the same load
-
-
-def times_between(first: float, last: float) -> Floats:
-    """Evenly spaced times, s, at which a motion without a response is evaluated."""
-    return np.linspace(first, last, min(int(np.ceil((last - first) / _GRID)), _MOST) + 1)
 
 
 def beside_root(ends: Mapping[str, Floats]) -> Floats:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import History, account_of, beside_root, gradients, largest_load, largest_pair
+from gbeam.analysis.imitation.accounting import gradients, judge
 from gbeam.analysis.imitation.fatigue import fatigue
 from gbeam.analysis.imitation.quantities import Peak, Quantities, largest
 from gbeam.arrays.types import Flags, Floats
@@ -19,27 +19,26 @@ from gbeam.numerics.samples import interpolated, largest_riding_acceleration, lo
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import KINDS_OF_LIMITS, STRESS_AT, Limits, checked_limits
+from gbeam.results.machine import Imitated
 from gbeam.results.measures import (
-    Mismatch,
+    LoadDifference,
     RootHistory,
     RootLoads,
     Shock,
     Sizes,
     Statistics,
 )
-from gbeam.results.parts import Influence
+from gbeam.results.parts import Base, Influence
 from gbeam.results.response import Response
 from gbeam.results.sensors import Sensor
 
 
 def peak_pairs(flight: Quantities, machine: Quantities, during: slice, tip: int) -> dict[str, PeakPair]:
-    """Largest sizes over the flight's times in each run, by name; `tip` is the number of the point "tip".
-    ``largest_load`` of the machine is over all of its run. NaN stands for a size that a run lacks.
+    """Largest sizes over the flight's times in each run, by name; `tip` is the number of the point "tip". NaN stands
+    for a size that a run lacks.
     """
     in_flight, on_machine = flight.peaks(_until(flight, machine, during), tip), machine.peaks(during, tip)
-    loads = (largest_load(run.response.time, run.base, machine.response.ends) for run in (flight, machine))
-    pairs = {name: PeakPair(a, on_machine[name][0], t, on_machine[name][1]) for name, (a, t) in in_flight.items()}
-    return {"largest_load": largest_pair(*loads)} | pairs
+    return {name: PeakPair(a, on_machine[name][0], t, on_machine[name][1]) for name, (a, t) in in_flight.items()}
 
 
 def _until(flight: Quantities, machine: Quantities, during: slice) -> Flags:
@@ -115,9 +114,9 @@ def compare(
     Returns
     -------
     Comparison
-        Over the flight's times: peaks and accounting of all of them, the rest without those at which the target was
-        held. Root loads and spectra need the responses' loads, the mismatch's bounds their influence, trend and
-        vibration their frequencies.
+        Over the flight's times: peaks and accounting of all of them, the rest of those at which the target is the
+        flight's load. Root loads and spectra need the responses' loads, the bounds of the load's difference their
+        influence, trend and vibration their frequencies.
 
     Raises
     ------
@@ -184,8 +183,12 @@ def compare(
     names = first_name, second_name if second_name != first_name else f"the second {second_name}"
     growth = in_flight(gradients(flown.base.w_WB_B, flown.base.alpha_WB_B))
     turning = gradients(spun.base.w_WB_B[during], spun.base.alpha_WB_B[during])
-    root_load, machine_root = in_flight(flown.base.a_WO_B), spun.base.a_WO_B[during]
-    ends = beside_root(centrifuge.ends)
+    run = None if axes is None else axes.imitated
+    if run is None or not _of_flight(run, flight.time[_until(flown, spun, during)], flown.base):
+        # By the steps of the responses.
+        run = Imitated(centrifuge.time, _interpolated(centrifuge.time, flight.time, flown.base), spun.base, axes)
+    within = float(time[0]), float(time[-1])
+    accounting, load = judge(run, within, centrifuge.ends, tolerance=tolerance, tolerance_of=tolerance_of)
     margins = [margin for margin in (flown.margin, spun.margin) if margin is not None]
     return Comparison(
         flight=names[0],
@@ -197,16 +200,13 @@ def compare(
         rms_difference=_rms(difference, covered),
         peak_flight=_largest(tip_flight, covered),
         peak_centrifuge=_largest(tip_actual, covered),
-        peaks=peak_pairs(flown, spun, during, tip)
+        peaks={"largest_load": load}
+        | peak_pairs(flown, spun, during, tip)
         | ({} if stress_at is None else {STRESS_AT: _stresses_at(stress_at, flown, spun, during)}),
-        accounting=account_of(
-            time, History(root_load, root_load, growth, ends),
-            History(machine_root if axes is None else axes.actual[during], machine_root, turning, ends),
-            axes, during, tolerance=tolerance, tolerance_of=tolerance_of,
-        ),
+        accounting=accounting,
         accept=limits,
         stations=_statistics(time, covered, reference, actual, spun, tip),
-        mismatch=_mismatch(covered, spun, (turning - growth)[..., 0], tip),
+        load_difference=_load_difference(covered, spun, (turning - growth)[..., 0], tip),
         root=root,
         shock=shock,
         fatigue=fatigue(flown, spun, damage_at),
@@ -218,6 +218,21 @@ def compare(
         kept_every=centrifuge.kept_every,
         point=chosen,
     )  # fmt: skip
+
+
+_ALIKE = 1e-3  # of the largest load: flights whose loads differ by less are one
+
+
+def _of_flight(run: Imitated, time: Floats, base: Base) -> bool:
+    """True if the flight that a machine imitates has the load of a base at its first times (t,), s."""
+    load = base.a_WO_B[: len(time)]
+    known = interpolated(time, run.time, run.flight.a_WO_B)
+    return bool(np.abs(known - load).max() <= _ALIKE * np.abs(load).max())
+
+
+def _interpolated(time: Floats, times: Floats, base: Base) -> Base:
+    """Motion of a base at other times (t,), s."""
+    return Base(*(interpolated(time, times, values) for values in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B)))
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:
@@ -263,9 +278,9 @@ def _statistics(
     )
 
 
-def _mismatch(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -> Mismatch | None:
-    """Mismatch along a straight beam by the gradient (t, 3) 1/s², and bounds of its effects; None of other specimens,
-    and without a control point on the beam.
+def _load_difference(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -> LoadDifference | None:
+    """Difference of the load along a straight beam by the gradient (t, 3) 1/s², and bounds of its effects; None of
+    other specimens, and without a control point on the beam.
     """
     axes, body = machine.response.axes, machine.body
     influence = None if body is None else body.influence
@@ -278,7 +293,7 @@ def _mismatch(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -
     def bound(linear: Floats, uniform: Floats) -> Floats:
         return np.abs(linear - x_c * uniform) * largest
 
-    return Mismatch(
+    return LoadDifference(
         control_point=x_c,
         gradient=gradient,
         max_gradient=largest,

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import largest_load, largest_pair, times_between
+from gbeam.analysis.imitation.accounting import largest_load, largest_pair
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
 from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, Ways, bringing
 from gbeam.analysis.imitation.quantities import Quantities
@@ -30,6 +30,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
+from gbeam.motion.centrifuge.kinematics import times_between
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated, low_pass
@@ -42,7 +43,7 @@ from gbeam.results.response import Response
 
 @record
 class _Carried:
-    """A base that translates with the load of a centrifuge at its control point, so that no point has a mismatch."""
+    """A base that translates with the load of a centrifuge at its control point, so that no point's load differs."""
 
     kind: ClassVar[str] = "flight"
     free: ClassVar[bool] = False
@@ -376,7 +377,7 @@ class _Trials:
                 control_point=float(at[0]),
                 beside=(float(at[1]), float(at[2])),
                 turn=machine.turn,
-                mismatch=size(at),
+                difference=size(at),
                 total_error=size(at, True),
                 accelerations=accelerations,
                 share=most.share,

@@ -1,4 +1,4 @@
-"""The measures by which a place for the specimen is judged: histories of the effects of the mismatch, per measure."""
+"""Measures by which a place of the specimen is judged: per measure histories of what the load's difference does."""
 
 from __future__ import annotations
 
@@ -213,8 +213,8 @@ MOST = 2_000_000  # numbers of a history of the load at all ends of a specimen, 
 
 class Answers:
     """Answers of a specimen to the loads of a flight and of centrifuges: quasi-static ones, and vibration in the mode
-    by which the flight displaces the tip most. Times at which the first centrifuge's target is held are left out of
-    all: begin with the widest smoothing, which holds longest.
+    by which the flight displaces the tip most. Times at which the first centrifuge's target is not the flight's
+    load are left out of all: begin with the widest smoothing, which holds longest.
     """
 
     def __init__(self, system: System, flight: Flight, settings: ResponseSettings) -> None:
@@ -262,7 +262,7 @@ class Answers:
         self.left_out = centrifuge.not_followed(self.time) if self.left_out is None else self.left_out
         covered = ~self.left_out
         if not covered.any():
-            raise InputError("tracks", "is never carried: the target is held all the time", "lower idle")
+            raise InputError("tracks", "is never followed: the target is at no time the flight's load", "lower idle")
         error, growth = at_c.a_WO_B - self.load, gradients(at_c.w_WB_B, at_c.alpha_WB_B)
         # The machine's load at r is that at C plus growth × (r − C), the flight's that at the root plus growth × r.
         growing, columns = growth - self.growth, np.moveaxis(growth, -1, 0)

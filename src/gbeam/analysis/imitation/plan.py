@@ -4,15 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.analysis.imitation.accounting import (
-    History,
-    account_of,
-    beside_root,
-    gradients,
-    largest_load,
-    largest_pair,
-    times_between,
-)
+from gbeam.analysis.imitation.accounting import judge
 from gbeam.analysis.outline import ends_of
 from gbeam.analysis.steady.subject import subject_of
 from gbeam.constants import ToleranceOf
@@ -22,10 +14,10 @@ from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Centrifuge
-from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles
+from gbeam.motion.centrifuge.kinematics import axes_result, axis_angles, times_between
 from gbeam.motion.protocol import implausible_motion
 from gbeam.progress import Progress, tell
-from gbeam.results.accounting import TOLERANCE, PeakPair
+from gbeam.results.accounting import TOLERANCE
 from gbeam.results.comparison import MachinePlan
 from gbeam.results.criteria import BROKEN, KINDS_OF_LIMITS, Limits, checked_limits
 from gbeam.results.machine import Commands
@@ -84,20 +76,16 @@ def plan(
     limits = checked_limits(accept)
     ends = {} if specimen is None else ends_of(subject_of(specimen, None).system)
     tell(progress, "axis motions", 0.0)
-    first, last = (float(end) for end in motion.extent)
-    time = times_between(first, last)
+    time = times_between(*(float(end) for end in motion.extent))
     axes = axes_result(motion, time)
+    run = axes.imitated
+    assert run is not None  # it is a centrifuge
     outcome = "done" if axes.within_limits else BROKEN
     where, span = f"motion.{name}" if name else "motion", motion.target.span
     warnings = implausible_motion(motion, where, span)
     warnings += implausible_motion(motion.flight, f"motion.{tracks}" if tracks else "flight", span)
-    during = slice(*np.searchsorted(time, (span[0], np.nextafter(span[1], np.inf))))
     tell(progress, "what the flight and the machine make", 0.5)
-    flown, machine = motion.flight.base(time[during]), motion.base(time)
-    growth = gradients(flown.w_WB_B, flown.alpha_WB_B), gradients(machine.w_WB_B, machine.alpha_WB_B)[during]
-    largest = PeakPair()
-    if ends:
-        largest = largest_pair(largest_load(time[during], flown, ends), largest_load(time, machine, ends))
+    accounting, largest = judge(run, span, ends, tolerance=tolerance, tolerance_of=tolerance_of)
     return MachinePlan(
         name=name,
         tracks=tracks,
@@ -106,15 +94,7 @@ def plan(
         message=axes.exceeding,
         time=time,
         axes=axes,
-        accounting=account_of(
-            time[during],
-            History(flown.a_WO_B, flown.a_WO_B, growth[0], beside_root(ends)),
-            History(axes.actual[during], machine.a_WO_B[during], growth[1], beside_root(ends)),
-            axes,
-            during,
-            tolerance=tolerance,
-            tolerance_of=tolerance_of,
-        ),
+        accounting=accounting,
         gravity=float(motion.geometry.gravity),
         mounting=motion.mounting,
         peaks={"largest_load": largest},

@@ -24,6 +24,7 @@ from gbeam.mechanics.section_forces import about_the_hub, accelerations
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import units_of
 from gbeam.motion import Centrifuge
+from gbeam.motion.arm import imbalance_of, level_of
 from gbeam.motion.centrifuge.kinematics import axes_result
 from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import level_factor, notes_on
@@ -185,7 +186,12 @@ class Histories:
             return HubResult(angle, rate, acceleration, motion.torque(time), fastest=fastest)
         axis = motion.mount.R_HB[2]
         torque = next((each.loads.drive_torque for each in bodies.values() if each.loads is not None), None)
-        return HubResult(motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque)
+        level = None if self.run.traced else level_of(motion)
+        on_ground = over_time["ground_force"][self.kept], over_time["ground_moment"][self.kept]
+        return HubResult(
+            motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque,
+            level=level, imbalance=imbalance_of(motion, level, time, *on_ground),
+        )  # fmt: skip
 
     @property
     def residual(self) -> Floats | None:

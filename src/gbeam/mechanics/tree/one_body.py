@@ -25,7 +25,7 @@ def on_motion(structure: Structure, motion: Motion | None, name: str = "beam") -
 
 def on_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
     """System of a structure on the rim of a hub that turns at its rate, or freely under torque, spring and damper."""
-    rim = Place(at=(hub.radius, 0.0, 0.0), turn=_turn_of_root(hub))
+    rim = Place(at=hub.mount.place, turn=_turn_of_root(hub))
     # Only the moment about the hinge's axis takes part; equal ones are those of a possible body.
     inertia = 0.0 if hub.inertia is None else hub.inertia
     body = RigidBody(0.0, namespace(inertia).stack([inertia] * 3), points={RIM: rim})
@@ -36,7 +36,11 @@ def on_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
 
 
 def _turn_of_root(hub: Any) -> Floats:
-    """Rotation vector (3,) of the root's axes in the hub's, rad: the setting angle about x and, inward, half a turn."""
+    """Rotation vector (3,) of the root's axes in the hub's, rad: the setting angle about x and, inward, half a turn;
+    or the turn that is given.
+    """
+    if hub.turn is not None:
+        return np.asarray(hub.turn)
     angle = 0.0 if hub.setting_angle is None else hub.setting_angle
     xp = namespace(angle)
     if hub.pointing == "outward":

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from gbeam.arrays.namespace import as_array, holds_jax, namespace
+from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, each_leaf, record, static
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
@@ -24,7 +24,7 @@ from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.flight import Flight
 from gbeam.motion.profiles.combine import Turned
 from gbeam.motion.profiles.profile import Profile, sampled
-from gbeam.motion.rigid import moved, rotation_of
+from gbeam.motion.rigid import moved, rotation_of, turn_of
 from gbeam.results.machine import LimitUse, Shortfall
 from gbeam.results.parts import Base
 
@@ -58,7 +58,7 @@ class Centrifuge:
         True if the flight's load is specific force, of which gravity is a part on the machine; False if it is
         acceleration.
     idle : float, optional
-        Load below which the target is held up to this magnitude, m/s².
+        Least size of the target's load, m/s²: idle.
     smoothing : float or None
         Width of the kernel that rounds the target's corners, s; None or 0, the default, leaves them sharp.
     mounting : str
@@ -76,7 +76,7 @@ class Centrifuge:
         Time from standstill to the flight's first time, and from its last to standstill, s. Left out, the time in
         which the arm turns once on the way, or as much more as nine tenths of every limit need.
     clip : bool
-        Whether to carry on with a held target where the gimbals cannot reach; to give `idle` does so too.
+        Whether to carry on with another target where the gimbals cannot reach; to give `idle` does so too.
     ease : float
         Of ``planned``: weight of gentle motion of the axes beside the tracking error, times the usual one.
     span : tuple of float, optional
@@ -154,7 +154,7 @@ class Centrifuge:
             flight=flight,
             geometry=Geometry(radius, STANDARD_GRAVITY if gravity else 0.0, np.asarray(MOUNTINGS[mounting])),
             control_point=_position(control_point),
-            turn=_turn(turn),
+            turn=turn_of(turn),
             limits=limits if isinstance(limits, Limits) else Limits(limits),
             method=inverse,
             ends=Ends(start, spin_up, spin_down),
@@ -366,10 +366,3 @@ def _position(control_point: Any) -> Any:
     if np.ndim(control_point):
         return as_array(vector("control_point", control_point))
     return as_array(positive("control_point", control_point, "m", zero=True))
-
-
-def _turn(turn: Any) -> tuple[float, float, float]:
-    if holds_jax(turn):
-        raise InputError("turn", "is traced by JAX", "give three numbers")
-    x, y, z = map(float, vector("turn", turn))
-    return x, y, z

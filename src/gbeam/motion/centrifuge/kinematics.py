@@ -10,11 +10,11 @@ import numpy as np
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.arrays.types import Floats
-from gbeam.motion.centrifuge.limits import Limits, usage
+from gbeam.motion.centrifuge.limits import Limits
 from gbeam.numerics.samples import cumulative
 from gbeam.printable import percent
 from gbeam.results.accounting import in_g
-from gbeam.results.machine import AxesResult, used_up
+from gbeam.results.machine import AxesResult, Imitated, used_up
 from gbeam.results.parts import Base
 
 if TYPE_CHECKING:
@@ -91,19 +91,48 @@ def axis_angles(axes: Axes, times: Any) -> Floats:
     return np.stack([first, np.unwrap(axes.angle2), np.unwrap(axes.angle3)], axis=1)
 
 
+_GRID, _FINE, _MANY = 2e-3, 1e-3, 50_000  # s between times: of histories, of loads that are judged; the most of them
+
+
+def times_between(first: float, last: float, spacing: float = _GRID) -> Floats:
+    """Evenly spaced times, s, at which a motion without a response is evaluated."""
+    return np.linspace(first, last, min(int(np.ceil((last - first) / spacing)), _MANY) + 1)
+
+
+def imitated(motion: Centrifuge) -> Imitated:
+    """Motions of a centrifuge and its flight from the machine's beginning to its end, at the flight's corners too."""
+    (begin, end), span = (float(time) for time in motion.extent), motion.target.span
+    corners = motion.flight.corners((span[1] - span[0]) / _MANY)
+    time = np.union1d(times_between(begin, end, _FINE), [*span, *corners[(corners > span[0]) & (corners < span[1])]])
+    flown = motion.flight.base(np.clip(time, *span))
+    axes = _axes_at(motion, time, flown.a_WO_B)
+    axes = replace(axes, limits=motion.usage())
+    axes = replace(axes, warnings=(*_followed_worse(motion, time, axes), *_short_ramps(motion)))
+    return Imitated(time, flown, motion.base(time), axes)
+
+
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
-    """Axes of a centrifuge at given times (s, ascending), with its limits and where it cannot follow."""
+    """Axes of a centrifuge at given times (s, ascending), with its limits and where it cannot follow, which are those
+    of its whole run whatever the times.
+    """
+    whole = imitated(motion)
+    assert whole.axes is not None
+    flown = motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B
+    axes = _axes_at(motion, time, flown)
+    return replace(axes, imitated=whole, limits=whole.axes.limits, warnings=whole.axes.warnings)
+
+
+def _axes_at(motion: Centrifuge, time: Floats, flown: Floats) -> AxesResult:
+    """Axes at given times (t,) s, beside the flight's load (t, 3) m/s² there; without limits and warnings."""
     axes, jerk = motion.axes_and_jerks(time)
-    rate, acceleration = axes.rates, axes.accelerations
-    result = AxesResult(
+    return AxesResult(
         angle=axis_angles(axes, time),
-        rate=rate,
-        acceleration=acceleration,
+        rate=axes.rates,
+        acceleration=axes.accelerations,
         reference=motion.reference(time),
         actual=motion.actual_by(axes),
         not_followed=motion.not_followed(time),
         episodes=tuple((e.start, e.end, e.reason) for e in motion.episodes()),
-        limits=usage(time, rate, acceleration, jerk, motion.limits),
         shortfalls=motion.shortfalls(),
         arm=float(motion.geometry.arm),
         control_point=float(motion.place[0]),
@@ -113,16 +142,15 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
         jerk=jerk,
         span=motion.target.span,
         start=motion.ends.start,
-        flight=np.asarray(motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B),
+        flight=np.asarray(flown),
     )
-    return replace(result, warnings=(*_broken_promise(motion, time, result), *_short_ramps(motion)))
 
 
 _FELT, _MOST = 0.1, 0.5  # of a miss: what less ease takes from it is told from there on, and told first
 
 
-def _broken_promise(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
-    """Warn where the load is followed worst, if worse than the inverse promises, with what makes the miss there."""
+def _followed_worse(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
+    """Warn where the load is followed worst, if worse than the inverse aims at, with what makes the miss there."""
     size = axes.tracking_error
     share = np.where(axes.not_followed, 0.0, size / np.maximum(np.linalg.norm(axes.reference, axis=1), 1e-12))
     missed = share > motion.inverse.within

@@ -145,7 +145,7 @@ class Machine:
         From axis 1 to the control point, m.
     limits : MachineLimits
     idle : float
-        Load at which it idles, below which a target is held, m/s².
+        Load at which it idles, the least load of a target, m/s².
     source : str
         Where the numbers come from.
     """

@@ -18,7 +18,7 @@ from gbeam.numerics.samples import thinned
 from gbeam.printable import printable
 from gbeam.report.blocks import Block, Cell, Items, Place, Sentence, Table, Verbatim
 from gbeam.report.words import number, sentence
-from gbeam.results.criteria import GOOD, in_capitals
+from gbeam.results.criteria import GOOD
 from gbeam.results.result import Floats
 
 
@@ -92,7 +92,7 @@ def _breaking(name: str) -> str:
 
 def badge(state: str) -> str:
     """Outcome of a result, as a badge that must not be overlooked."""
-    return f'<span class="badge {"good" if state in GOOD else "bad"}">{escaped(in_capitals(state))}</span>'
+    return f'<span class="badge {"good" if state in GOOD else "bad"}">{escaped(state)}</span>'
 
 
 def _cell(cell: Cell, numeric: bool) -> str:

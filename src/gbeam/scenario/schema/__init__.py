@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from gbeam.scenario.schema.arm import Arm as Arm
 from gbeam.scenario.schema.beam import Beam as Beam
 from gbeam.scenario.schema.beam import Drawn as Drawn
 from gbeam.scenario.schema.beam import Line as Line

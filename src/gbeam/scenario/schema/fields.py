@@ -90,6 +90,12 @@ def existing_file(file: str, info: ValidationInfo) -> str:
 File = Annotated[str, AfterValidator(existing_file), WithJsonSchema({"type": "string", "format": "file-path"})]
 
 
+def missing_one_of(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
+    """Problem of a table that has neither of two keys."""
+    hint = f"add one of them: {first} = ... or {second} = ..."
+    return (), wrong(f"{first} or {second} is missing", hint, mark="key")
+
+
 def refuse(problems: Iterable[tuple[Loc, PydanticCustomError]]) -> None:
     """Raise all `problems` at once, each at its place within the table; do nothing if there are none."""
     details = [InitErrorDetails(type=error, loc=loc, input=None) for loc, error in problems]
@@ -224,6 +230,7 @@ RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positiv
 ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")
 _SOME = Field(min_length=1, max_length=ENTRIES)
 _T = TypeVar("_T")
+ControlPoint = Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST]
 OneOrSome = Annotated[Annotated[_T, Tag("one")] | Annotated[tuple[_T, ...], _SOME, Tag("list")], ONE_OR_LIST]
 Lengths = OneOrSome[Length]
 Areas = OneOrSome[Area]

@@ -5,17 +5,16 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, Tag, create_model, model_validator
-from pydantic_core import PydanticCustomError
 
 from gbeam.constants import InverseName, MachineName, Mounting, Pointing, Start, ToleranceOf
 from gbeam.results.criteria import RULES
+from gbeam.scenario.schema.arm import Arm
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     Acceleration,
+    ControlPoint,
     Duration,
     Length,
-    Loc,
-    Place3,
     Position,
     Quantity,
     Table,
@@ -23,6 +22,7 @@ from gbeam.scenario.schema.fields import (
     Turn3,
     Vector,
     by_name,
+    missing_one_of,
     optional,
     refuse,
     wrong,
@@ -36,7 +36,6 @@ Ratios = Annotated[Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, Ratio],
 _Leak = Annotated[float, Quantity("ratio")]
 _Reading = tuple[_Leak, _Leak, _Leak]
 Levels = Annotated[Annotated[Level, Tag("one")] | Annotated[tuple[Level, Level], Tag("list")], ONE_OR_LIST]
-
 _TYPES: dict[str, Any] = {"most": Share, "least": Share, "ratio": Ratios, "level": Levels}
 _FIELDS: dict[str, Any] = {rule.name: (_TYPES[rule.kind] | None, optional(rule.words)) for rule in RULES.values()}
 _Limits = create_model("_Limits", __base__=Table, **_FIELDS)
@@ -94,11 +93,6 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         return {name: value for name, value in self if value not in (None, {})}
 
 
-def _missing(first: str, second: str) -> tuple[Loc, PydanticCustomError]:
-    hint = f"add one of them: {first} = ... or {second} = ..."
-    return (), wrong(f"{first} or {second} is missing", hint, mark="key")
-
-
 class Components(Vector):
     """An acceleration by components in base axes; those left out are zero."""
 
@@ -126,7 +120,7 @@ class Flight(Table):
     @model_validator(mode="after")
     def _one_source(self) -> Flight:
         if self.record is None and self.acceleration is None:
-            refuse([_missing("record", "acceleration")])
+            refuse([missing_one_of("record", "acceleration")])
         if self.record is not None and self.acceleration is not None:
             hint = "keep record or acceleration, not both"
             refuse([(("acceleration",), wrong("is given beside record", hint, mark="key"))])
@@ -174,7 +168,7 @@ class Centrifuge(Table):
         "an example machine, which gives arm, idle and limits where they are left out"
     )
     arm: Length | None = optional("radius from the main axis to the control point; or machine")
-    control_point: Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST] = Field(
+    control_point: ControlPoint = Field(
         description="point of the specimen that feels the flight's load, from the root: along x, or [x, y, z]"
     )
     inverse: InverseName = Field(
@@ -275,8 +269,8 @@ class Hub(Table):
     @model_validator(mode="after")
     def _one_drive(self) -> Hub:
         if self.rate is None and self.torque is None:
-            refuse([_missing("rate", "torque")])
+            refuse([missing_one_of("rate", "torque")])
         return self
 
 
-Motion = Annotated[Flight | Centrifuge | Hub, Discriminator("kind")]
+Motion = Annotated[Flight | Centrifuge | Hub | Arm, Discriminator("kind")]

@@ -21,6 +21,7 @@ from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, S
 from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
 from gbeam.printable import advise, level_words, shortened, unprintable
 from gbeam.questions import QUESTIONS
+from gbeam.scenario.schema.arm import Arm
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -302,6 +303,12 @@ class Environments(Titled):
         return "; ".join(filter(None, [self.title, *levels]))
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all motions in their order: of an arm in several directions NAME-DIRECTION of each."""
+        several = ((name, table.motions if isinstance(table, Arm) else ("",)) for name, table in self.motion.items())
+        return tuple("-".join(filter(None, (name, part))) for name, parts in several for part in parts)
+
+    @property
     def source(self) -> Source | None:
         """Text the scenario was read from, with its overrides; for messages and provenance."""
         return self._source
@@ -327,6 +334,10 @@ class Environments(Titled):
                 yield from self._tracking(name, motion)
             if isinstance(motion, Flight) and isinstance(motion.record, PartOfRecord):
                 yield from self._part(name, motion.record)
+        for name in self.motion:
+            twice = [other for other in self.names if other == name]
+            if len(twice) > 1:
+                yield ("motion", name), wrong("has the name of a direction of an arm", "give it another", mark="key")
         recorded = any(isinstance(motion, Flight) and motion.record for motion in self.motion.values())
         machines = any(isinstance(motion, Centrifuge) for motion in self.motion.values())  # which plan for these times
         if machines and self.response.duration is None and not recorded:

@@ -45,8 +45,8 @@ class Geometry:
 class Inverse(ABC):
     """Axis motion for a target.
 
-    Each says what it promises: `within`, the largest tracking error as a fraction of the load where the target is not
-    held (infinite where it promises nothing), and `unless`, why it may be more and what helps.
+    Each says what it aims at: `within`, the largest tracking error as a fraction of the load where the target is the
+    flight's (infinite where it aims at nothing), and `unless`, why it may be more and what helps.
     """
 
     within: ClassVar[float]

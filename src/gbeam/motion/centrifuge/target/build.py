@@ -196,7 +196,7 @@ def _and_next(flags: Flags) -> Flags:
 def _number(arm: Any) -> float:
     """The arm's length as a number; InputError if JAX traces it."""
     if is_traced(arm):
-        problem = "is traced by JAX, and by its number the target turns where it is held, below idle or out of reach"
+        problem = "is traced by JAX, and by its number the target turns where it is another load"
         raise InputError("arm", problem, "give a number, or times at which the flight's load is followed")
     return float(arm)
 

@@ -219,10 +219,11 @@ def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
     if least >= (LEAST_IDLE if gravity else 0.02):
         return f'idle = "{least:.2f} g" or less would follow it'
     if not gravity:
-        return "no machine follows a load so near to zero: it is held"
+        return "no machine follows a load so near to zero: the target keeps away from it"
     if np.min(across) >= MIN_TRANSVERSE_LOAD:
         return "without idle it would be followed"
-    return f"no machine follows a load below {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g across the beam: it is held"
+    least = MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY
+    return f"no machine follows a load below {least:g} g across the beam: the target stays above it"
 
 
 def _sharp_remedy(width: float | None, load: float) -> str:

@@ -1,0 +1,185 @@
+"""A plain arm: one axis that turns up to a level, holds it and stops, with a specimen mounted in any direction."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+import numpy as np
+
+from gbeam.arrays.types import Floats, Numbers
+from gbeam.constants import STANDARD_GRAVITY, Along
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import positive, vector
+from gbeam.motion.hub import Hub
+from gbeam.motion.profiles.combine import Sum
+from gbeam.motion.profiles.pulse import SmoothStep
+from gbeam.results.machine import ArmLevel, Imbalance
+
+STEEPEST = 2.521152657241058  # largest derivative of s(x)² on 0 < x < 1, s(x) = x - sin(2πx)/2π: the rate's SmoothStep
+PARALLEL = 1e-6  # of a vector: less of it across another is none
+ROUNDING = 1e-9  # of the whole load on an arm: less of it is no imbalance
+SAMPLES = 2001  # between corners of the rate
+
+
+@typed
+def plain_arm(
+    *,
+    radius: float,
+    control_point: Numbers = (0.0, 0.0, 0.0),
+    load: Along | Numbers,
+    up: Along | Numbers,
+    level: float,
+    onset: float | None = None,
+    ramp: float | None = None,
+    dwell: float,
+    down: float | None = None,
+    gravity: bool = True,
+) -> Hub:
+    """Hub that turns up from rest to a level, holds it and stops: a centrifuge of one axis, with a fixed mounting.
+
+    The arm's rate is Ω s(t/T) on the way up, Ω = √(level/radius), s(x) = x − sin(2πx)/2π, and the mirror image on the
+    way down, so that neither rate nor angular acceleration jumps. Besides level·s² along `load` the control point has
+    the tangential acceleration radius·Ω s'/T on the way, at most 2 √(level·radius)/T.
+
+    Parameters
+    ----------
+    radius : float
+        From the arm's axis to the control point, m.
+    control_point : (3,)
+        Point of the specimen at which the level holds, from the root, m.
+    load : str or (3,)
+        Direction of the specimen, base axes, in which the level accelerates it: it points to the arm's axis, and the
+        specimen is felt to be pressed against it. "+x", or a vector.
+    up : str or (3,)
+        Direction of the specimen that is up, likewise; what it has along `load` does not count.
+    level : float
+        Centripetal acceleration at the control point, m/s². Gravity comes on top, across it.
+    onset : float, optional
+        Largest rate at which the level rises, m/s³; or `ramp`.
+    ramp : float, optional
+        T, time from rest to the level, s: 2.5212 level/onset.
+    dwell : float
+        Time at the level, s.
+    down : float, optional
+        Time from the level to rest, s; as long as that up where it is left out.
+    gravity : bool
+        False to leave out the specimen's weight.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, `up` lies along `load`, or onset and ramp are both given or both missing.
+
+    Examples
+    --------
+    >>> arm = gb.plain_arm(radius=3.3, load="+x", up="+z", level="9 g", ramp=20.0, dwell=60.0)
+    >>> arm.base(50.0).a_WO_B.round(4)
+    array([88.2598,  0.    ,  9.8066])
+    >>> arm.rate.extent
+    (0.0, 100.0)
+    """
+    size = positive("level", level, "m/s²")
+    if (onset is None) == (ramp is None):
+        problem = "is missing" if onset is None else "is given beside ramp"
+        raise InputError("onset", problem, 'give one of onset, such as "0.5 g/s", and ramp, such as "20 s"')
+    if ramp is None:
+        ramp = STEEPEST * size / positive("onset", onset, "m/s³")
+    rising, held = positive("ramp", ramp, "s"), positive("dwell", dwell, "s")
+    falling = rising if down is None else positive("down", down, "s")
+    rate = float(np.sqrt(size / positive("radius", radius, "m")))
+    steps = SmoothStep(rate, rising), SmoothStep(-rate, falling, start=rising + held)
+    return Hub(
+        radius=radius,
+        rate=Sum(steps),
+        turn=mounted(load, up),
+        control_point=control_point,
+        gravity=(0.0, 0.0, -STANDARD_GRAVITY if gravity else 0.0),
+    )
+
+
+def direction(where: str, value: Any) -> Floats:
+    """Unit vector (3,) of a word such as "+x", or of a vector; InputError if it is neither, or zero."""
+    if isinstance(value, str):
+        if value not in get_args(Along):
+            raise InputError(where, f"is {value!r}", f"give one of {', '.join(get_args(Along))}, or a vector")
+        return float(f"{value[0]}1") * np.eye(3)["xyz".index(value[1])]
+    along = np.asarray(vector(where, value), dtype=float)
+    if not np.any(along):
+        raise InputError(where, "is zero", "give a direction, such as [0, 0, 1]")
+    return np.asarray(along / np.linalg.norm(along))
+
+
+def across(load: Floats, up: Floats) -> bool:
+    """Tell if a direction has a part across another, both of length one."""
+    return bool(np.linalg.norm(up - (up @ load) * load) > PARALLEL)
+
+
+def mounted(load: Any, up: Any) -> tuple[float, float, float]:
+    """Rotation vector, rad, of a specimen's axes in a hub's: `load` points to the hub's axis, `up` along it."""
+    from scipy.spatial.transform import Rotation  # 0.2 s to import, which few motions need
+
+    inward, upward = direction("load", load), direction("up", up)
+    if not across(inward, upward):
+        raise InputError("up", f"is {up!r}, along load = {load!r}", "give a direction across it")
+    upward = upward - (upward @ inward) * inward
+    upward /= np.linalg.norm(upward)
+    R_HB = np.array([-inward, np.cross(-upward, inward), upward])
+    x, y, z = map(float, Rotation.from_matrix(R_HB).as_rotvec())
+    return x, y, z
+
+
+def extent_of(motion: Any) -> tuple[float, float] | None:
+    """First and last time of a plain arm's motion, s; None of other motions, and of hubs without a control point."""
+    if motion is None or motion.kind != "hub" or motion.control_point is None or motion.free:
+        return None
+    extent: tuple[float, float] | None = motion.rate.extent
+    return extent
+
+
+def level_of(motion: Any) -> ArmLevel | None:
+    """Level at the control point of a plain arm; None of other motions, and of hubs without a control point."""
+    extent = extent_of(motion)
+    if extent is None:
+        return None
+    marks = np.asarray(motion.rate.breaks)
+    time = np.unique(np.linspace(marks[:-1], marks[1:], SAMPLES))
+    rate, acceleration = (np.asarray(each) for each in motion.rate.derivatives(time))
+    radius, largest = float(motion.radius), float(np.abs(rate).max())
+    held = time[np.abs(rate) >= largest * (1 - 1e-12)]
+    return ArmLevel(
+        level=radius * largest**2,
+        radius=radius,
+        control_point=np.asarray(motion.control_point),
+        load=-motion.mount.R_HB[0],
+        up=motion.mount.R_HB[2],
+        rate=largest,
+        onset=float((2 * radius * rate * acceleration).max()),
+        tangential=float(np.abs(radius * acceleration).max()),
+        reached=float(held[0]),
+        ends=float(held[-1]),
+    )
+
+
+def imbalance_of(motion: Any, level: ArmLevel | None, time: Floats, force: Floats, moment: Floats) -> Imbalance | None:
+    """Imbalance of what loads a plain arm with forces and moments on its root (t, 3), N and N m, at times (t,), s.
+
+    By the mean over the second half of the time at the level, in which what deforms and swings comes to rest; None
+    without a level, before it, or where the weight is not along the axis.
+    """
+    if level is None or (motion.gravity is not None and np.any(np.asarray(motion.gravity)[:2])):
+        return None
+    held = (time >= (level.reached + level.ends) / 2) & (time <= level.ends)
+    if not held.any():
+        return None
+    place, R_HB = np.asarray(motion.mount.place), np.asarray(motion.mount.R_HB)
+    on_arm, about_root = R_HB @ force[held].mean(axis=0), R_HB @ moment[held].mean(axis=0)
+    about_axis = about_root + np.cross(place, on_arm)
+    # In the arm's axes: F = Ω² Σ m r, and M = z × (Ω² Σ m z r + g Σ m r), r from the axis.
+    weight = 0.0 if motion.gravity is None else -float(motion.gravity[2])
+    static = on_arm * (1, 1, 0) / level.rate**2
+    dynamic = (np.cross(about_axis, (0, 0, 1)) - weight * static) / level.rate**2
+    rounding = ROUNDING * float(np.linalg.norm(on_arm)) / level.rate**2
+    static[np.abs(static) < rounding] = 0.0
+    dynamic[np.abs(dynamic) < rounding * level.radius] = 0.0
+    return Imbalance(static, dynamic, level.radius)

@@ -1,0 +1,188 @@
+"""[motion.NAME] of kind arm: a centrifuge of one axis, in one direction of its specimen or several."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic_core import PydanticCustomError
+
+from gbeam.constants import Along, PresetName
+from gbeam.scenario.presets import PRESETS, preset_of
+from gbeam.scenario.schema.fields import (
+    ONE_OR_LIST,
+    ControlPoint,
+    Duration,
+    Jerk,
+    Length,
+    Loc,
+    Quantity,
+    Table,
+    by_name,
+    missing_one_of,
+    optional,
+    refuse,
+    wrong,
+)
+
+_Component = Annotated[float, Quantity("ratio")]
+_AlongOrVector = Annotated[
+    Annotated[Along, Tag("one")] | Annotated[tuple[_Component, _Component, _Component], Tag("list")], ONE_OR_LIST
+]
+
+
+def _one_words_or_vector(value: Any) -> str:
+    if not isinstance(value, (list, tuple)):
+        return "one"
+    return "words" if value and all(isinstance(each, str) for each in value) else "list"
+
+
+def _one_vector_or_table(value: Any) -> str:
+    return "one" if isinstance(value, str) else "list" if isinstance(value, (list, tuple)) else "table"
+
+
+_Up = Annotated[
+    Annotated[Along, Tag("one")]
+    | Annotated[tuple[Along, ...], Tag("words")]
+    | Annotated[tuple[_Component, _Component, _Component], Tag("list")],
+    Discriminator(_one_words_or_vector),
+]
+
+
+class _Held(Table):
+    """Keys of a plain arm that a direction may have of its own."""
+
+    level: Annotated[float, Quantity("acceleration", "positive")] | None = optional(
+        "centripetal acceleration at the control point; gravity comes on top, across it"
+    )
+    up: _Up | None = optional(
+        'direction of the specimen that is up: "+z", a vector, or several such as ["+z", "+x"], of which the first '
+        "that is not along load is taken"
+    )
+    onset: Jerk | None = optional("largest rate at which the level rises; or ramp")
+    ramp: Duration | None = optional("time from rest to the level; or onset")
+    dwell: Duration | None = optional("time at the level")
+    down: Duration | None = optional("time from the level to rest; as long as that up where it is left out")
+    radius: Length | None = optional("from the arm's axis to the control point")
+    control_point: ControlPoint | None = optional(
+        "point of the specimen at which the level holds, from the root: along x, or [x, y, z]"
+    )
+
+    @model_validator(mode="after")
+    def _one_way_up(self) -> Self:
+        if self.onset is not None and self.ramp is not None:
+            refuse([(("ramp",), wrong("is given beside onset", "keep onset or ramp, not both", mark="key"))])
+        return self
+
+    @property
+    def held(self) -> dict[str, Any]:
+        """Keys that are written, by name."""
+        return {key: value for key in _Held.model_fields if (value := getattr(self, key)) is not None}
+
+
+class TestDirection(_Held):
+    """One direction in which a plain arm tests its specimen, with keys that differ from the arm's."""
+
+    load: _AlongOrVector = Field(
+        description='direction of the specimen that points to the arm\'s axis: the level accelerates it that way, "+x"'
+    )
+
+
+class Arm(_Held):
+    """A plain arm: one axis that turns up to a level, holds it and stops, with a specimen in a fixed mounting."""
+
+    kind: Literal["arm"] = Field(description="kind of the motion")
+    preset: PresetName | None = optional(
+        "test of a standard, by name: `gbeam presets` lists them, with their figures and clauses. It gives keys that "
+        "are left out here, and asks for those whose text could not be read; a direction may leave load to it"
+    )
+    load: _AlongOrVector | None = optional(
+        "direction of the specimen that points to the arm's axis: the level accelerates it that way, such as "
+        '"+x", or a vector; or directions'
+    )
+    directions: dict[
+        str,
+        Annotated[
+            Annotated[Along, Tag("one")]
+            | Annotated[tuple[_Component, _Component, _Component], Tag("list")]
+            | Annotated[TestDirection, Tag("table")],
+            Discriminator(_one_vector_or_table),
+        ],
+    ] = by_name(
+        "several directions by name, each a motion of its own, NAME-DIRECTION: the load's direction, or a table with "
+        'keys that differ: { fore = "+x", up = { load = "+z", level = "6 g" } }'
+    )
+    gravity: StrictBool = Field(
+        default=True, description="false to leave out the weight, which a test on the ground always has"
+    )
+
+    @property
+    def motions(self) -> dict[str, dict[str, Any]]:
+        """Keys of the motion of every direction, by its name; of one direction the name is empty."""
+        common = self.held
+        if not self.directions:
+            return {"": common | {"load": self.load}}
+        return {name: _merged(common, each) for name, each in self.directions.items()}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _preset(cls, value: Any) -> Any:
+        """Take keys that are left out from the preset, and of directions their loads."""
+        if not isinstance(value, dict) or value.get("preset") not in PRESETS:
+            return value
+        preset = preset_of(value["preset"])
+        left_out = {key: part for key, part in preset.arm.items() if key not in value}
+        written = value.get("directions")
+        if "load" in value:
+            left_out.pop("directions", None)
+        elif isinstance(written, dict):
+            left_out["directions"] = {name: _with_load(each, preset.directions.get(name)) for name, each in
+                                      written.items()}  # fmt: skip
+        return value | left_out
+
+    @model_validator(mode="after")
+    def _complete(self) -> Arm:
+        refuse(self._problems())
+        return self
+
+    def _problems(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        if self.load is None and not self.directions:
+            asked = self._asked("directions")
+            yield ((), wrong("directions are missing", asked, mark="key")) if asked else _UNDIRECTED
+        if self.load is not None and self.directions:
+            yield ("load",), wrong("is given beside directions", "keep load or directions, not both", mark="key")
+        for key, example in _NEEDED.items():
+            lacking = [name for name, keys in self.motions.items() if not {key, *_OR.get(key, ())} & keys.keys()]
+            of = f" in the directions {', '.join(lacking)}" if 0 < len(lacking) < len(self.motions) else ""
+            if lacking:
+                either = " or ".join((key, *_OR.get(key, ())))
+                hint = self._asked(key) or f"add {key} = {example}"
+                yield (), wrong(f"{either} is missing{of}", hint, mark="key")
+
+    def _asked(self, key: str) -> str:
+        """Words that ask for a key that the preset's standard fixes; empty where it does not."""
+        advice = "" if self.preset is None else preset_of(self.preset).advice(key)
+        return f"give {key} by {advice}" if advice else ""
+
+
+# What every direction needs, with examples; onset or ramp.
+_NEEDED = {"radius": '"3.3 m"', "control_point": "[0, 0, 0]", "level": '"9 g"', "onset": '"0.5 g/s"', "dwell": '"60 s"',
+           "up": '["+z", "+x"]'}  # fmt: skip
+_OR = {"onset": ("ramp",)}
+_UNDIRECTED = missing_one_of("load", "directions")
+
+
+def _with_load(direction: Any, load: Any) -> Any:
+    """Table of a direction with the load that a preset gives it, where it is a table that has none."""
+    return {"load": load} | direction if isinstance(direction, dict) and load is not None else direction
+
+
+def _merged(common: dict[str, Any], direction: Any) -> dict[str, Any]:
+    """Keys of an arm with those that one of its directions has of its own."""
+    if not isinstance(direction, TestDirection):
+        return common | {"load": direction}
+    changed = direction.held
+    other = {"onset": "ramp", "ramp": "onset"}
+    kept = {key: value for key, value in common.items() if other.get(key) not in changed}
+    return kept | changed | {"load": direction.load}
