@@ -13,7 +13,11 @@ import re
 from importlib import import_module
 from pathlib import Path
 
-__version__ = "0.3.0"
+from gbeam import doors
+from gbeam.results.doors import bind
+from gbeam.version import __version__ as __version__
+
+bind(doors)
 
 # Every public name, and the module it is in: as the stub has them, which type checkers read.
 _STUB = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")

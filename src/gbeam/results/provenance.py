@@ -13,7 +13,8 @@ from functools import cache
 from types import MappingProxyType
 
 from gbeam.results.declared import INSIDE, fact, part, rows
-from gbeam.results.result import Part
+from gbeam.results.part import Part
+from gbeam.version import __version__
 
 
 @dataclass(frozen=True)
@@ -110,8 +111,6 @@ def present() -> Environment:
     """The present environment."""
     from importlib.metadata import PackageNotFoundError, requires, version
 
-    import gbeam
-
     def version_of(name: str) -> str:
         try:
             return version(name)
@@ -125,4 +124,4 @@ def present() -> Environment:
     names = {re.split(r"[^\w.-]", each)[0] for each in needed if "extra ==" not in each} | {"jaxlib", "h5py", "numpy"}
     system = f"{platform.system()} {platform.release()} {platform.machine()}"
     dependencies = MappingProxyType({name: version_of(name) for name in sorted(names)})
-    return Environment(gbeam.__version__, sys.version.split()[0], system, dependencies)
+    return Environment(__version__, sys.version.split()[0], system, dependencies)

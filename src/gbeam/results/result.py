@@ -1,32 +1,24 @@
-"""Base of all results: short words on the screen, and the doors to xarray, to a file, a figure and a report.
-
-The doors lead to the leaves `gbeam.io`, `gbeam.plots` and `gbeam.report`, which are imported when one is opened: a
-record needs none, and importing a record loads none.
-"""
+"""Base of all results: short words on the screen, and the doors to xarray, to a file, a figure and a report."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, Self, TypeVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Complex as Complex
 from gbeam.arrays.types import Flags as Flags
 from gbeam.arrays.types import Floats as Floats
 from gbeam.guards.arguments import typed
-from gbeam.results.declared import along_time, document, fact
+from gbeam.results.declared import document, fact
+from gbeam.results.doors import Panels, doors
+from gbeam.results.part import Part as Part
+from gbeam.results.part import brief as brief
 
 if TYPE_CHECKING:
-    from gbeam.plots import Panels
     from gbeam.results.provenance import Provenance
-
-
-def brief(record: Any) -> str:
-    """A record on one line: numbers and words as they are, arrays by their shapes, other records by their names."""
-    values = ", ".join(f"{f.name}={_short(getattr(record, f.name))}" for f in fields(record) if f.repr)
-    return f"{type(record).__name__}({values})"
 
 
 def each_once(sentences: Mapping[str, Iterable[str]]) -> tuple[str, ...]:
@@ -45,41 +37,6 @@ def part_words(span: tuple[float, float], whole: tuple[float, float]) -> str:
     """Part of a flight in words: ``0 to 6 of 15.99 s``, ``102 to 108 of 100 to 116 s``; all s."""
     beginning = "" if whole[0] == 0 else f"{whole[0]:.6g} to "
     return f"{span[0]:.6g} to {span[1]:.6g} of {beginning}{whole[1]:.6g} s"
-
-
-def _short(value: Any) -> str:
-    """A value on a line: arrays by their shapes, other records by their names, long tuples and mappings by length."""
-    if isinstance(value, (str, bool, int)) or value is None:
-        return repr(value)
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    if getattr(value, "shape", None) is not None:
-        return str(tuple(value.shape))
-    if isinstance(value, (tuple, dict)) and len(value) > 3:
-        return f"<{len(value)}>"
-    if isinstance(value, tuple):
-        return f"({', '.join(_short(each) for each in value)}{',' if len(value) == 1 else ''})"
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_short(each)}' for key, each in value.items())}}}"
-    return f"<{type(value).__name__}>"
-
-
-class Part(Value):
-    """A part of a result: it prints on one line, arrays as their shapes."""
-
-    __slots__ = ()
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        document(cls)
-
-    def during(self, times: Any) -> Self:
-        """Return the part at some of its `times`, an index or slice of them."""
-        part: Any = self
-        return replace(part, **{name: values[times] for name, values in along_time(self).items()})
-
-    def __repr__(self) -> str:
-        return brief(self)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -120,9 +77,7 @@ class Result(Value):
 
     def _repr_html_(self) -> str:
         """The verdict and a small table, in notebooks."""
-        from gbeam.report.page.document import html_of
-
-        return html_of(self)
+        return doors().summary(self)
 
     def to_xarray(self) -> Any:
         """Return the result with named dimensions, units and frames.
@@ -132,9 +87,7 @@ class Result(Value):
         xarray.Dataset
             Of a :class:`~gbeam.Study` an xarray.DataTree.
         """
-        from gbeam.io.netcdf import to_xarray
-
-        return to_xarray(self)
+        return doors().to_xarray(self)
 
     @typed
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -150,10 +103,7 @@ class Result(Value):
         OSError
             If it cannot be written.
         """
-        from gbeam.io.netcdf import save
-        from gbeam.report.facts import facts_text
-
-        save(self, path, facts_text(self))
+        doors().save(self, path)
 
     @typed
     def report(self, path: str | os.PathLike[str]) -> None:
@@ -169,9 +119,7 @@ class Result(Value):
         OSError
             If it cannot be written.
         """
-        from gbeam.report.page.result import write_report
-
-        write_report(self, path)
+        doors().report(self, path)
 
 
 NOT_KNOWN = "not known"
@@ -208,9 +156,7 @@ class Figured(Result, Generic[FigureName]):
         InputError
             If there is no beam in motion to show, or the extra is not installed.
         """
-        from gbeam.report.page.result import widget
-
-        return widget(self)
+        return doors().view(self)
 
     @typed
     def plot(self, what: FigureName | Literal[""] = "", *, title: str = "") -> Panels:
@@ -240,6 +186,4 @@ class Figured(Result, Generic[FigureName]):
         InputError
             If it has no such figure.
         """
-        from gbeam.plots import plot
-
-        return plot(self, what, title)
+        return doors().plot(self, what, title)

@@ -1,0 +1,3 @@
+"""Version of gbeam."""
+
+__version__ = "0.3.0"
