@@ -10,7 +10,7 @@ import pytest
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.motion import Centrifuge, Flight, machines, trapezoid
-from gbeam.motion.centrifuge.kinematics import axis_angles
+from gbeam.motion.centrifuge.histories import axis_angles
 from gbeam.motion.records.record import read_record
 from gbeam.motion.rigid import moved
 

@@ -11,7 +11,7 @@ from typing import Any
 import jax
 from platformdirs import user_cache_path
 
-from gbeam.arrays.tree import leaves_and_statics, register_all
+from gbeam.arrays.registry import leaves_and_statics, register_all
 
 jax.config.update("jax_enable_x64", True)
 if not os.environ.get("JAX_COMPILATION_CACHE_DIR"):

@@ -1,8 +1,8 @@
 """Frozen records that JAX can trace, map and differentiate, defined without importing JAX.
 
 A record is a pytree: its fields are leaves, but for those marked :func:`static`, which belong to the compiled program.
-Records wait here until JAX is imported (`gbeam.arrays.jax_setup` then registers them all), so that what needs no JAX
-never pays for the import.
+Records wait in the `registry` until JAX is imported (`gbeam.arrays.jax_setup` then registers them all), so that what
+needs no JAX never pays for the import.
 """
 
 from __future__ import annotations
@@ -11,17 +11,15 @@ import dataclasses
 import inspect
 import sys
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
 
 from gbeam.arrays.namespace import is_traced
+from gbeam.arrays.registry import leaves_and_statics, register
 
 _T = TypeVar("_T")
-_records: list[type] = []
 _FEW, _WIDEST = 6, 60  # numbers of an array that are printed; letters of an argument
-_register: Callable[[type], None] | None = None
 
 
 def static(**options: Any) -> Any:
@@ -56,10 +54,8 @@ def record(cls: type[_T]) -> type[_T]:
     record_type = dataclasses.dataclass(frozen=True, eq=False, init=not written["__init__"], repr=False)(cls)
     for method in (Value.__eq__, __hash__, *(() if written["__repr__"] else (Value.__repr__,))):
         setattr(record_type, method.__name__, method)
-    _records.append(record_type)
-    if _register is not None:
-        _register(record_type)
-    elif "jax" in sys.modules:  # whoever imported it may hand records to it before any array
+    register(record_type)
+    if "jax" in sys.modules:  # whoever imported it may hand records to it before any array
         import gbeam.arrays.jax_setup  # noqa: F401
     return record_type
 
@@ -174,19 +170,3 @@ def together(trees: Sequence[Any]) -> Any:
     """Stack the arrays of equally built records, tuples, lists and None along a new first axis."""
     stacked = iter([np.stack(each) for each in zip(*map(leaves_of, trees), strict=True)])
     return each_leaf(lambda _: next(stacked), trees[0])
-
-
-def register_all(register: Callable[[type], None]) -> None:
-    """Call `register` with every class of records, present and future; called once, when JAX is imported."""
-    global _register
-    _register = register
-    for cls in _records:
-        register(cls)
-
-
-@cache
-def leaves_and_statics(cls: type) -> tuple[list[str], list[str]]:
-    """Names of a record's fields: those that are leaves, and those that are static."""
-    fields = dataclasses.fields(cls)
-    fixed = [f.name for f in fields if f.metadata.get("static")]
-    return [f.name for f in fields if f.name not in fixed], fixed

@@ -30,7 +30,7 @@ from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
-from gbeam.motion.centrifuge.kinematics import times_between
+from gbeam.motion.centrifuge.histories import times_between
 from gbeam.motion.centrifuge.limits import exceeded
 from gbeam.numerics.minimise import least, refine
 from gbeam.numerics.samples import interpolated, low_pass

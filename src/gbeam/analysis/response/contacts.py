@@ -12,7 +12,7 @@ from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.equations import SLIP, SLIPS, STUCK, Inputs, Link
 from gbeam.mechanics.tree.joints import SLIDES, SPIN, Joint
-from gbeam.mechanics.tree.signals import unit_of_effort
+from gbeam.mechanics.tree.signal_names import unit_of_effort
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.series import STEP
 

@@ -30,7 +30,7 @@ from gbeam.integrate.tangent import System as Tangent
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion.centrifuge.kinematics import axes_result
+from gbeam.motion.centrifuge.histories import axes_result
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult

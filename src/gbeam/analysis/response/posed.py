@@ -40,7 +40,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import SLIP, Inputs
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.linear import idle_inputs, is_linear, linear_equations
-from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.results.errors import StepErrors

@@ -25,7 +25,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import units_of
 from gbeam.motion import Centrifuge
 from gbeam.motion.arm import imbalance_of, level_of
-from gbeam.motion.centrifuge.kinematics import axes_result
+from gbeam.motion.centrifuge.histories import axes_result
 from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import level_factor, notes_on
 from gbeam.progress import Progress

@@ -27,7 +27,7 @@ from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.signals import local_names
+from gbeam.mechanics.tree.signal_names import local_names
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import positive_definite

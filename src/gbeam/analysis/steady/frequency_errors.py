@@ -27,7 +27,7 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import Steady, mac, matched
 from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors

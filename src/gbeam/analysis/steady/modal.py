@@ -18,7 +18,7 @@ from gbeam.analysis.system.steady import SteadySystem, settled
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import ROOT, System
 from gbeam.motion.protocol import Motion, notes_on

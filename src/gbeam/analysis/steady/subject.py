@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.one_body import HINGE, on_hub
-from gbeam.mechanics.tree.signals import deforming, local_names
+from gbeam.mechanics.tree.signal_names import deforming, local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.eigen import Steady

@@ -14,7 +14,8 @@ from gbeam.arrays.types import Floats
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.equations import Inputs, State, Tree
-from gbeam.mechanics.tree.signals import CARRIED, carried_of, measurements
+from gbeam.mechanics.tree.signal_names import CARRIED
+from gbeam.mechanics.tree.signals import carried_of, measurements
 from gbeam.mechanics.tree.system import System, stations_of
 
 

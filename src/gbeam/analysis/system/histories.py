@@ -14,7 +14,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.equations import Inputs, State
 from gbeam.mechanics.tree.frames import turned
-from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System, stations_of
 from gbeam.results.parts import Base, Loads

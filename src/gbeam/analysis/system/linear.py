@@ -16,7 +16,8 @@ from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, settled
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.signals import Driven, drives_of, local_names, measurable, signals_of
+from gbeam.mechanics.tree.signal_names import local_names
+from gbeam.mechanics.tree.signals import Driven, drives_of, measurable, signals_of
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Steady, Vibrations

@@ -18,7 +18,7 @@ from gbeam.integrate.equations import Trajectory, accelerations, expanded, masse
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
-from gbeam.mechanics.tree.signals import deforming, local_names, unit_of_effort
+from gbeam.mechanics.tree.signal_names import deforming, local_names, unit_of_effort
 from gbeam.mechanics.tree.steps import Ball
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion

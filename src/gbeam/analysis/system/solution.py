@@ -30,7 +30,7 @@ from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.signals import deforming
+from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.results.parts import Base
 

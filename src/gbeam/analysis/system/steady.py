@@ -36,7 +36,7 @@ from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES, SPIN
 from gbeam.mechanics.tree.linear import is_linear
-from gbeam.mechanics.tree.signals import deforming, local_names, unit_of_effort
+from gbeam.mechanics.tree.signal_names import deforming, local_names, unit_of_effort
 from gbeam.mechanics.tree.steps import turned_on
 from gbeam.mechanics.tree.system import ROOT, System
 from gbeam.motion.hub import Hub

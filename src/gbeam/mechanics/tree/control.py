@@ -22,7 +22,7 @@ from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, refuse_traced
 from gbeam.guards.kinds import Kinds, kinds
-from gbeam.mechanics.tree.signals import kind_of_drive, kind_of_signal
+from gbeam.mechanics.tree.signal_names import kind_of_drive, kind_of_signal
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.printable import on_one_line, shortened
 

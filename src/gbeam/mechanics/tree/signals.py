@@ -2,17 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
 
 from gbeam.arrays.namespace import Array, concatenated, namespace
 from gbeam.guards.kinds import KINDS
 from gbeam.mechanics.tree.frames import turned
-from gbeam.mechanics.tree.joints import SPIN, kind_of_value
+from gbeam.mechanics.tree.joints import Joint
+from gbeam.mechanics.tree.signal_names import CARRIED, OF_POINTS, kind_of_drive, kind_of_signal, rate_signal
 from gbeam.mechanics.tree.steps import parameters_of_all, vector_of
 
-if TYPE_CHECKING:
-    from gbeam.mechanics.tree.system import System
+
+class Measured(Protocol):
+    """System as far as its signals ask, :class:`gbeam.System`."""
+
+    @property
+    def bodies(self) -> Mapping[str, Any]:
+        """Rigid bodies and structures by name."""
+        ...
+
+    @property
+    def joints(self) -> Mapping[str, Joint]:
+        """Joints by name."""
+        ...
+
+    @property
+    def forces(self) -> Mapping[str, Any]:
+        """Forces at points by name."""
+        ...
+
+    @property
+    def order(self) -> tuple[str, ...]:
+        """Names of the bodies, each behind the one that carries it."""
+        ...
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Names of all points, as ``body.point``."""
+        ...
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of all coordinates."""
+        ...
+
+    def points_of(self, body: str) -> tuple[str, ...]:
+        """Return the names of a body's points."""
+        ...
+
+    def point(self, where: str, name: str) -> tuple[str, int]:
+        """Return the body and the index of a point."""
+        ...
+
+    def row(self, name: str) -> int:
+        """Return the index of the equation on which an effort on a joint acts."""
+        ...
 
 
 class Driven(NamedTuple):
@@ -26,51 +70,7 @@ class Driven(NamedTuple):
     force: int = 0
 
 
-# Kinds of what is measured at points, of joints but for their coordinates, and of what sections carry, axes of its own.
-_OF_POINTS = {
-    "place": "length",
-    "velocity": "speed",
-    "attitude": "angle",
-    "acceleration": "acceleration",
-    "spin": "angular rate",
-}
-CARRIED = {"force": "force", "moment": "torque"}
-
-
-def kind_of_signal(name: str) -> str:
-    """Kind of quantity, such as "speed", of a signal by its name."""
-    signal = name.rpartition(".")[2]
-    kind = (_OF_POINTS | CARRIED).get(signal.rpartition("_")[0])
-    if kind is not None:
-        return kind
-    rate = signal.removesuffix("_rate")
-    return kind_of_value("initial_rate" if rate != signal or signal in SPIN else "initial", rate)
-
-
-def kind_of_drive(name: str) -> str:
-    """Kind of quantity, such as "torque", of a drive by its name."""
-    drive = name.rpartition(".")[2]
-    return CARRIED.get(drive.rpartition("_")[0]) or kind_of_value("effort", drive)
-
-
-def unit_of_effort(coordinate: str) -> str:
-    """Unit, N or N m, of an effort along a coordinate or rate of a joint."""
-    return KINDS[kind_of_value("effort", coordinate)].unit
-
-
-def deforming(names: Sequence[str], body: str) -> list[int]:
-    """Indices of the coordinates, among these names, that deform a body."""
-    return [k for k, name in enumerate(names) if name.startswith(f"{body}.q")]
-
-
-def local_names(coordinates: Iterable[str]) -> list[str]:
-    """Names of the coordinates of :meth:`Tree.local`: rx, ry and rz in the place of Euler parameters e0 to e3."""
-    turns = {"e1": "rx", "e2": "ry", "e3": "rz"}
-    parts = [name.rpartition(".") for name in coordinates]
-    return [f"{owner}.{turns.get(name, name)}" for owner, _, name in parts if name != "e0"]
-
-
-def drives_of(system: System) -> dict[str, Driven]:
+def drives_of(system: Measured) -> dict[str, Driven]:
     """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
     drives = {}
     rates = [f"{owner}.{rate}" for owner, joint in system.joints.items() for rate in joint.rate_names]
@@ -83,7 +83,7 @@ def drives_of(system: System) -> dict[str, Driven]:
     return drives
 
 
-def signals_of(system: System) -> dict[str, str]:
+def signals_of(system: Measured) -> dict[str, str]:
     """Names of the motions that may be measured of a system, with their units.
 
     Of joints: each value and its rate, ``joint.angle`` and ``joint.angle_rate``, of balls the rotation vector
@@ -97,22 +97,17 @@ def signals_of(system: System) -> dict[str, str]:
             names = f"{name}.{value}", f"{name}.{rate_signal(rate)}"
             signals |= {each: KINDS[kind_of_signal(each)].unit for each in names}
     for point in system.points:
-        signals |= {f"{point}.{each}_{axis}": KINDS[kind].unit for each, kind in _OF_POINTS.items() for axis in "xyz"}
+        signals |= {f"{point}.{each}_{axis}": KINDS[kind].unit for each, kind in OF_POINTS.items() for axis in "xyz"}
     return signals
 
 
-def units_of(system: System) -> tuple[str, ...]:
+def units_of(system: Measured) -> tuple[str, ...]:
     """SI units of the coordinates; "" for Euler parameters and for those that deform a body."""
     signals = signals_of(system)
     return tuple(signals.get(name, "") for name in system.coordinates)
 
 
-def rate_signal(rate: str) -> str:
-    """Name of a rate's signal: of a spin wx, wy or wz the same, of others with ``_rate`` behind."""
-    return rate if rate in SPIN else f"{rate}_rate"
-
-
-def carried_of(system: System) -> dict[str, str]:
+def carried_of(system: Measured) -> dict[str, str]:
     """Names, with units, of the section forces and moments at the beams' points: ``strip.root.moment_y``."""
     beams = [name for name in system.order if getattr(system.bodies[name], "sections", None) is not None]
     points = [f"{name}.{point}" for name in beams for point in system.points_of(name)]
@@ -120,12 +115,14 @@ def carried_of(system: System) -> dict[str, str]:
     return {name: KINDS[kind_of_signal(name)].unit for name in names}
 
 
-def measurable(system: System) -> dict[str, str]:
+def measurable(system: Measured) -> dict[str, str]:
     """Names of all that controllers may measure and outputs may be, with their units."""
     return signals_of(system) | carried_of(system)
 
 
-def measurements(system: System, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]) -> Any:
+def measurements(
+    system: Measured, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]
+) -> Any:
     """Values (..., k) of the `wanted` signals at unknown coordinates (..., n) of the system's tree or its local one."""
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []
     read = {
