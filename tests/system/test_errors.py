@@ -257,6 +257,31 @@ def test_bodies_without_a_beam_are_named_as_not_judged() -> None:
     assert response.error_estimate == response.errors.displacement.step
 
 
+def test_light_arms_on_hinges_that_follow_one_another_are_judged() -> None:
+    """To second order in their bend some motions of such arms have less kinetic energy than none: with it nothing was
+    stated."""
+    upper, fore = (
+        gb.Beam(length, gb.Section.rectangle(length / 30, length / 100), STRIP.material, damping_ratio=0.0)
+        for length in (0.75, 0.94)
+    )
+
+    def arms(**shapes: Any) -> gb.System:
+        bodies = {name: gb.assemble(beam, "exact", **shapes) for name, beam in (("upper", upper), ("fore", fore))}
+        torque = gb.Sine(4.0, 0.3)
+        joints = {
+            "shoulder": gb.Joint("revolute", "upper", axes=[(0, 1, 0)], effort=torque),
+            "elbow": gb.Joint("revolute", "fore", on="upper.tip", axes=[(0, 1, 0)], stiffness=2.6, damping=0.01),
+        }
+        return gb.System(bodies, joints)
+
+    how: Any = {"duration": 0.04, "step": 2e-4, "initial": "undeformed"}
+    response = gb.simulate(arms(axial=1, y=0, z=2), **how)
+    truth = gb.simulate(arms(axial=1, y=0, z=5, shapes="adapted"), estimate=False, **how)
+    true = [relative(each.displacement, truth.bodies[name].displacement) for name, each in response.bodies.items()]
+    assert max(true) > 1e-3
+    assert max(true) / 2 < response.errors.displacement.slender < 2 * max(true)
+
+
 def test_a_controller_answers_what_is_lacking() -> None:
     """With a loop the richer system is run: what it says is the difference itself. The samples are too slow for higher
     modes, whose loop grows: what thick beams do in it is not known.

@@ -102,15 +102,27 @@ class Departures:
         """Time between two samples, s."""
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
 
+    @property
+    def unheld(self) -> Flags:
+        """Flags (n,) of all unknowns, or, where joints have Euler parameters, of those of bodies."""
+        mass = self.m.mean(axis=0)
+        return self.elastic | (np.abs(mass - mass.T).max() <= UNSYMMETRIC * np.abs(mass).max())
+
+    @property
+    def inert(self) -> bool:
+        """True if every motion has kinetic energy, as some do not by a mass of second order in what bends."""
+        masses = symmetric(self.m[:, self.unheld][..., self.unheld])
+        return bool((np.linalg.eigvalsh(masses)[:, 0] > 0).all())
+
     @cached_property
     def vibration(self) -> Vibration:
         """Modes of the mean K and M or, if unstable, of the first K; joints with Euler parameters are held."""
         mass, square, modes = self.m.mean(axis=0), np.zeros(len(self.elastic)), np.eye(len(self.elastic))
-        held = ~self.elastic & (np.abs(mass - mass.T).max() > UNSYMMETRIC * np.abs(mass).max())
-        inside = np.ix_(~held, ~held)
+        free = self.unheld
+        inside = np.ix_(free, free)
         for k in (self.k.mean(axis=0), self.k[0]):
-            square[~held], modes[inside] = symmetric_modes(symmetric(k[inside]), symmetric(mass[inside]))
-            if square[~held][0] >= -1e-9 * square.max():
+            square[free], modes[inside] = symmetric_modes(symmetric(k[inside]), symmetric(mass[inside]))
+            if square[free][0] >= -1e-9 * square.max():
                 break
         resolved = np.sqrt(np.maximum(square, 0)) * self.interval < RESOLVED
         resolved[np.argsort(square)[:2]] = True

@@ -408,6 +408,8 @@ def _departing(
     within = solution.within(rich.system, bases, rich.shared)
     linear = solution.posed(bases, linear_about_rest(rich.system, bases)) if straight else None
     departures, residual = within.departures(linear), within.residual()
+    if linear is not None and not departures.inert:  # light arms on hinges that follow one another
+        departures = within.departures()
     begun = _begun(starting, rich.system, within, departures)
     total = departures.answer(residual, begun)
     few_shapes, truth = computed, within.moved(total)
