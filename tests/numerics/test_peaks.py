@@ -7,7 +7,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from gbeam.numerics.peaks import maxima, near_maxima, quintic_hermite, seven_point, turning_points
+from gbeam.numerics.peaks import (
+    length_peaks,
+    maxima,
+    near_maxima,
+    quintic_hermite,
+    seven_point,
+    turning_points,
+    vector_peaks,
+)
 
 OMEGA, PHASE = np.array([1.0, 1.7]), np.array([-1.0, -2.0])
 
@@ -125,3 +133,15 @@ def test_what_vibrates_within_steps_does_not_exceed_its_samples(angle: float) ->
         q, qd, qdd = (each[:, None] for each in parts)
         value, _ = maxima(t, q, *quintic_hermite(t, q, qd, qdd, near_maxima(t, q)))
         assert value[0] == pytest.approx(peak or q.max(), abs=tolerance)
+
+
+def test_lengths_of_vectors_peak_between_samples_in_each_run() -> None:
+    time = np.arange(60) * 0.1
+    grown = 1 + 0.2 * np.sin(time - np.array([[0.93], [1.47]]))  # largest a quarter of a turn after its phase
+    vectors = grown[..., None] * np.stack([np.cos(3 * time), np.sin(3 * time), 0 * time], axis=-1)
+    largest, when = length_peaks(time, vectors)
+    np.testing.assert_allclose(largest, 1.2, rtol=1e-7)
+    np.testing.assert_allclose(when, np.array([0.93, 1.47]) + np.pi / 2, atol=1e-4)
+    both, times = vector_peaks(time, vectors)
+    np.testing.assert_array_equal(both[:, 3], largest)
+    np.testing.assert_array_equal(times[:, 3], when)

@@ -8,6 +8,7 @@ linearly: its derivatives say nothing of the values between samples.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -138,16 +139,17 @@ def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floa
     if len(time) < FEWEST:
         at = at[:0]
     run, sample = np.divmod(at, len(time))
+    sample, window = np.unique(sample, return_inverse=True)  # runs that peak at one time share its polynomials
     t, n, values = _subdivided(time, sample), max(len(time), FEWEST), values.reshape(-1, values.shape[-1])
     high, low, parabola = (
-        _lagrange(time[k], t) @ values[run[:, None] * len(time) + k]
+        _lagrange(time[k], t)[window] @ values[run[:, None] * len(time) + k[window]]
         for m in (7, 5, 3)
         for k in [np.clip(sample - m // 2, 0, n - m)[:, None] + np.arange(m)]
     )
     sampled = values[at][:, None]
     change = np.abs(high - low).max(axis=1, keepdims=True)
     rough = change > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(sampled))
-    return t, np.where(rough, sampled, high)
+    return t[window], np.where(rough, sampled, high)
 
 
 def _subdivided(time: Floats, at: Indices) -> Floats:
@@ -188,12 +190,23 @@ def _vertex(t: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
     """Largest sizes of components and length of vectors (..., t, 3), (..., 4), and their times, between samples."""
-    runs = vectors.reshape(-1, *vectors.shape[-2:])
-    each = sizes(runs[:, :, None])
-    at = near_maxima(time, each)
+    return _measured(time, vectors, lambda vectors: sizes(vectors[..., None, :]))
+
+
+def length_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
+    """Largest lengths (...) of vectors (..., t, 3), and their times, between samples."""
+    value, when = _measured(time, vectors, lambda vectors: np.sqrt((vectors**2).sum(axis=-1, keepdims=True)))
+    return value[..., 0], when[..., 0]
+
+
+def _measured(time: Floats, histories: Floats, measure: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
+    """Largest values (..., m) of m measures of histories (..., t, c), and their times, between samples."""
+    runs = histories.reshape(-1, *histories.shape[-2:])
+    values = measure(runs)
+    at = near_maxima(time, values)
     t, between = seven_point(time, runs, at)
-    value, when = maxima(time, each, t, sizes(between[:, :, None]), at)
-    shape = *vectors.shape[:-2], 4
+    value, when = maxima(time, values, t, measure(between), at)
+    shape = *histories.shape[:-2], values.shape[-1]
     return value.reshape(shape), when.reshape(shape)
 
 
@@ -206,9 +219,7 @@ def sizes(vectors: Floats) -> Floats:
 
 def column_peaks(time: Floats, columns: Floats) -> tuple[Floats, Floats]:
     """Largest values (k,) of histories (t, k), each looked at by itself, and their times, between samples."""
-    runs = np.ascontiguousarray(columns.T)[..., None]
-    at = near_maxima(time, runs)
-    value, when = maxima(time, runs, *seven_point(time, runs, at), at)
+    value, when = _measured(time, np.ascontiguousarray(columns.T)[..., None], lambda values: values)
     return value[:, 0], when[:, 0]
 
 

@@ -15,6 +15,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.numerics.peaks import (
     FEWEST,
     column_peaks,
+    length_peaks,
     maxima,
     near_maxima,
     quintic_hermite,
@@ -133,32 +134,36 @@ def load_peaks(
 def maxima_of(system: System, time: Floats, over_time: Mapping[str, Floats]) -> Maxima:
     """Peaks of a system between steps, by the histories of its points, coordinates, efforts and the ground's loads."""
 
-    def of_points(vectors: Floats) -> tuple[Floats, Floats]:
-        """Largest lengths (p,) of vectors (t, p, 3), and their times."""
-        value, when = vector_peaks(time, np.moveaxis(vectors, 1, 0))
-        return value[:, 3], when[:, 3]
-
-    def of_ground(key: str) -> VectorPeaks:
-        value, when = vector_peaks(time, over_time[key])
-        return VectorPeaks(Extremes(value[:3], when[:3]), Extremes(value[3], when[3]))
-
     place, q = over_time["place"], over_time["q"]
-    distance, when = of_points(place - place[0])
-    lowest, lowest_time = column_peaks(time, -q)
+    vectors = np.stack([place - place[0], over_time["velocity"], over_time["acceleration"]])
+    length, when_longest = length_peaks(time, np.moveaxis(vectors, 2, 1))
+    distance = np.where(length[0] <= _ROUNDING * np.abs(place).max(initial=0.0), 0.0, length[0])
+    columns = -q, q, np.abs(over_time["qd"]), np.abs(over_time["effort"])
+    highest, when_highest = (each.reshape(4, -1) for each in column_peaks(time, np.concatenate(columns, axis=1)))
+    on_ground = vector_peaks(time, np.stack([over_time["ground_force"], over_time["ground_moment"]]))
+    force, moment = (
+        VectorPeaks(Extremes(value[:3], when[:3]), Extremes(value[3], when[3]))
+        for value, when in zip(*on_ground, strict=True)
+    )
     return Maxima(
-        system.points,
-        system.coordinates,
-        np.where(distance <= _ROUNDING * np.abs(place).max(initial=0.0), 0.0, distance),
-        when,
-        *of_points(over_time["velocity"]),
-        *of_points(over_time["acceleration"]),
-        -lowest,
-        lowest_time,
-        *column_peaks(time, q),
-        *column_peaks(time, np.abs(over_time["qd"])),
-        *column_peaks(time, np.abs(over_time["effort"])),
-        of_ground("ground_force"),
-        of_ground("ground_moment"),
+        points=system.points,
+        coordinates=system.coordinates,
+        displacement=distance,
+        displacement_time=when_longest[0],
+        velocity=length[1],
+        velocity_time=when_longest[1],
+        acceleration=length[2],
+        acceleration_time=when_longest[2],
+        lowest=-highest[0],
+        lowest_time=when_highest[0],
+        highest=highest[1],
+        highest_time=when_highest[1],
+        rate=highest[2],
+        rate_time=when_highest[2],
+        effort=highest[3],
+        effort_time=when_highest[3],
+        ground_force=force,
+        ground_moment=moment,
     )
 
 
