@@ -24,6 +24,9 @@ from gbeam.results.provenance import Environment, Provenance, RecordFile
 _NO_VARIABLE = b"This is a netCDF dimension but not"  # by netCDF's convention: a dimension without values of its own
 _BOOKKEEPING = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_NCProperties"}
 _BOOKKEEPING |= {"_Netcdf4Dimid", "_Netcdf4Coordinates"}
+# All of a result compressed takes a quarter of the time of a run, and saves 30 %; zeros cost nearly nothing.
+_EMPTY, _MANY = 0.3, 2_000  # share of zeros, and number of values, from which on a variable is compressed
+_COMPRESSED = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 
 
 def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> None:
@@ -88,7 +91,9 @@ def _create(place: h5netcdf.Group, name: str, variable: Variable) -> None:
         kind = h5py.string_dtype("utf-8")
         values = np.array([storable(str(each)) for each in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
-    _describe(place.create_variable(name, variable.dims, kind, values, fill), variable.attrs)
+    zeros = values.size - np.count_nonzero(values) if fill is not None else 0
+    how = _COMPRESSED if values.size >= _MANY and zeros >= _EMPTY * values.size else {}
+    _describe(place.create_variable(name, variable.dims, kind, values, fill, **how), variable.attrs)
 
 
 def _describe(place: h5netcdf.Group | h5netcdf.Variable, attrs: Mapping[str, Any]) -> None:

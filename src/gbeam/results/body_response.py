@@ -31,18 +31,16 @@ class BodyResponse(Part):
         "m", "position along the body from the root", "station", role="coordinate", key="at", note="the last is the tip"
     )
     displacement: Floats = quantity("m", "displacement relative to the root", "time station axis")
-    q: Floats = quantity(
+    q: Floats = internal(
         lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the body",
         "time coordinate",
-        name="coordinates",
-        note="of the exact model and that of fourth order angles and strains",
+        note="of the exact model and that of fourth order angles and strains; in files they are the system's",
     )
-    qd: Floats = quantity(
+    qd: Floats = internal(
         lambda self: "1/s" if self.model in BY_STRAINS else "m/s",
         "rates of the generalised coordinates",
         "time coordinate",
-        name="coordinate_rates",
     )
     peaks: Peaks = part("largest values between all steps", key=INSIDE)
     points: tuple[str, ...] = quantity(

@@ -44,12 +44,11 @@ class BodyRest(Part):
         "m", "position along the body from the root", "station", role="coordinate", note="the last is the tip"
     )
     displacement: Floats = quantity("m", "displacement relative to the root", "station axis")
-    q: Floats = quantity(
+    q: Floats = internal(
         lambda self: "" if self.model in BY_STRAINS else "m",
         "generalised coordinates of the body",
         "coordinate",
-        name="coordinates",
-        key=None,
+        note="in files they are the system's",
     )
     strain_energy: float = quantity("J", "strain energy")
     loads: Loads | None = internal("", "forces, moments and stresses of the sections, of one time", default=None)

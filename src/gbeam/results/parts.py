@@ -324,8 +324,11 @@ class Loads(Part):
     )
     stress_tension: Floats = quantity("Pa", "largest normal stress over the section", "time section", key="")
     stress_compression: Floats = quantity("Pa", "smallest normal stress over the section", "time section", key="")
-    acceleration: Floats = quantity(
-        "m/s^2", "acceleration in the world, base axes; specific force with gravity", "time section axis"
+    acceleration: Floats = internal(
+        "m/s^2",
+        "acceleration in the world, base axes; specific force with gravity",
+        "time section axis",
+        note="files have those of the root and of the stations",
     )
     beam_torque: Floats | None = quantity(
         "N m", "torque about the hub's axis that the beam takes", "time", optional=True, default=None, key=""
