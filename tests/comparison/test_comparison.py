@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+import scipy.signal
 from scipy.linalg import expm
 
 from gbeam import Comparison, Flight, InputError, Joint, SmoothStep, System, compare, simulate, tabulated
@@ -237,6 +239,15 @@ def test_low_pass_has_the_gain_of_butterworth_twice() -> None:
         with pytest.raises(InputError, match=r"apart over 3\.999 s; give 0\.250063 Hz or more, below 500 Hz"):
             low_pass(line, 1e-3, wrong)
     np.testing.assert_allclose(low_pass(line, 1e-3, 0.250063), line, atol=0.01 * np.ptp(line[..., 0]))
+
+
+@pytest.mark.parametrize(("count", "cutoff"), [(40, 300.0), (500, 100.0), (500, 2.1), (5000, 10.0)])
+def test_low_pass_is_that_of_scipy_up_to_the_ends(count: int, cutoff: float) -> None:
+    values, step = np.random.default_rng(count).normal(size=(count, 2, 3)).cumsum(axis=0), 1e-3
+    beyond = min(count - 1, math.ceil(1 / (cutoff * step)))
+    sections = scipy.signal.butter(4, cutoff, fs=1 / step, output="sos")
+    expected = scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=beyond)
+    np.testing.assert_allclose(low_pass(values, step, cutoff), expected, rtol=0, atol=1e-11 * np.abs(values).max())
 
 
 def test_a_beam_on_a_turned_clamp_is_compared_in_axes_of_the_ground(structure: Any) -> None:

@@ -7,8 +7,10 @@ answered by the thick beams, without plate action and with it: the larger answer
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from itertools import compress
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -22,6 +24,8 @@ from gbeam.numerics.peaks import peaks_apart
 from gbeam.structure.beam import assumptions
 
 NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
+LESSER = 0.1  # of a difference: a smaller one beside it is not worth a run
+_K = TypeVar("_K")
 WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate": "plate action"}
 
 
@@ -40,6 +44,20 @@ class Lacking(NamedTuple):
     bodies: Mapping[str, Floats] = {}
     peaks: Mapping[Quantity, float] = {}
 
+    def or_larger(self, other: Lacking) -> Lacking:
+        """Return the larger one of each difference."""
+        sizes, peaks = _larger(self.sizes, other.sizes), _larger(self.peaks, other.peaks)
+        return Lacking(sizes, self.causes, _larger(self.bodies, other.bodies), peaks)
+
+    def counts_beside(self, most: Lacking) -> bool:
+        """True if the difference of a quantity is more than a LESSER part of the largest."""
+        return any(size > LESSER * most.sizes[key] for key, size in self.sizes.items())
+
+
+def _larger(one: Mapping[_K, Any], other: Mapping[_K, Any]) -> dict[_K, Any]:
+    """Return the larger of both values of every key; NaN where one is."""
+    return {key: np.maximum(value, other[key]) for key, value in one.items()}
+
 
 def beyond(
     solved: Posed,
@@ -50,45 +68,91 @@ def beyond(
     again: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
     """Differences between slender and thick beams at a solution `of` the equations `solved`; `pose` returns equations
-    with other beams, `begun` the difference of their initial states. With `again`, systems with either are run instead.
+    with other beams, `begun` the difference of their initial states.
+
+    With `again`, systems with slender and thick beams are run instead, as in a loop, whose controllers answer too: not
+    with and without plate action both, where the answers without controllers say that one of them makes a LESSER part
+    of every difference.
     """
-    slender, thick = ({name: getattr(each, kind) for name, each in theories.items()} for kind in ("slender", "thick"))
-    thin = Within.lifted(pose(slender), solved, of)
-    full = Within.lifted(pose(thick), thin.more, thin.of)
-    columns = {name: [k for k, body in enumerate(full.more.bodies) if body == name] for name in theories}
-    bent = {name: full.of.q[:, columns[name]] for name in theories}
-    plates = {name: theory.plate(bent[name]) for name, theory in theories.items()}
-    added = np.zeros((full.of.q.shape[1],) * 2)
-    for name, plate in plates.items():
-        added[np.ix_(columns[name], columns[name])] = plate
-    by, bodies = dict[str, Mapping[str, float]](), dict[str, Floats]()
-    sizes, peaks = dict[Quantity, float](), dict[Quantity, float]()
+    compared = _Compared.of(solved, of, theories, pose)
     try:
-        residual = full.residual()
-        for name, theory in theories.items():
-            by[name] = causes(theory, bent[name], residual[:, columns[name]], bent[name] @ plates[name])
-        departures = full.departures()
-        without = thin.more.read(thin.of) if again is None else again(slender)
-        for plate in (0 * added, added) if added.any() else (added,):
-            if again is None:
-                stiffer = departures.stiffer(plate)
-                answer = stiffer.answer(residual + full.of.q @ plate, begun(stiffer, full, plate))
-                truth = full.moved(answer)
-                for name, theory in theories.items():
-                    moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, columns[name]])
-                    distance = np.linalg.norm(moved, axis=2).max(axis=0)
-                    bodies[name] = np.maximum(bodies.get(name, 0.0), distance)
-            else:
-                stiff = {name: theory.variants(plates[name])[1] for name, theory in theories.items()}
-                truth = again(stiff if plate.any() else thick)
-            for quantity, values in without.items():
-                sizes[quantity] = max(sizes.get(quantity, 0.0), largest(truth[quantity] - values))
-                if len(of.time) > 1 and quantity[1] not in MOVED:
-                    apart = peaks_apart(of.time, values, truth[quantity])
-                    peaks[quantity] = max(peaks.get(quantity, 0.0), apart)
+        linear = compared.answered(begun)
+        most = reduce(Lacking.or_larger, linear)
+        if again is None:
+            return most
+        counted = [*compress(compared.plated, (each.counts_beside(most) for each in linear))]
+        run = compared.run(again, counted or compared.plated)
     except (ComputationError, np.linalg.LinAlgError):
         return Lacking()
-    return Lacking(sizes, by, bodies, peaks)
+    return reduce(Lacking.or_larger, run)._replace(causes=most.causes)
+
+
+class _Compared(NamedTuple):
+    """A solution put into the equations of slender beams, `thin`, and of thick ones, `full`; by beam, its columns there
+    and its stiffness (n, n) by plate action; and flags of thick beams with that action, which are asked in turn.
+    """
+
+    theories: Mapping[str, Theory]
+    thin: Within
+    full: Within
+    columns: Mapping[str, list[int]]
+    plates: Mapping[str, Floats]
+    plated: Sequence[bool]
+
+    @classmethod
+    def of(
+        cls,
+        solved: Posed,
+        of: Trajectory,
+        theories: Mapping[str, Theory],
+        pose: Callable[[Mapping[str, Structure]], Posed],
+    ) -> _Compared:
+        """Put a solution `of` the equations `solved` into both."""
+        thin = Within.lifted(pose({name: theory.slender for name, theory in theories.items()}), solved, of)
+        full = Within.lifted(pose({name: theory.thick for name, theory in theories.items()}), thin.more, thin.of)
+        columns = {name: [k for k, body in enumerate(full.more.bodies) if body == name] for name in theories}
+        plates = {name: theory.plate(full.of.q[:, columns[name]]) for name, theory in theories.items()}
+        plated = (False, True) if any(plate.any() for plate in plates.values()) else (False,)
+        return cls(theories, thin, full, columns, plates, plated)
+
+    def answered(self, begun: Begun) -> list[Lacking]:
+        """Differences by the small departures that cancel the residual in thick beams."""
+        of, residual = self.full.of, self.full.residual()
+        by, added = dict[str, Mapping[str, float]](), np.zeros((of.q.shape[1],) * 2)
+        for name, theory in self.theories.items():
+            columns, plate = self.columns[name], self.plates[name]
+            bent = of.q[:, columns]
+            by[name] = causes(theory, bent, residual[:, columns], bent @ plate)
+            added[np.ix_(columns, columns)] = plate
+        departures, without = self.full.departures(), self.thin.more.read(self.thin.of)
+        answers = list[Lacking]()
+        for plated in self.plated:
+            plate = plated * added
+            stiffer = departures.stiffer(plate)
+            answer = stiffer.answer(residual + of.q @ plate, begun(stiffer, self.full, plate))
+            sizes, peaks = _apart(of.time, without, self.full.moved(answer))
+            bodies = dict[str, Floats]()
+            for name, theory in self.theories.items():
+                moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, self.columns[name]])
+                bodies[name] = np.linalg.norm(moved, axis=2).max(axis=0)
+            answers.append(Lacking(sizes, by, bodies, peaks))
+        return answers
+
+    def run(self, again: Callable[[Mapping[str, Structure]], Reading], plated: Sequence[bool]) -> list[Lacking]:
+        """Differences by runs of systems with slender beams and with thick ones, these with plate action as flagged."""
+        without, answers = again({name: theory.slender for name, theory in self.theories.items()}), list[Lacking]()
+        for flag in plated:
+            stiff = {name: theory.variants(self.plates[name])[flag] for name, theory in self.theories.items()}
+            sizes, peaks = _apart(self.full.of.time, without, again(stiff))
+            answers.append(Lacking(sizes, peaks=peaks))
+        return answers
+
+
+def _apart(time: Floats, without: Reading, truth: Reading) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
+    """Largest differences of readings, and over time those of their peaks."""
+    sizes = {key: largest(truth[key] - values) for key, values in without.items()}
+    judged = [key for key in without if len(time) > 1 and key[1] not in MOVED]
+    return sizes, {key: peaks_apart(time, without[key], truth[key]) for key in judged}
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:

@@ -60,7 +60,7 @@ def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats)
         return Ending(trajectory.failure.outcome, str(trajectory.failure))
     doubts = tuple[str, ...]()
     if (step := run.without_mass) is not None:
-        free = [system.coordinates[k] for k in system.tree.free]
+        free = system.unknown_coordinates
         words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"
         if not trajectory.whole or bent_most(system, free, trajectory.q)[1] > 1:
             return Ending(MASSLESS, words)

@@ -180,8 +180,7 @@ class Posed:
 
     def columns(self, body: str) -> slice:
         """Coordinates that deform a body, among the unknown ones."""
-        names = [self.system.coordinates[k] for k in self.system.tree.free]
-        chosen = deforming(names, body)
+        chosen = deforming(self.system.unknown_coordinates, body)
         return slice(chosen[0], chosen[-1] + 1) if chosen else slice(0, 0)
 
     def too_far(self, y: Floats, moved: Mapping[str, Floats] = MappingProxyType({})) -> int | None:

@@ -271,7 +271,9 @@ class Run:
         else:  # by Euler parameters it is singular
             states = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
             mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in states])
-        return next((int(step) for step, m in zip(steps, mass, strict=True) if not positive_definite(m)), None)
+        if positive_definite(mass):
+            return None
+        return next(int(step) for step, m in zip(steps, mass, strict=True) if not positive_definite(m))
 
     @cached_property
     def missed(self) -> tuple[str, ...]:

@@ -466,7 +466,7 @@ def _beyond(
             return _begun(starting, thick, within, departures, lambda left: left + within.of.q[0] @ plate)
         departure = np.zeros((2, len(within.more.names)))
         for sign, other in ((-1, bent({name: theory.slender for name, theory in theories.items()})), (1, thick)):
-            names, values = [other.coordinates[k] for k in other.tree.free], np.array(starting.state(other))
+            names, values = other.unknown_coordinates, np.array(starting.state(other))
             departure[:, [within.more.names.index(name) for name in names[-values.shape[1] :]]] += sign * values
         return departure[0], departure[1]
 

@@ -52,11 +52,10 @@ class Solution:
     def posed(self, bodies: Iterable[str], system: System | None = None) -> Posed:
         """Equations of this system, or of another, at the solution's times, with a function that reads `bodies`."""
         system = self.system if system is None else system
-        names = [system.coordinates[k] for k in system.tree.free]
         return Posed(
             system.tree,
             partial(self.inputs, system),
-            names,
+            system.unknown_coordinates,
             lambda of: replace(self, system=system, of=of).read(bodies),
         )
 

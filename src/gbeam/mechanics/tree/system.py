@@ -425,6 +425,12 @@ class System(Value):
             names += [f"{body}.q{k + 1}" for k in range(self._size(body))]
         return tuple(names)
 
+    @property
+    def unknown_coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates that nothing prescribes."""
+        names = self.coordinates
+        return tuple(names[k] for k in self.tree.free)
+
     def _assembled(self) -> Tree:
         """Links, forces and indices of prescribed coordinates of the equations."""
         index = {body: k for k, body in enumerate(self.order)}
