@@ -84,8 +84,9 @@ class _Held(Table):
 class TestDirection(_Held):
     """One direction in which a plain arm tests its specimen, with keys that differ from the arm's."""
 
-    load: _AlongOrVector = Field(
-        description='direction of the specimen that points to the arm\'s axis: the level accelerates it that way, "+x"'
+    load: _AlongOrVector | None = optional(
+        'direction of the specimen that points to the arm\'s axis: the level accelerates it that way, "+x"; that of '
+        "the preset where it is left out"
     )
 
 
@@ -150,6 +151,10 @@ class Arm(_Held):
         if self.load is None and not self.directions:
             asked = self._asked("directions")
             yield ((), wrong("directions are missing", asked, mark="key")) if asked else _UNDIRECTED
+        unloaded = [name for name, keys in self.motions.items() if name and keys["load"] is None]
+        if unloaded:
+            hint = self._asked("directions") or 'add load = "+x" to each'
+            yield ("directions",), wrong(f"load is missing in the directions {', '.join(unloaded)}", hint, mark="key")
         if self.load is not None and self.directions:
             yield ("load",), wrong("is given beside directions", "keep load or directions, not both", mark="key")
         for key, example in _NEEDED.items():
