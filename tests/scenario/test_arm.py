@@ -69,6 +69,7 @@ def test_one_direction_keeps_the_name_of_its_motion(tmp_path):
         (f'load = "+x"\n{SIX}', "given beside directions"),
         ('load = "+x"\nonset = "1 g/s"\n', "given beside onset"),
         ('load = "x"\n', "load"),
+        ('directions = { "../up" = "+z" }\n', "'../up' is not a word"),
         ('directions = { fore = { level = "2 g" }, aft = "-x" }\n', "load is missing in the directions fore"),
         ('directions = { up = { load = "+z", up = "+z" } }\n', "up.*along load"),
         ('load = "+x"\n[response]\nduration = "30 s"\n', "comes to rest at 100 s"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, StrictBool, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Along, PresetName
@@ -21,6 +21,7 @@ from gbeam.scenario.schema.fields import (
     Table,
     by_name,
     missing_one_of,
+    motion_name,
     optional,
     refuse,
     wrong,
@@ -103,7 +104,7 @@ class Arm(_Held):
         '"+x", or a vector; or directions'
     )
     directions: dict[
-        str,
+        Annotated[str, AfterValidator(motion_name)],
         Annotated[
             Annotated[Along, Tag("one")]
             | Annotated[tuple[_Component, _Component, _Component], Tag("list")]
