@@ -14,7 +14,7 @@ from gbeam.report.facts import facts as to_json
 from gbeam.scenario import build, loads, template
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
-SYSTEMS = ("satellite_two_panels", "robot_arm", "pointing_satellite")
+SYSTEMS = ("satellite_two_panels", "robot_arm", "pointing_satellite", "swing_platform")
 TIP_MASSES = ("0 kg", "0.1 kg", "0.5 kg")
 
 
@@ -84,6 +84,7 @@ SHORT = "response.duration=5 s", "response.tolerance=5 %"
     [
         ("satellite_two_panels", ()),
         ("robot_arm", ()),
+        ("swing_platform", ()),
         ("pointing_satellite", SHORT),
         pytest.param("pointing_satellite", (), marks=pytest.mark.thorough),
     ],

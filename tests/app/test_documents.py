@@ -53,7 +53,7 @@ def test_the_form_has_every_key_of_the_schema(site: Site) -> None:
     assert entries["motion.spin.inverse"]["options"] == ["quasi-static", "flat", "exact", "planned"]
     assert entries["response.step"]["default"] == "auto" and entries["beam.loads"]["kind"] == "list"
     assert not entries["beam.loads"]["written"] and entries["beam.section"]["required"]
-    assert entries["motion"]["options"] == ["flight", "centrifuge", "hub"]
+    assert entries["motion"]["options"] == ["flight", "centrifuge", "hub", "arm"]
 
 
 def _entries(form: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:

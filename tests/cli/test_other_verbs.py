@@ -39,7 +39,7 @@ def test_check_writes_what_it_prints(hub: Path, gbeam: Call) -> None:
     assert "check.json is of a kind that has no report" in gbeam("report", "there/check.json").err
 
 
-@pytest.mark.parametrize("kind", ["flight", "hub"])
+@pytest.mark.parametrize("kind", ["flight", "hub", "arm"])
 def test_new_writes_a_sound_scenario_once(kind: str, tmp_path: Path, gbeam: Call) -> None:
     file = tmp_path / "mine.toml"
     assert gbeam("new", file, "--kind", kind).status == 0

@@ -117,6 +117,28 @@ def test_a_hub_on_its_side_is_an_arm_that_points_outward():
     assert gb.simulate(box().structure, hub, duration=3.0, step=0.1).hub.level is None
 
 
+def test_a_beam_on_an_arm_is_that_on_a_hub_which_points_inward():
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    motion = gb.plain_arm(radius=1.0, load="+x", up="-z", level=LEVEL, ramp=1.0, dwell=1.0)
+    hub = gb.Hub(radius=1.0, rate=motion.rate, pointing="inward", setting_angle=np.pi, gravity=(0, 0, -G))
+    on_arm, on_hub = (gb.simulate(structure, each, duration=3.0) for each in (motion, hub))
+    assert on_arm.displacement == pytest.approx(on_hub.displacement, abs=1e-12)
+    frequencies = [gb.campbell(structure, each, end=20.0).frequency[-1] for each in (motion, hub)]
+    assert frequencies[0] == pytest.approx(frequencies[1])
+
+
+def test_a_beam_across_an_arm_bends_as_under_the_level():
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
+    structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
+    motion = gb.plain_arm(radius=1.0, control_point=(0.15, 0, 0), load="+z", up="+y", level=5 * G, ramp=1.0, dwell=1.0)
+    load, stiffness = 5 * G * 2700 * 0.02 * 0.004, 70e9 * 0.02 * 0.004**3 / 12
+    tip = gb.static(structure, motion, time=1.5).tip[2]
+    assert tip == pytest.approx(-load * 0.3**4 / (8 * stiffness), rel=2e-3)
+
+
 @pytest.mark.parametrize(
     ("changed", "words"),
     [

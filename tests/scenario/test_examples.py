@@ -42,7 +42,7 @@ def test_flight_and_centrifuge_of_a_record() -> None:
     assert float(built.motions["flight"].base(0.0).a_WO_B[2]) > 9.0  # type: ignore[union-attr]
 
 
-@pytest.mark.parametrize("kind", ["flight", "hub", "system"])
+@pytest.mark.parametrize("kind", ["flight", "hub", "arm", "system"])
 def test_template_builds(kind: str) -> None:
     assert build(loads(template(kind))).title
 

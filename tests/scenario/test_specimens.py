@@ -215,7 +215,6 @@ def test_what_is_wrong_is_named_with_its_place(folder: Path, before: str, after:
         (BOX.replace('"300 mm"', '"-300 mm"') + SPIN, "bodies.box.size[0]", "positive"),
         (BOX + "middle = [0, 0, 0]\n" + SPIN, "bodies.box.inertia", "not even"),
         (BOX.replace("bolt_axis = [0, 0, 1]\n", "") + SPIN, "bodies.box.bolt_axis", "missing"),
-        (BOX + '[joints.foot]\nkind = "fixed"\nbody = "box"\n' + SPIN, "bodies.box.bolts", "of a specimen alone"),
         (BOX + SPIN.replace(RATE, TORQUE), "motion.spin", "turns freely"),
     ],
 )  # fmt: skip

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import gbeam as gb
 
@@ -51,3 +52,33 @@ def test_no_level_no_imbalance():
     box = gb.RigidSpecimen.box(2.0, (0.1, 0.1, 0.1), (0, 0, 0))
     hub = gb.Hub(radius=1.0, rate=3.0, gravity=(0, 0, -G))
     assert gb.simulate(box.structure, hub, duration=1.0, step=0.1).hub.imbalance is None
+
+
+def platform(length=0.4, mass=20.0, damping=0.0):
+    """A platform that hangs from a hinge across an arm: a mass at a length below it."""
+    body = gb.RigidBody(mass, (0.0, 0.0, 0.0), centre=(0, 0, -length))
+    swing = gb.Joint("revolute", "platform", axes=[(0, -1, 0)], damping=damping)
+    return gb.System({"platform": body}, {"swing": swing})
+
+
+@pytest.mark.parametrize(("length", "level"), [(0.4, 9.0), (0.4, 1.0), (0.002, 4.0)])
+def test_a_swing_platform_hangs_along_the_load_and_swings_about_it(length, level):
+    arm = gb.plain_arm(radius=RADIUS, load="-x", up="+z", level=level * G, ramp=20.0, dwell=20.0)
+    square = level * G / RADIUS
+    angle = brentq(lambda t: G * np.tan(t) - square * (RADIUS + length * np.sin(t)), 0.0, 1.57, xtol=1e-14)
+    rest = gb.static(platform(length), arm, time=30.0)
+    assert rest.coordinate("swing.angle") == pytest.approx(angle, abs=1e-9)
+    assert np.arctan(level) == pytest.approx(angle, abs=length / RADIUS)  # of a short one atan(Ω² r/g)
+    out = RADIUS + length * np.sin(angle)
+    stiffness = G * np.cos(angle) / length + square * (out * np.sin(angle) / length - np.cos(angle) ** 2)
+    assert gb.modes(platform(length), arm, time=30.0).frequency[0] == pytest.approx(np.sqrt(stiffness) / (2 * np.pi))
+
+
+def test_a_swing_platform_follows_the_arm_up():
+    arm = gb.plain_arm(radius=RADIUS, load="-x", up="+z", level=9 * G, ramp=20.0, dwell=20.0)
+    response = gb.simulate(platform(damping=40.0), arm, duration=40.0)
+    angle = gb.static(platform(), arm, time=30.0).coordinate("swing.angle")
+    at = int(np.searchsorted(response.time, 40.0 - 1e-6))
+    assert response.q[at, 0] == pytest.approx(angle, abs=1e-5)
+    # The mass has swung out: the imbalance is that of the radius there.
+    assert response.hub.imbalance.static[0] == pytest.approx(20.0 * (RADIUS + 0.4 * np.sin(angle)), rel=1e-5)

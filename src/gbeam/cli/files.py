@@ -69,7 +69,8 @@ def new(
     /,
     *,
     kind: Annotated[
-        Literal["flight", "hub", "system"], Parameter(help="Flight and centrifuge, a hub, or a system of bodies.")
+        Literal["flight", "hub", "arm", "system"],
+        Parameter(help="Flight and centrifuge, a hub, a box on a plain arm, or a system of bodies."),
     ] = "flight",
     json: Json = False,
 ) -> int:

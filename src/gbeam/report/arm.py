@@ -8,9 +8,9 @@ from gbeam.report.words import along, number
 
 
 def levels(motions: Facts) -> Block:
-    """Table of the levels of plain arms, a row for each of them."""
-    rows = [{"name": name, **each["hub"]["level"], "felt": _felt(each)} for name, each in motions.items()
-            if "level" in each.get("hub", {})]  # fmt: skip
+    """Table of the levels of plain arms, a row for each of them and each of their rigid specimens."""
+    rows = [{"name": item, **each["hub"]["level"], "felt": felt} for name, each in motions.items()
+            if "level" in each.get("hub", {}) for item, felt in _felt(name, each).items()]  # fmt: skip
     cells: Columns = {
         "motion": "name",
         "along": lambda row: along([*row["load"].values()]),
@@ -45,12 +45,17 @@ def balance(motions: Facts) -> Block:
     return table(rows, cells, "Imbalance about the arm's axis, without the arm itself, and the counterweight across it")
 
 
-def _felt(motion: Facts) -> Facts:
-    """Largest loads of the centre and of every corner of the only rigid specimen, m/s²; nothing of other bodies."""
-    specimens = [each["specimen"] for each in motion.get("bodies", {}).values() if "specimen" in each]
-    if len(specimens) != 1:
-        return {}
-    return {"centre": specimens[0]["centre"], "corners": [each["max_abs"] for each in specimens[0]["corners"]]}
+def _felt(name: str, motion: Facts) -> dict[str, Facts]:
+    """Largest loads of the centre and of every corner of rigid specimens, m/s², by motion and body; nothing of other
+    bodies.
+    """
+    bodies = motion.get("bodies", {})
+    specimens = {key: each["specimen"] for key, each in bodies.items() if "specimen" in each}
+    felt = {
+        key: {"centre": each["centre"], "corners": [corner["max_abs"] for corner in each["corners"]]}
+        for key, each in specimens.items()
+    }
+    return {f"{name}, {key}" if len(bodies) > 1 else name: each for key, each in felt.items()} or {name: {}}
 
 
 def _range(sizes: list[float]) -> str:

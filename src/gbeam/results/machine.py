@@ -14,6 +14,7 @@ from gbeam.results.declared import quantity as entry  # a limit has a field of t
 from gbeam.results.parts import Base
 from gbeam.results.result import Flags, Floats, Part
 
+_SAME = 1e-9  # of a dynamic imbalance: less of it is rounding
 AxesFigure = Literal["tracking", "axes_rate", "axes_acceleration", "axes_jerk"]
 
 
@@ -292,7 +293,8 @@ class Imbalance(Part):
         "kg m^2", "dynamic imbalance that it leaves, which takes two counterweights at different heights", name=None
     )
     def left(self) -> float:
-        return float(np.linalg.norm(self.dynamic - self.height * self.static))
+        left, size = (float(np.linalg.norm(each)) for each in (self.dynamic - self.height * self.static, self.dynamic))
+        return left if left > _SAME * size else 0.0
 
 
 class Driven:

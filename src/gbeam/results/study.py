@@ -52,10 +52,14 @@ class Study(Figured[str]):
     )
 
     @property
-    def _specimens(self) -> list[tuple[str, SpecimenLoads]]:
-        """Names of motions, each with the loads of a rigid specimen."""
-        bodies = ((name, body) for name, each in self.responses.items() for body in each.bodies.values())
-        return [(name, body.specimen) for name, body in bodies if body.specimen is not None]
+    def _specimens(self) -> list[tuple[str, str, SpecimenLoads]]:
+        """Names of motions and bodies, the latter empty where there is one alone, with the loads of rigid specimens."""
+        bodies = (
+            (name, key if len(each.bodies) > 1 else "", body.specimen)
+            for name, each in self.responses.items()
+            for key, body in each.bodies.items()
+        )
+        return [(name, key, specimen) for name, key, specimen in bodies if specimen is not None]
 
     @property
     def exceeding(self) -> Mapping[str, str]:
@@ -67,8 +71,9 @@ class Study(Figured[str]):
     def not_accepted(self) -> Mapping[str, str]:
         """Limits of acceptance that are not kept, of imitations and of rigid specimens, by the motion's name."""
         reasons = dict[str, str]()
-        for name, specimen in self._specimens:
-            reasons[name] = ", ".join(filter(None, (reasons.get(name, ""), specimen.refusal)))
+        for name, body, specimen in self._specimens:
+            refusal = f"{body}: {specimen.refusal}" if body and specimen.refusal else specimen.refusal
+            reasons[name] = ", ".join(filter(None, (reasons.get(name, ""), refusal)))
         for comparison in self.comparisons:
             name = comparison.centrifuge
             refusal = comparison.refusal if comparison.decision == NOT_ACCEPTED else ""
@@ -88,7 +93,7 @@ class Study(Figured[str]):
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
         exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
-        kept = [each.within_limit for _, each in self._specimens]
+        kept = [each.within_limit for *_, each in self._specimens]
         return state_of(self.outcome, self.comparisons, exceeded=exceeded, kept=kept)
 
     def __repr__(self) -> str:

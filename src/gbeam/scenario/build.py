@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -208,7 +207,7 @@ def _response(
         if not covered:
             return None, spans
         duration = min(last for _, last in covered.values()) - start
-        apart = [extent for extent in arms.values() if not np.allclose(extent, (start, start + duration))]
+        apart = [last for _, last in arms.values() if not math.isclose(last, start + duration, rel_tol=1e-9)]
         if apart or any(
             True for name, record in records.items() for _ in _not_all_of(name, record, start, start + duration)
         ):

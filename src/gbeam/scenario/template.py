@@ -176,7 +176,46 @@ limit = [20]  # N m
 duration = "20 s"
 """
 
-_TEMPLATES = {"flight": _FLIGHT, "hub": _HUB, "system": _SYSTEM}
+_ARM = """\
+title = "A box on a plain arm, in six directions"
+
+[bodies.box]
+kind = "rigid"
+mass = "5 kg"
+size = ["300 mm", "200 mm", "120 mm"]  # of the box, along x, y and z
+middle = [0, 0, "60 mm"]  # of the box, from the root: where its axes begin, in the plane of the bolts
+centre = ["0 mm", "0 mm", "60 mm"]  # of mass, from there
+# inertia = ["0.03 kg m^2", "0.05 kg m^2", "0.06 kg m^2"]  # about it; that of an even box where it is left out
+bolts = [["-130 mm", "-80 mm", 0], ["130 mm", "-80 mm", 0], ["-130 mm", "80 mm", 0], ["130 mm", "80 mm", 0]]
+bolt_axis = [0, 0, 1]  # away from the fixture
+spread_limit = "10 %"  # of the load over the box, of the test order; beyond it the run is not accepted
+
+[motion.test]
+kind = "arm"
+# preset = "mil-std-810h-513-structural"  # `gbeam presets` lists tests of standards
+radius = "3 m"  # from the arm's axis to the control point, where the level holds
+control_point = [0, 0, "60 mm"]  # from the root
+level = "9 g"  # centripetal, at the control point; the weight comes on top unless gravity = false
+onset = "0.5 g/s"  # the largest; or ramp = "20 s", the time to the level
+dwell = "60 s"
+# down = "30 s"  # time from the level to rest; as long as that up where it is left out
+up = ["+z", "+x"]  # what is up: the first of these that does not lie along the load
+
+# Directions of the box that point to the arm's axis, by name: the arm accelerates it that way. Each is a motion,
+# test-fore and so on, and may have keys of its own. For one direction alone load = "+x" in [motion.test] instead.
+[motion.test.directions]
+fore = "+x"
+aft = "-x"
+left = "+y"
+right = "-y"
+up = { load = "+z", level = "6 g" }
+down = "-z"
+
+[response]  # each direction over its own time
+step = "100 ms"
+"""
+
+_TEMPLATES = {"flight": _FLIGHT, "hub": _HUB, "arm": _ARM, "system": _SYSTEM}
 
 
 def template(kind: str) -> str:

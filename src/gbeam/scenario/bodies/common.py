@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
 
 import numpy as np
@@ -14,9 +14,7 @@ from gbeam.printable import shortened
 from gbeam.scenario.schema.fields import MomentOfInertia, Place3, Quantity, Ratio, Ratios, Table, Turn3, wrong
 
 if TYPE_CHECKING:
-    from pydantic_core import PydanticCustomError
-
-    from gbeam.scenario.schema.fields import Loc
+    pass
 
 
 class BodyKind(NamedTuple):
@@ -24,14 +22,13 @@ class BodyKind(NamedTuple):
 
     `table` names the kind in its ``kind``, which may be left out beside the key `known_by`. `build` makes the body of a
     system from the collector of errors, the path and the table; `alone` the specimen alone on a base, where that is
-    another object. `among` gives the errors of a table that is one body of a system.
+    another object.
     """
 
     table: type[Table]
     build: Callable[[Any, str, Any], Any]
     alone: Callable[[Any, str, Any], Any] | None = None
     known_by: str = ""
-    among: Callable[[Any], Iterable[tuple[Loc, PydanticCustomError]]] = lambda table: ()
 
     @property
     def name(self) -> str:

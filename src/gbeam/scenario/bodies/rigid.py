@@ -1,19 +1,17 @@
-"""A rigid body, and a rigid specimen alone on its base."""
+"""A rigid body, and a rigid specimen: alone on its base, or an item of a system whose corners or bolts are read."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
-from pydantic_core import PydanticCustomError
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, Name, Point, inertia_of, points_of
-from gbeam.scenario.schema.fields import Exponent, Loc, Mass, Offset, Place3, Table, by_name, optional, wrong
+from gbeam.scenario.schema.fields import Exponent, Mass, Offset, Place3, Table, by_name, optional
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
     from gbeam.scenario.load import Collector
     from gbeam.solids.rigid import RigidSpecimen
 
-_OF_SPECIMEN = "of a specimen alone on its base: "
+_ITEM = "corners", "bolts", "bolt_axis", "spread_limit"  # of an item under test, on whose points nothing hangs
 _Places = Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)]
 
 
@@ -39,15 +37,16 @@ class RigidBody(Table):
     size: tuple[Offset, Offset, Offset] | None = optional("edges [x, y, z] of the box that it fills, about middle")
     middle: Place3 | None = optional("middle of the box from the root, [x, y, z]; the centre of mass where left out")
     corners: _Places = Field(
-        default=(), description=_OF_SPECIMEN + "corners of its envelope where it is no box: [ [x, y, z], ... ]"
+        default=(),
+        description="corners of its envelope where it is no box, whose load is told: [ [x, y, z], ... ]",
     )
     bolts: _Places = Field(
-        default=(), description=_OF_SPECIMEN + "places of the bolts that hold it, alike: [ [x, y, z], ... ]"
+        default=(), description="places of the bolts that hold it by its root, alike: [ [x, y, z], ... ]"
     )
-    bolt_axis: Direction | None = optional(_OF_SPECIMEN + "direction of the bolts, away from the fixture: [x, y, z]")
+    bolt_axis: Direction | None = optional("direction of the bolts, away from the fixture: [x, y, z]")
 
     spread_limit: Exponent | None = optional(
-        _OF_SPECIMEN + "largest difference of the load at a corner to the centre's that the test order "
+        "largest difference of the load at a corner to the centre's that the test order "
         'accepts, over the largest of the centre, such as "10 %"; beyond it the run is not accepted'
     )
     points: dict[Name, Point] = by_name(
@@ -56,8 +55,10 @@ class RigidBody(Table):
     )
 
 
-def _body(parts: Collector, where: str, table: RigidBody) -> Rigid | None:
-    """Rigid body of a system; None if it is refused."""
+def _body(parts: Collector, where: str, table: RigidBody) -> Rigid | Structure | None:
+    """Rigid body of a system, a specimen where corners or bolts are asked for; None if it is refused."""
+    if any(getattr(table, key) for key in _ITEM):
+        return _specimen(parts, where, table)
     from gbeam.mechanics.tree.system import RigidBody as Rigid
 
     def body() -> Rigid:
@@ -111,12 +112,4 @@ def _moments(table: RigidBody) -> Any:
     return tuple(table.mass / 12 * (squares.sum() - squares))
 
 
-def _among(table: RigidBody) -> Iterator[tuple[Loc, PydanticCustomError]]:
-    """Errors of keys that only a specimen alone on its base takes."""
-    hint = "leave it out, or give points; a rigid body alone, without joints, is a specimen"
-    for key in ("corners", "bolts", "bolt_axis", "spread_limit"):
-        if getattr(table, key):
-            yield (key,), wrong("is of a specimen alone on its base", hint, mark="key")
-
-
-BODY = BodyKind(RigidBody, _body, _specimen, among=_among)
+BODY = BodyKind(RigidBody, _body, _specimen)

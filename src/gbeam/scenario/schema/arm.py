@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, StrictBool, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Along, PresetName
@@ -21,6 +21,7 @@ from gbeam.scenario.schema.fields import (
     Table,
     by_name,
     missing_one_of,
+    motion_name,
     optional,
     refuse,
     wrong,
@@ -84,8 +85,9 @@ class _Held(Table):
 class TestDirection(_Held):
     """One direction in which a plain arm tests its specimen, with keys that differ from the arm's."""
 
-    load: _AlongOrVector = Field(
-        description='direction of the specimen that points to the arm\'s axis: the level accelerates it that way, "+x"'
+    load: _AlongOrVector | None = optional(
+        'direction of the specimen that points to the arm\'s axis: the level accelerates it that way, "+x"; that of '
+        "the preset where it is left out"
     )
 
 
@@ -102,7 +104,7 @@ class Arm(_Held):
         '"+x", or a vector; or directions'
     )
     directions: dict[
-        str,
+        Annotated[str, AfterValidator(motion_name)],
         Annotated[
             Annotated[Along, Tag("one")]
             | Annotated[tuple[_Component, _Component, _Component], Tag("list")]
@@ -150,6 +152,10 @@ class Arm(_Held):
         if self.load is None and not self.directions:
             asked = self._asked("directions")
             yield ((), wrong("directions are missing", asked, mark="key")) if asked else _UNDIRECTED
+        unloaded = [name for name, keys in self.motions.items() if name and keys["load"] is None]
+        if unloaded:
+            hint = self._asked("directions") or 'add load = "+x" to each'
+            yield ("directions",), wrong(f"load is missing in the directions {', '.join(unloaded)}", hint, mark="key")
         if self.load is not None and self.directions:
             yield ("load",), wrong("is given beside directions", "keep load or directions, not both", mark="key")
         for key, example in _NEEDED.items():

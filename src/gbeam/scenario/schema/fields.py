@@ -24,9 +24,9 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from gbeam.guards.kinds import KINDS
-from gbeam.guards.limits import ENTRIES, LARGEST, SMALLEST, existing
+from gbeam.guards.limits import ENTRIES, LARGEST, NAME, SMALLEST, existing
 from gbeam.guards.units import UnitError, quantity
-from gbeam.printable import closest
+from gbeam.printable import closest, shortened
 from gbeam.scenario.values import Path, path_text
 
 if TYPE_CHECKING:
@@ -67,6 +67,19 @@ def by_name(words: str) -> Any:
 def wrong(message: str, hint: str = "", *, mark: Literal["value", "key"] = "value") -> PydanticCustomError:
     """Return the error of one value, whose caret stands under the value or its key."""
     return PydanticCustomError("scenario", "{message}", {"message": message, "hint": hint, "mark": mark})
+
+
+def motion_name(name: str) -> str:
+    """Return a name of letters, digits, underscores and hyphens; an error of validation for any other."""
+    if not name.replace("-", "_").isidentifier() or not name.isascii():
+        raise wrong(
+            f"{shortened(repr(name))} is not a word",
+            "name a motion with letters, digits, _ and -, a letter first",
+            mark="key",
+        )
+    if len(name) > NAME:
+        raise wrong(f"{shortened(name)!r} has {len(name)} characters", f"give {NAME} or fewer", mark="key")
+    return name
 
 
 def existing_file(file: str, info: ValidationInfo) -> str:

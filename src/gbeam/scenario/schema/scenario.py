@@ -18,8 +18,8 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, State
-from gbeam.guards.limits import ENTRIES, NAME, SHAPES, TITLE
-from gbeam.printable import advise, level_words, shortened, unprintable
+from gbeam.guards.limits import ENTRIES, SHAPES, TITLE
+from gbeam.printable import advise, level_words, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.arm import Arm
 from gbeam.scenario.schema.beam import Beam
@@ -36,6 +36,7 @@ from gbeam.scenario.schema.fields import (
     Table,
     Time,
     by_name,
+    motion_name,
     optional,
     refuse,
     wrong,
@@ -241,19 +242,6 @@ class Sweep(Table):
     samples: int | None = optional("how many are drawn from distributions; 64", ge=1, strict=True)
     sampler: Sampler = Field(default="sobol", description="how they are drawn; saltelli for Sobol indices")
     seed: int = Field(default=0, ge=0, strict=True, description="the same seed draws the same samples")
-
-
-def motion_name(name: str) -> str:
-    """Return a name of letters, digits, underscores and hyphens; an error of validation for any other."""
-    if not name.replace("-", "_").isidentifier() or not name.isascii():
-        raise wrong(
-            f"{shortened(repr(name))} is not a word",
-            "name a motion with letters, digits, _ and -, a letter first",
-            mark="key",
-        )
-    if len(name) > NAME:
-        raise wrong(f"{shortened(name)!r} has {len(name)} characters", f"give {NAME} or fewer", mark="key")
-    return name
 
 
 def _printable(title: str) -> str:

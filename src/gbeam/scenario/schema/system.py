@@ -18,7 +18,7 @@ from pydantic_core import PydanticCustomError
 from gbeam.guards.limits import ENTRIES
 from gbeam.mechanics.tree.equations import SLIP, SLIPS
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Kind, kind_of_value
-from gbeam.scenario.bodies import BODIES, OF_TABLE
+from gbeam.scenario.bodies import BODIES
 from gbeam.scenario.bodies.common import Direction, Name
 from gbeam.scenario.schema.fields import (
     Acceleration,
@@ -330,10 +330,7 @@ class SystemScenario(Environments, Tree):
         return data
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
-        """Errors of keys that a body in a system must not have or lacks."""
-        for name, body in self.bodies.items():
-            for place, error in OF_TABLE[type(body)].among(body):
-                yield ("bodies", name, *place), error
+        """Errors of keys that a system must not have or lacks."""
         yield from _stations(self)
 
 
