@@ -5,6 +5,7 @@
 # make thorough: cases that make test leaves out, for others show the same (minutes);
 # make walk: every verb over every example and more trees, its files read again, its page opened (hours);
 # make docs: the documentation site, in out/docs;
+# make pictures: those of the README and the first tutorial, from the F-16 example;
 # make changelog: what the fragments in changes/ tell of the next release;
 # make web: the viewer and the app's page, from web/ into the package, with the licences of what they hold in NOTICE
 # (needs Node; users of the package do not);
@@ -27,7 +28,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Folders that ruff reads.
 CODE := src tests validation fuzz mutants benchmarks examples docs .ci
 
-.PHONY: demo test web web-check check validate fuzz thorough walk docs changelog benchmark mutants dist wheels lock audit clean
+.PHONY: demo test web web-check check validate fuzz thorough walk docs pictures changelog benchmark mutants dist wheels lock audit clean
 
 demo: .venv/installed
 	$(BIN)/gbeam run $(EXAMPLE) --out out/f16_8g_turn
@@ -69,6 +70,9 @@ docs: .venv/dev-installed
 	$(BIN)/python benchmarks/reach.py --markdown > out/speed.md && mv out/speed.md docs/
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
 	@echo "out/docs/index.html"
+
+pictures: .venv/dev-installed
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python docs/pictures.py
 
 changelog: .venv/dev-installed
 	$(BIN)/towncrier build --draft --version next

@@ -1,6 +1,7 @@
 """Every example runs, and says what its source says."""
 
 import math
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -22,6 +23,9 @@ TIP_MASSES = ("0 kg", "0.1 kg", "0.5 kg")
 def run(name: str, *overrides: str) -> gbeam.Study:
     path = next(p for p in EXAMPLES if p.stem == name)
     return gbeam.study(gbeam.read_scenario(path, overrides))
+
+
+WORDS, SENTENCES, LONGEST = 25, 6, 36  # of a headline; below it; words of the longest of these
 
 
 def with_tip(name: str, mass: str) -> gbeam.Study:
@@ -73,6 +77,10 @@ def test_example_is_done_within_its_tolerance(path: Path) -> None:
         # Undamped, the corners of 2020 ring on for seconds, and a clamp that holds the strip flat changes their phase.
         assert response.error_estimate <= case.response.tolerance or "zhang2020" in path.stem
     assert len(answer.comparisons) == len(case.tracks)
+    for compared in answer.comparisons:
+        assert len(compared.verdict.split()) <= WORDS and compared.verdict.startswith(("PASS: ", "No limits set: "))
+        assert len(compared.findings) <= SENTENCES
+        assert all(len(each.split()) <= LONGEST and re.search(r"\d", each) for each in compared.findings)
 
 
 # Its 40 s, with richer systems that run beside it in its loop, take 20 s of processor time.

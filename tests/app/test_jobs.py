@@ -119,7 +119,7 @@ def test_files_of_a_run_are_known_kinds_in_its_folder(tmp_path: Path) -> None:
             "NOT ACCEPTED, machine limits exceeded",
         ),
         ('{"outcome": "some cases not accepted"}', "some cases not accepted"),
-        ('{"outcome": "done", "state": "done, largest load peak missed"}', "done, largest load peak missed"),
+        ('{"outcome": "done", "state": "done, largest peak missed"}', "done, largest peak missed"),
         ('{"outcome": "done", "state": "PASS"}', "done"),
     ],
 )

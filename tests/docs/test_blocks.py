@@ -13,6 +13,7 @@ from .pages import NOT_CODE, PAGES, ROOT, RUN, Block, Reader, blocks, commands
 
 SLOW = {
     "docs/howto/flight_record.md",  # plans and places the F-16's flight
+    "README.md",
     "docs/tutorials/flight_on_a_centrifuge.md",
     "docs/howto/many_machines.md",  # starts two clusters
     "docs/howto/shape_a_command.md",  # compiles the exact model

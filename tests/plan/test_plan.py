@@ -193,19 +193,19 @@ def test_a_plan_that_misses_the_main_peak_is_never_done_alone(
     scenario.write_text(SLOW, encoding="utf-8")
     assert main(["plan", str(scenario)]) == 0
     words = " ".join(capsys.readouterr().out.split())
-    assert "spin (3.3 m, tracks flight): done, largest load peak missed" in words
-    assert "No limits set: largest peak 3.4" in words and "; the largest peak is missed" in words
-    assert "Peaks: 0 of 1 reproduced; the largest, 6 g at " in words and "% off (tolerance 5 %), axis 1 rate." in words
+    assert "spin (3.3 m, tracks flight): done, largest peak missed" in words
+    assert "No limits set: largest peak 3.4" in words and "; largest peak missed" in words
+    assert "Peaks: 0 of 1 reproduced; 6 g at " in words and "% off (tolerance 5 %; used up: axis 1 rate)." in words
     assert main(["plan", str(scenario), "--json", "--report", "--out", str(tmp_path / "there")]) == 0
     facts = json.loads(capsys.readouterr().out)
     spin = facts["motions"]["spin"]
-    assert (facts["outcome"], facts["state"]) == ("done", "done, largest load peak missed")
+    assert (facts["outcome"], facts["state"]) == ("done", "done, largest peak missed")
     (peak,) = spin["accounting"]["peaks"]
     assert peak["reason"] == "axis 1 rate" and peak["ratio"] == pytest.approx(0.575, abs=0.01)
-    assert spin["accepted"] is None and spin["criteria"] == [] and spin["verdict"].endswith("is missed")
+    assert spin["accepted"] is None and spin["criteria"] == [] and spin["verdict"].endswith("largest peak missed")
     assert spin["peaks"]["largest_load"]["machine"] is None  # no beam says how long the specimen is
     page = (tmp_path / "there" / "plan.html").read_text(encoding="utf-8")
-    assert '<span class="badge bad">done, largest load peak missed</span>' in page
+    assert '<span class="badge bad">done, largest peak missed</span>' in page
     assert "not reproduced: axis 1 rate" in page and "Peaks of the load at the control point" in page
 
 
@@ -214,10 +214,7 @@ def test_limits_that_need_no_response_are_judged(scenario: Path, capsys: pytest.
     scenario.write_text(SLOW + accept + BEAM, encoding="utf-8")
     assert main(["plan", str(scenario)]) == 0
     words = " ".join(capsys.readouterr().out.split())
-    assert (
-        "Machine alone, no limit missed: error of peaks " in words
-        and "limits of tip are judged by `gbeam run`." in words
-    )
+    assert "Machine alone, no limit missed: error of peaks " in words and "`gbeam run` judges its limit, tip." in words
     assert not any(word in words for word in ("PASS", "NOT ACCEPTED", "NOT DECIDED"))
     said = {"peaks": "error of peaks", "followed": "followed", "largest_load": "largest load", "spread": "spread of"}
     for limit, value in {"peaks": "5 %", "followed": "99 %", "largest_load": "5 %", "spread": "0.05 %"}.items():

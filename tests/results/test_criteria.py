@@ -127,7 +127,7 @@ def test_states() -> None:
         "done",
     )
     good.accounting = Accounting(0.05, 4.0, 14.0, (0.0, 9.0), 0.8, (MISSED,), ())
-    assert state_of("done", [good]) == "PASS, largest load peak missed"
+    assert state_of("done", [good]) == "PASS, largest peak missed"
 
 
 @pytest.mark.parametrize(

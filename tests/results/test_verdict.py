@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -83,12 +84,33 @@ def test_a_plan_does_not_pass_what_needs_a_response() -> None:
         imitation,
         "Machine alone, no limit missed: followed 93 % of the time (limit 90 % or more); largest load 0.979 g",
     )
-    assert imitation.findings[-1] == "Specimen: its limits of tip are judged by `gbeam run`."
+    assert imitation.findings[-1] == "Specimen: `gbeam run` judges its limit, tip."
     without = Imitation(ALL)
     without.peaks, without.with_response = imitation.peaks, False
     without.accept = {name: limit for name, limit in ALL.items() if RULES[name].response}
     check(without, "Machine alone, no limit judged: largest load 0.979 g (flight 0.816 g), followed 93 % of the time")
-    assert without.findings[-1] == "Specimen: its limits of tip, root force and 2 more are judged by `gbeam run`."
+    assert without.findings[-1] == "Specimen: `gbeam run` judges its limits, tip, root force and 2 more."
+
+
+@pytest.mark.parametrize("whole", [None, (0.0, 20.0)])
+@pytest.mark.parametrize("scale", [None, 1.25])
+@pytest.mark.parametrize("exceeded", ["", "axis 2 acceleration 120 % of its limit"])
+@pytest.mark.parametrize("limit", [0.5, 0.05])
+def test_whatever_is_to_be_said_the_headline_is_short(
+    whole: tuple[float, float] | None, scale: float | None, exceeded: str, limit: float
+) -> None:
+    """Of a part of a flight at another level, with its largest peak missed; what decides is never left out."""
+    imitation = Imitation({"tip": limit, "root_moment": 0.5, "followed": 0.9})
+    imitation.whole, imitation.point = whole, "the camera on its bracket"
+    largest = replace(MISSED, load=9 * G)
+    imitation.accounting = replace(imitation.accounting, peaks=(KEPT, largest))
+    words = Verdict(imitation, exceeded=exceeded, scale=scale)
+    decision = "NOT ACCEPTED" if exceeded or limit < 0.2 else "PASS"
+    assert words.headline.startswith(decision) and len(words.headline.split()) <= WORDS, words.headline
+    assert ("camera on its bracket +20 %" in words.headline) is (limit < 0.2)
+    assert (exceeded in words.headline) is (limit > 0.2 or not exceeded)
+    assert "× 1.25" in words.headline or scale is None
+    assert len(words.findings) == SENTENCES
 
 
 def test_the_headline_names_the_point_that_is_judged() -> None:

@@ -133,7 +133,7 @@ def test_a_run_of_a_system_that_is_not_accepted_fails(tmp_path: Path, capsys: py
     assert main(["run", str(file), *short, "--verbose"]) == 1
     printed = capsys.readouterr()
     assert "motion.centrifuge NOT ACCEPTED: damage" in printed.err
-    assert "  limits missed: damage" in printed.out and "  limits kept: tip" in printed.out
+    assert "  limits missed: damage" in printed.out and "  limits kept: strip.tip" in printed.out
     assert "from standstill to standstill" in printed.out and "the tip is strip.tip" in printed.out
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "Verdict" in page and "NOT ACCEPTED: damage" in page

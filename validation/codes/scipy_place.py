@@ -70,7 +70,7 @@ def placed(case: str, structure: gb.Structure, ends: np.ndarray) -> Iterator[Row
     apart = np.einsum("tij,ej->tei", growth, ends - np.asarray(placement.best.place))
     at_place, whole = (float(np.linalg.norm(each, axis=-1).max() / peak) for each in (apart, apart + missed[:, None]))
     yield Row(
-        case, "largest difference of the load, over its peak: least", least, placement.best.mismatch, "", 2e-3, SOURCE
+        case, "largest difference of the load, over its peak: least", least, placement.best.difference, "", 2e-3, SOURCE
     )
     yield Row(case, "and at gbeam's place", least, at_place, "", 2e-3, SOURCE)
     stated = placement.totals["best"]["load"]

@@ -149,7 +149,8 @@ def list_files(folder: Path | None, files: Sequence[Path]) -> None:
     if folder is not None and files:
         kept = [file for file in files if file.suffix != ".svg"]
         names = [f"{file.stem}.png/.svg" if file.suffix == ".png" else file.name for file in kept]
-        show_lines([("", ""), (f"{len(files)} files in {folder}: {', '.join(names)}", "")])
+        count = "1 file" if len(files) == 1 else f"{len(files)} files"
+        show_lines([("", ""), (f"{count} in {folder}: {', '.join(names)}", "")])
 
 
 def write_json(file: Path, facts: Mapping[str, Any]) -> None:

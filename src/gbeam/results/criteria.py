@@ -133,7 +133,7 @@ def state_of(
         return EXCEEDED
     accepted = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
     missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
-    return (PASS if accepted or True in kept else "done") + (", largest load peak missed" if missed else "")
+    return (PASS if accepted or True in kept else "done") + (", largest peak missed" if missed else "")
 
 
 @dataclass(frozen=True)

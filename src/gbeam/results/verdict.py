@@ -10,6 +10,7 @@ from gbeam.printable import level_words
 from gbeam.results.accounting import NotFollowed, PeakPair, change, in_g, metres, percent
 from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Criterion, Judged, in_words
 
+WORDS = 25  # of a headline, at most
 _TIMES, _APART, _BRIEF = 3.0, 5e-4, 0.005  # a ratio is said as such from here on; shares alike; stretches to omit, s
 _IDLE = "below idle"
 
@@ -52,10 +53,10 @@ class Verdict:
             "largest_load": self._loads(beside=not criteria),
             "followed": f"followed {self._followed} of the time",
         }
-        pending, decision, shown = judged.not_judged, judged.decision, 1
+        pending, decision, shown, intro = judged.not_judged, judged.decision, 1, ""
         if decision == NOT_ACCEPTED:
             worst = max((each for each in failed if each.passed is False), key=lambda each: each.use)
-            reason = f"{'' if len(failed) == 1 else 'worst of all: '}{worst.brief}"
+            intro, reason = "" if len(failed) == 1 else "worst of all: ", worst.brief
         elif decision == NOT_DECIDED:
             worst, shown = failed[0], 2
             reason = f"{worst.words} is not known ({worst.limit_written})"
@@ -67,7 +68,7 @@ class Verdict:
             shown, reason = (1, worst.brief) if worst else (2, "")
         elif criteria:
             worst = max(criteria, key=lambda each: each.use)
-            reason = worst.brief if len(criteria) == 1 else f"all limits are kept, the nearest: {worst.brief}"
+            intro, reason = "" if len(criteria) == 1 else "all limits are kept, the nearest: ", worst.brief
         else:
             worst, shown, reason = None, 2, ""
         known = [words for name, words in context.items() if words and not (worst and worst.name == name)]
@@ -76,8 +77,7 @@ class Verdict:
         flight = level_words("the flight", self.scale)
         start += f" for a part of {flight}" if judged.whole is not None else f" for {flight}" if self.scale else ""
         missed = judged.accounting.main is not None and judged.accounting.main.reason
-        parts = [reason, ", ".join(known[:shown]), "the largest peak is missed" if missed else ""]
-        return f"{start}: {'; '.join(filter(None, parts))}"
+        return _shortened(start, intro, reason, known[:shown], "largest peak missed" if missed else "")
 
     @property
     def findings(self) -> tuple[str, ...]:
@@ -134,8 +134,10 @@ class Verdict:
             name, worst = "the largest", main
         size = f"{percent(worst.error)} off" if worst.error >= _APART else "within 0.1 %"
         limit = self._limit("peaks", otherwise=f"tolerance {percent(accounting.tolerance)}")
-        why = f", {worst.reason}" if worst.reason else ""
-        return f"Peaks: {count}; {name}, {in_g(worst.load)} at {worst.time:.2f} s, is {size} {limit}{why}."
+        why = f"; {_because(worst.reason)}" if worst.reason else ""
+        said = f"{in_g(worst.load)} at {worst.time:.2f} s"
+        peak = said if len(peaks) == 1 else f"{name}, {said},"
+        return f"Peaks: {count}; {peak} is {size} {limit.removesuffix(')')}{why})."
 
     def _time(self) -> str:
         accounting = self.judged.accounting
@@ -172,7 +174,8 @@ class Verdict:
     def _specimen(self) -> str:
         """Sentence on the limits that a plan does not judge, in place of those on tip and root."""
         pending = self.judged.not_judged
-        return f"Specimen: its limits of {_listed(pending)} are judged by `gbeam run`." if pending else ""
+        limits = "limit" if len(pending) == 1 else "limits"
+        return f"Specimen: `gbeam run` judges its {limits}, {_listed(pending)}." if pending else ""
 
     def _machine(self) -> str:
         """Sentence on the longest stretch that the machine cannot follow above idle, or else below it."""
@@ -190,8 +193,23 @@ class Verdict:
         when = f"from {worst.start:.2f} to {worst.end:.2f} s"
         if worst.reason == _IDLE:
             return f"Machine: it cannot go below idle, {in_g(self.judged.accounting.idle)}, longest {when}."
-        used = "used up: " if worst.reason.startswith(("axis", "arm")) else ""
-        return f"Machine: it cannot follow {in_g(worst.flight_peak)} {when} ({used}{worst.reason})."
+        return f"Machine: it cannot follow {in_g(worst.flight_peak)} {when} ({_because(worst.reason)})."
+
+
+def _because(reason: str) -> str:
+    """Words for why a load is not followed: limits are used up."""
+    return f"used up: {reason}" if reason.startswith(("axis", "arm")) else reason
+
+
+def _shortened(start: str, intro: str, reason: str, context: list[str], remark: str) -> str:
+    """Headline of at most :data:`WORDS` words: without the last of the context, all of it, the intro, or the remark."""
+    shorter = [(intro, context[:count], remark) for count in range(len(context), -1, -1)]
+    for first, known, last in (*shorter, ("", [], remark), ("", [], "")):
+        parts = [f"{first}{reason}", ", ".join(known), last]
+        line = f"{start}: {'; '.join(filter(None, parts))}"
+        if len(line.split()) <= WORDS:
+            break
+    return line
 
 
 _NAMED = 2  # limits that are named one by one

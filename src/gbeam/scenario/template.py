@@ -39,6 +39,10 @@ modes = { axial = 1, y = 3, z = 3 }
 # What the base does: as many [motion.NAME] as you like, each an environment for the same beam.
 [motion.flight]
 kind = "flight"
+# A measured record, in place of [motion.flight.acceleration.z] below, which goes, as does duration under [response]:
+# a CSV file beside this one; "-" in front changes a sign; from = "2 s" and to = "9 s" in it ask for a part.
+# record = { file = "flight.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }
+
 # Up at the jerk to the level, hold, down again; on top of a constant load that the machine can hold.
 [motion.flight.acceleration.z]
 profile = "sum"
@@ -46,9 +50,6 @@ terms = [
   { profile = "constant", level = "1.5 g" },
   { profile = "trapezoid", level = "4.5 g", jerk = "4 g/s", start = "1 s", hold = "2 s" },
 ]
-# or, instead of the acceleration, a measured record: a CSV file beside this one, "-" in front changes a sign
-# record = { file = "flight.csv", time = "time_s", x = "n_x_g", y = "-n_y_g", z = "-n_z_g", unit = "g" }
-# and then no duration under [response]; from = "2 s" and to = "9 s" in the record ask for a part of it
 
 # What the centrifuge does so that the control point feels the same: from standstill to standstill.
 [motion.centrifuge]

@@ -20,7 +20,7 @@ interface Body {
 
 interface Answer {
   motions?: Record<string, { outcome: string; bodies?: Record<string, Body> }>;
-  comparisons?: { verdict: string; accepted: boolean | null; criteria?: unknown[] }[];
+  comparisons?: { verdict: string }[];
 }
 
 /** When a run was submitted, month, day and time, as its id has it. */
@@ -189,11 +189,7 @@ export class Runs {
           if (loads?.stress?.max !== undefined) put(`${of}: stress, MPa`, i, format(1e-6 * loads.stress.max));
         }
       }
-      for (const each of answer.comparisons ?? []) {
-        const undecided = each.criteria?.length ? "not decided" : "no limits set";
-        put("accepted", i, each.accepted === null ? undecided : each.accepted ? "yes" : "no");
-        put("verdict", i, each.verdict);
-      }
+      for (const each of answer.comparisons ?? []) put("verdict", i, each.verdict);
     });
     const table = element("table", "compared");
     const head = element("tr");
