@@ -212,7 +212,8 @@ def errors(motions: Facts) -> Blocks:
         for quantity in _judged(each)
         if each["errors"][quantity]["total"] is not None
     ]
-    causes = {name.replace("_", " "): f"{name}:%" for name, _ in declarations(ErrorEstimate)}
+    names = [name for name, _ in declarations(ErrorEstimate) if name != "slender"]  # for comparisons: files have it
+    causes = {name.replace("_", " "): f"{name}:%" for name in names}
     yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)
     if not rows and any("displacement" in _judged(each) for each in motions.values()):
         yield Sentence("no error estimate", "faint")
