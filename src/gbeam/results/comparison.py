@@ -204,7 +204,8 @@ class MachinePlan(Worded, Driven, Figured[AxesFigure]):
             first, last = self.axes.span
             flown = (self.time >= first) & (self.time <= last)  # without spin-up and spin-down
             aside = float(self.axes.not_followed[flown].mean()) if flown.any() else 0.0
-            lines.append(f"target followed within {in_g(error.max())}, not the flight's load {aside:.0%} of the time")
+            other = f"another than the flight's load for {aside:.0%} of the flight"
+            lines.append(f"target followed within {in_g(error.max())}, {other}")
         return "\n  ".join(lines)
 
 
