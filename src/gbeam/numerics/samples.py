@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -110,34 +108,11 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
     if not (1 - 1e-5) / length <= cutoff < 0.5 / step:  # as the fix prints it, rounded
         problem = f"is {cutoff:g} Hz, with samples {step:g} s apart over {length:g} s"
         raise InputError("cutoff", problem, f"give {1 / length:g} Hz or more, below {0.5 / step:g} Hz")
+    import scipy.signal
+
+    sections = scipy.signal.butter(ORDER, cutoff, fs=1 / step, output="sos")
     beyond = min(len(values) - 1, math.ceil(1 / (cutoff * step)))
-    first, last = values[:1], values[-1:]
-    before, after = 2 * first - values[beyond:0:-1], 2 * last - values[-2 : -beyond - 2 : -1]
-    forwards = _causal_low_pass(np.concatenate([before, values, after]), step * cutoff)
-    return _causal_low_pass(forwards[::-1], step * cutoff)[::-1][beyond : beyond + len(values)]
-
-
-def _causal_low_pass(values: Floats, cutoff: float) -> Floats:
-    """Butterworth low-pass of samples (t, ...), from rest at the first, with a `cutoff` in cycles a sample."""
-    warped = math.tan(math.pi * cutoff)  # the bilinear transform's
-    change = np.reshape(values - values[0], (len(values), -1))
-    for k in range(ORDER // 2):  # pairs of poles s² + 2 s sin θ + 1
-        damping = 2 * math.sin(math.pi * (2 * k + 1) / (2 * ORDER)) * warped
-        present, past = 1 + damping + warped**2, 1 - damping + warped**2
-        poles = present, 2 * (warped**2 - 1), past
-        summed = change.copy()
-        summed[1:] += 2 * change[:-1]
-        summed[2:] += change[:-2]
-        change = _recurrence(poles, warped**2 * summed)
-    return np.asarray(values[0] + change.reshape(values.shape))
-
-
-def _recurrence(coefficients: Sequence[complex], driven: Any) -> Any:
-    """Values (t, k) from rest of which a sum over the present one and those before is `driven`, by its coefficients."""
-    from scipy.linalg import solve_banded  # as lfilter of scipy.signal, which takes half a second to import
-
-    bands = np.outer(coefficients, np.ones(len(driven)))
-    return solve_banded((len(coefficients) - 1, 0), bands, driven, check_finite=False)
+    return np.asarray(scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=beyond))
 
 
 def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
@@ -163,6 +138,8 @@ def _response(
     load: Floats, omega: float, damping: float, step: float, by_place: float, by_rate: float, steady: float
 ) -> Floats:
     """Output by_place η + by_rate η̇ (t, ...) of one oscillator, rad/s, whose output at rest is `steady` · load."""
+    from scipy.signal import lfilter
+
     damping = damping if damping != 1 else 1 - 1e-9  # one pole for two
     # η = Im w/ω_d of ẇ = λ w + load; after a step h under a load that is straight from u to v, of z = λ h,
     # w e^z + h (φ₁ u + φ₂ (v − u)) with φ₁ = (e^z − 1)/z and φ₂ = (φ₁ − 1)/z.
@@ -171,8 +148,6 @@ def _response(
     z = pole * step
     phi1 = np.expm1(z) / z
     phi2 = (phi1 - 1) / z
-    change = np.reshape(load - load[0], (len(load), -1))  # which starts at rest
-    driven = step * phi2 * change
-    driven[1:] += step * (phi1 - phi2) * change[:-1]
-    w = _recurrence((1.0, -np.exp(z)), driven)
-    return np.asarray(((by_place + by_rate * pole) * w.reshape(load.shape)).imag / damped + steady * load[0])
+    # The change is filtered: it starts at rest, without a history.
+    w = lfilter([step * phi2, step * (phi1 - phi2)], [1.0, -np.exp(z)], load - load[0], axis=0)
+    return np.asarray(((by_place + by_rate * pole) * w).imag / damped + steady * load[0])
