@@ -62,6 +62,19 @@ def response(duration: str, **more: str) -> str:
 
 
 # Every kind of motion, and a mass; its lines are counted by the tests of error messages.
+BOX_ON_ARM = """
+[bodies.box]
+kind = "rigid"
+mass = "6.5 kg"
+size = ["320 mm", "200 mm", "120 mm"]
+
+[motion.test]
+kind = "arm"
+radius = "3.3 m"
+control_point = [0, 0, 0]
+ramp = "20 s"
+up = ["+z", "+x"]
+"""
 EVERY_MOTION = (
     'title = "test"\n'
     + SPECIMEN

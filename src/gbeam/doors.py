@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gbeam.plots import Panels
+    from gbeam.results.doors import Panels
 
 
 def to_xarray(result: Any) -> Any:

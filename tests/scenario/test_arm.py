@@ -4,22 +4,10 @@ import pytest
 
 import gbeam as gb
 
-G = 9.80665
-BOX = """
-[bodies.box]
-kind = "rigid"
-mass = "6.5 kg"
-size = ["320 mm", "200 mm", "120 mm"]
+from ..scenarios import BOX_ON_ARM
 
-[motion.test]
-kind = "arm"
-radius = "3.3 m"
-control_point = [0, 0, 0]
-level = "9 g"
-ramp = "20 s"
-dwell = "60 s"
-up = ["+z", "+x"]
-"""
+G = 9.80665
+BOX = BOX_ON_ARM + 'level = "9 g"\ndwell = "60 s"\n'
 SIX = 'directions = { fore = "+x", aft = "-x", left = "+y", right = "-y", up = "+z", down = "-z" }\n'
 HUB = """[motion.test-up]
 kind = "hub"

@@ -8,27 +8,16 @@ import pytest
 import gbeam as gb
 from gbeam.scenario.presets import PRESETS, preset_of, text_of
 
-FIXED = {"level", "dwell", "directions"}  # by standards
-TEST = """
-[bodies.box]
-kind = "rigid"
-mass = "6.5 kg"
-size = ["320 mm", "200 mm", "120 mm"]
+from ..scenarios import BOX_ON_ARM
 
-[motion.test]
-kind = "arm"
-radius = "3.3 m"
-control_point = [0, 0, 0]
-ramp = "20 s"
-up = ["+z", "+x"]
-"""
+FIXED = {"level", "dwell", "directions"}  # by standards
 GIVEN = {"level": '"7 g"', "dwell": '"30 s"', "directions": '{ up = "+z", aft = "-x" }'}
 
 
 def read(tmp_path, name, **keys):
     lines = [f'preset = "{name}"', *(f"{key} = {value}" for key, value in keys.items())]
     file = tmp_path / "test.toml"
-    file.write_text(TEST + "\n".join(lines) + "\n", encoding="utf-8")
+    file.write_text(BOX_ON_ARM + "\n".join(lines) + "\n", encoding="utf-8")
     return gb.read_scenario(file)
 
 

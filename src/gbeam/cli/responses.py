@@ -189,11 +189,10 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
     """Run the command of a file again, and compare its facts with those that the file holds."""
     from gbeam.results.facts import ANY, paths_of
     from gbeam.results.study import KINDS, tree_of_answers
-    from gbeam.scenario.rerun import as_read, reproduction
+    from gbeam.scenario.rerun import record_changes, reproduction
 
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes = as_read(origin, Path(folder))
-        again = _answered(file, origin, Path(folder), tuple(changes))
+        again = _answered(file, origin, Path(folder), tuple(record_changes(origin, Path(folder))))
     kind = again.get("form", {}).get("kind")
     declared = paths_of(tree_of_answers(KINDS[kind])) if kind in KINDS else ()
     units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): each.unit or "1" for form, each in declared}

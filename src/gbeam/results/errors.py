@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from gbeam.arrays.tree import assign
 from gbeam.guards.arguments import typed_methods
 from gbeam.printable import percent
 from gbeam.results.declared import declared, fact, internal, labels, part, quantity, rows
@@ -69,7 +70,7 @@ class ErrorEstimate(Lacking, Part):
     def __post_init__(self) -> None:
         if math.isnan(self.slender):
             theory = 0.0 if math.isnan(self.beam_theory) else self.beam_theory
-            object.__setattr__(self, "slender", self.total - theory)
+            assign(self, slender=self.total - theory)
 
     @property
     def causes(self) -> dict[str, float]:

@@ -122,8 +122,8 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
 
     origin = origin_of(path, before)
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        changes = as_read(origin, Path(folder))
-        scenario = loads(origin.scenario, str(path), [*origin.overrides, *changes], folder=folder)
+        changes = [*origin.overrides, *record_changes(origin, Path(folder))]
+        scenario = loads(origin.scenario, str(path), changes, folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         after = stored(answers)
     then, now = computed(before), computed(after)
@@ -141,11 +141,6 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
 def units_in(stored: Stored) -> Callable[[str], str]:
     """The unit of a variable of a file by its name."""
     return lambda name: str(stored.attrs.get(name, {}).get("units", ""))
-
-
-def as_read(origin: Provenance, folder: Path) -> list[str]:
-    """Write the records into a folder. Return changes PATH=FILE by which the scenario reads them."""
-    return [*_records(origin, folder)]
 
 
 def reproduction(
@@ -201,7 +196,7 @@ def checked(file: str, origin: Provenance) -> None:
         raise InputError(file, "holds another scenario than the one that was run", fix)
 
 
-def _records(origin: Provenance, folder: Path) -> Iterator[str]:
+def record_changes(origin: Provenance, folder: Path) -> Iterator[str]:
     """Yield changes PATH=FILE for records that are written into `folder`, or found where they were if not kept."""
     for number, record in enumerate(origin.records):
         if record.content is None:

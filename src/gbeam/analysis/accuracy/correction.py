@@ -18,7 +18,7 @@ from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, Trajectory, slopes
 from gbeam.integrate.schemes import gauss
 from gbeam.numerics.balance import balanced, loose
-from gbeam.numerics.eigen import UNSYMMETRIC, symmetric, symmetric_modes
+from gbeam.numerics.eigen import UNSYMMETRIC, positive_definite, symmetric, symmetric_modes
 
 IntArray = NDArray[np.int_]
 Quantity = tuple[str, str]  # a body or "", and the name of what is read: deflection, force, moment, stress, place
@@ -111,8 +111,8 @@ class Departures:
     @property
     def inert(self) -> bool:
         """True if every motion has kinetic energy, as some do not by a mass of second order in what bends."""
-        masses = symmetric(self.m[:, self.unheld][..., self.unheld])
-        return bool((np.linalg.eigvalsh(masses)[:, 0] > 0).all())
+        free = self.unheld
+        return positive_definite(self.m[:, free][..., free])
 
     @cached_property
     def vibration(self) -> Vibration:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple, get_args
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, StrictInt, Tag
@@ -12,9 +12,6 @@ from gbeam.guards.limits import ENTRIES, NAME
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.printable import shortened
 from gbeam.scenario.schema.fields import MomentOfInertia, Place3, Quantity, Ratio, Ratios, Table, Turn3, wrong
-
-if TYPE_CHECKING:
-    pass
 
 
 class BodyKind(NamedTuple):
