@@ -27,6 +27,11 @@ def static(**options: Any) -> Any:
     return dataclasses.field(metadata={"static": True}, **options)
 
 
+def follows() -> Any:
+    """Return a field that follows from the others, set where the object is made."""
+    return dataclasses.field(init=False, repr=False, compare=False)
+
+
 class Value:
     """A dataclass, with ``eq=False``, that compares by its fields, arrays number by number, and prints on one line."""
 

@@ -27,6 +27,7 @@ from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.linear import is_linear
 from gbeam.mechanics.tree.signal_names import local_names
 from gbeam.mechanics.tree.steps import continuous
 from gbeam.mechanics.tree.system import System
@@ -262,7 +263,9 @@ class Run:
         that where a joint carries little inertia but that of deformed bodies.
         """
         system, run = self.posed.system, self.trajectory
-        if self.traced or not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+        if self.traced or is_linear(system.tree):  # whose M is that of the start
+            return None
+        if not any(isinstance(link.body, LinearBody) for link in system.tree.links):
             return None
         steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
         q, qd, still = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])

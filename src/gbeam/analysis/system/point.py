@@ -184,20 +184,19 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
         left = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
         return namespace(left).where(held, z, left)
 
-    first = forces(begun)
-
-    def left(z: Array, share: Any) -> Array:
+    def left(z: Array, share: Any, first: Array) -> Array:
         return forces(z) - (1.0 - share) * first
 
     if traced:
         from gbeam.mechanics.equations.compiled import root
 
-        z = root(left, begun)
+        z = root(partial(left, first=forces(begun)), begun)
         return Begun(q + bent * z, accelerated * z)
     z, reached, stride = begun, 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
-        moved, change, converged = _root_near(partial(left, share=share), z, bent)
+        wanted = forces if share == 1.0 else partial(left, share=share, first=forces(begun))
+        moved, change, converged = _root_near(wanted, z, bent)
         if converged:
             z, reached, stride = moved, share, 2 * stride
         elif stride > SHORTEST:
@@ -212,8 +211,8 @@ def _root_near(left: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]
     """Root of a function near z (n,) by Newton's method, the last correction where `bent`, and True if it converged."""
     change = z
     for _ in range(ITERATIONS):
-        slope = left(z + 1j * STEP * np.eye(len(z))).imag.T / STEP
-        change = solved(slope, -left(z))
+        values = left(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
+        change = solved(values.imag.T / STEP, -values[0].real)
         z, change = z + change, np.where(bent, change, 0.0)
         if np.abs(change).max(initial=0.0) <= CLOSE * (1e-3 + np.abs(z[bent]).max(initial=0.0)):
             return z, change, True

@@ -302,8 +302,8 @@ class LinearBody:
         c = self.coefficients
         Si = -c.f_a + _times(c.k_a, q)
         S = c.rigid[1:4] + turned((Si - c.f_a) / 2, q)
-        Ji = 2 * c.f_ww - 2 * _times(c.k_ww, q)
-        J = c.second_moment + ((c.f_ww + Ji / 2) @ q[..., None, :, None])[..., 0]
+        Ji = 2 * c.f_ww - _times(2 * c.k_ww, q)
+        J = c.second_moment + _times(c.f_ww, q) + namespace(Ji, q).einsum("...abi,...i->...ab", Ji, q) / 2
         hi = -c.f_al + _times(c.k_al, q)
         Sd, h = (turned(each, qd) for each in (Si, hi))
         return S, Si, Sd, J, Ji, h, hi
@@ -371,11 +371,12 @@ def _times(tensor: Array, q: Array) -> Array:
 def _polynomial(first: Array, second: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
     """J q + ½ q H q, and its first and second derivatives with respect to time, (..., p, 3)."""
     xp = namespace(first, q)
-    slope = first + xp.einsum("paij,...j->...pai", second, q)
-    value = xp.einsum("...pai,...i->...pa", (first + slope) / 2, q)
-    rate = xp.einsum("...pai,...i->...pa", slope, qd)
-    change = xp.einsum("...pai,...i->...pa", slope, qdd) + xp.einsum("paij,...i,...j->...pa", second, qd, qd)
-    return value, rate, change
+    bend, bending = _times(second, q), _times(second, qd)
+    value, rate, change, swept = (
+        xp.einsum("...pai,...i->...pa", *pair)
+        for pair in ((first + bend / 2, q), (first + bend, qd), (first + bend, qdd), (bending, qd))
+    )
+    return value, rate, change + swept
 
 
 def polynomial_points(sections: Polynomials) -> PolynomialPoints:

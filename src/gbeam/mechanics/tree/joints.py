@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import as_array, concatenated, is_jax
-from gbeam.arrays.tree import Value
+from gbeam.arrays.tree import Value, assign, follows
 from gbeam.arrays.types import Numbers
 from gbeam.constants import Coordinate, Direction, JointKind, Rate
 from gbeam.errors import InputError
@@ -174,6 +174,20 @@ class Joint(Value):
     effort : Profile or mapping of str to Profile, optional
         Force or torque of a drive on each coordinate, N or N m.
 
+    Attributes
+    ----------
+    coordinates, values, rate_names : tuple of str
+        Names of its coordinates, of the values on which its springs act (its coordinates, the rotation vector of a
+        ball), and of the rates at which it moves.
+    steps : tuple of Step
+        The chain of elementary motions from the point to the root of the body.
+    holder : Holder
+        Springs, dampers, friction and stops.
+    start, start_rate : (h,)
+        Coordinates and their rates at the start.
+    rates, efforts : dict of str to Profile
+        Prescribed rates, and drives, by the names of rates.
+
     Raises
     ------
     InputError
@@ -203,6 +217,15 @@ class Joint(Value):
     rate: _Drives = None
     effort: _Drives = None
     coupling: Any = None
+    coordinates: tuple[str, ...] = follows()
+    values: tuple[str, ...] = follows()
+    rate_names: tuple[str, ...] = follows()
+    steps: tuple[Step, ...] = follows()
+    holder: Holder = follows()
+    start: Array = follows()
+    start_rate: Array = follows()
+    rates: dict[str, Profile] = follows()
+    efforts: dict[str, Profile] = follows()
 
     def __post_init__(self) -> None:
         choice("kind", self.kind, KINDS)
@@ -225,24 +248,18 @@ class Joint(Value):
                     raise InputError(name, f"is {getattr(self, name)!r}", 'say of which directions: {"rx": 5000.0}')
             for direction in self._sprung:
                 choice("stiffness", direction, DIRECTIONS)
-        self.holder, self.start, self.start_rate, self.efforts, self.rates  # noqa: B018  raise what they refuse
-
-    @property
-    def coordinates(self) -> tuple[str, ...]:
-        """Names of the joint's coordinates."""
-        if self.kind == "fixed":
-            return tuple(each for each in DIRECTIONS if each in self._sprung)
-        return KINDS[self.kind].names
+        kind = KINDS[self.kind]
+        names = tuple(each for each in DIRECTIONS if each in self._sprung) if self.kind == "fixed" else kind.names
+        values = names if self.kind == "fixed" else kind.value_names
+        assign(self, coordinates=names, values=values, rate_names=kind.rates or names)
+        assign(self, holder=self._held(), steps=self._chained(), start=self._started())
+        assign(self, start_rate=self._moving(), rates=self._prescribed())
+        assign(self, efforts=self._driven())
 
     @property
     def _sprung(self) -> Mapping[Coordinate, ArrayLike]:
         """Springs that are named."""
         return self.stiffness if isinstance(self.stiffness, Mapping) else {}
-
-    @property
-    def values(self) -> tuple[str, ...]:
-        """Names of the values on which its springs act: its coordinates, the rotation vector of a ball."""
-        return self.coordinates if self.kind == "fixed" else KINDS[self.kind].value_names
 
     def numbers(self, rate: str) -> tuple[int, ...]:
         """Return the indices, among the joint's coordinates, of those that a rate moves: a spin, all Euler parameters.
@@ -266,13 +283,7 @@ class Joint(Value):
         """
         return self.numbers(rate)[1 + SPIN.index(rate) if rate in SPIN else 0]
 
-    @property
-    def rate_names(self) -> tuple[str, ...]:
-        """Names of the rates at which it moves."""
-        return KINDS[self.kind].rates or self.coordinates
-
-    @property
-    def steps(self) -> tuple[Step, ...]:
+    def _chained(self) -> tuple[Step, ...]:
         """The chain of elementary motions from the point to the root of the body."""
         placed = Placed(as_array(self.at), about(self.turn))
         axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
@@ -311,8 +322,7 @@ class Joint(Value):
             return False
         return any(name in _TURN for key in ("stiffness", "stops") for name in self._named(key, getattr(self, key)))
 
-    @property
-    def holder(self) -> Holder:
+    def _held(self) -> Holder:
         """Springs, dampers, friction and stops; InputError if a value is impossible or does nothing without another."""
         values = {name: self._numbers(name, getattr(self, name)) for name in _EASY}
         for name in ("stiffness", "damping", "friction", "stop_stiffness"):
@@ -374,24 +384,21 @@ class Joint(Value):
         """Values at the start, by name."""
         return dict(zip(self.values, self._numbers("initial", self.initial), strict=True))
 
-    @property
-    def start(self) -> Array:
+    def _started(self) -> Array:
         """Coordinates at the start."""
         values = self._numbers("initial", self.initial)
         if not KINDS[self.kind].turns:
             return values
         return concatenated([values[:-3], parameters_of_vector(values[-3:])])
 
-    @property
-    def start_rate(self) -> Array:
+    def _moving(self) -> Array:
         """Rates of the coordinates at the start."""
         values = self._numbers("initial_rate", self.initial_rate)
         if not KINDS[self.kind].turns:
             return values
         return concatenated([values[:-3], parameter_rates(self.start[-4:], values[-3:])])
 
-    @property
-    def rates(self) -> dict[str, Profile]:
+    def _prescribed(self) -> dict[str, Profile]:
         """Profiles of the prescribed rates."""
         rates = self._profiles("rate", self.rate)
         spin = [name for name in SPIN if name in rates]
@@ -409,8 +416,7 @@ class Joint(Value):
             raise InputError("rate", "prescribes no spin of a ball", "give wx, wy and wz")
         return Course([self.rates[name] for name in SPIN], self.start[-4:])
 
-    @property
-    def efforts(self) -> dict[str, Profile]:
+    def _driven(self) -> dict[str, Profile]:
         """Profiles of the drives."""
         efforts = self._profiles("effort", self.effort)
         for name in efforts.keys() & self.rates.keys():

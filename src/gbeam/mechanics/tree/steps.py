@@ -255,17 +255,26 @@ def rotation_by_parameters(n: Array) -> Array:
     return xp.stack(rows, axis=-2)
 
 
+def _products_of_parameters() -> Array:
+    """Numbers (9, 16) that map the elements of a rotation matrix to 4 e_j e_k − δ_jk of its Euler parameters e."""
+    (a, b, c), (d, e, f), (g, h, i) = np.eye(9).reshape(3, 3, 9)
+    rows = [
+        (a + e + i, h - f, c - g, d - b),
+        (h - f, a - e - i, b + d, c + g),
+        (c - g, b + d, e - a - i, f + h),
+        (d - b, c + g, f + h, i - a - e),
+    ]
+    return np.array(rows).reshape(16, 9).T
+
+
+_PRODUCTS = _products_of_parameters()
+
+
 def parameters_of_all(R: Array) -> Array:
     """Unit Euler parameters (t, 4) of rotation matrices (t, 3, 3), without jumps of sign from one to the next."""
     xp = namespace(R)
-    (a, b, c), (d, e, f), (g, h, i) = (tuple(R[..., j, k] for k in range(3)) for j in range(3))
-    rows = [
-        (1 + a + e + i, h - f, c - g, d - b),
-        (h - f, 1 + a - e - i, b + d, c + g),
-        (c - g, b + d, 1 + e - a - i, f + h),
-        (d - b, c + g, f + h, 1 + i - a - e),
-    ]
-    products = xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)  # 4 e_j e_k: the row of the largest is safe
+    products = np.eye(4) + (R.reshape(*R.shape[:-2], 9) @ _PRODUCTS).reshape(*R.shape[:-2], 4, 4)
+    # Of 4 e_j e_k the row of the largest is safe.
     largest = xp.diagonal(products, axis1=-2, axis2=-1).argmax(axis=-1)[..., None, None]
     row = xp.take_along_axis(products, largest, axis=-2)[..., 0, :]
     unit = row / xp.sqrt((row * row).sum(axis=-1, keepdims=True))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, is_traced, namespace
-from gbeam.arrays.tree import Value
+from gbeam.arrays.tree import Value, assign, follows
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
@@ -37,11 +37,13 @@ from gbeam.mechanics.tree.signals import drives_of, measurable
 from gbeam.mechanics.tree.steps import about
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
+from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.printable import advise
 
 ROOT = "root"
 CLAMP = "clamp"  # joint of a system of one body
+Prescribed = tuple[str, tuple[int, ...], tuple[str, ...]]
 
 
 @typed
@@ -151,6 +153,11 @@ class PointForce(Value):
     follower : bool
         Whether they turn with the axes of the point; else they keep the axes of the ground.
 
+    Attributes
+    ----------
+    history : (Profile, Profile)
+        Force and moment over time.
+
     Examples
     --------
     >>> gb.PointForce("bus.nozzle", force=(0, 0, 20.0), follower=True).on
@@ -161,15 +168,11 @@ class PointForce(Value):
     force: Any = None
     moment: Any = None
     follower: bool = False
+    history: tuple[Profile, Profile] = follows()
 
     def __post_init__(self) -> None:
-        self.history  # noqa: B018  raises what it refuses
-
-    @property
-    def history(self) -> Any:
-        """Profiles of force and moment."""
-        vectors = {"force": self.force, "moment": self.moment}
-        return tuple(as_profile(name, (0.0, 0.0, 0.0) if each is None else each, 3) for name, each in vectors.items())
+        force, moment = ((0.0, 0.0, 0.0) if each is None else each for each in (self.force, self.moment))
+        assign(self, history=(as_profile("force", force, 3), as_profile("moment", moment, 3)))
 
 
 @typed
@@ -191,6 +194,27 @@ class System(Value):
         Acceleration of free fall, axes of the ground, m/s².
     controllers : mapping of str to Feedback
         Controllers in the loop, whose efforts add to those of the joints and forces.
+
+    Attributes
+    ----------
+    order : tuple of str
+        Names of the bodies, each after the one that it hangs on.
+    points : tuple of str
+        Names of all points, as ``body.point``.
+    coordinates, unknown_coordinates : tuple of str
+        Names of all coordinates, those of the joints and numbered ones of the bodies that deform, and of those that
+        nothing prescribes.
+    flexible : dict of str to Structure
+        Bodies that deform, by name.
+    holding : dict of str to str
+        Name of the joint that holds each body.
+    prescribed : list of (str, tuple of int, tuple of str)
+        Coordinates that are prescribed together, one, or a ball's four: name of the joint, indices among its
+        coordinates, and names of the rates.
+    tree : Tree
+        The equations.
+    courses : dict of str to Course
+        Attitude over time of each ball whose spin is prescribed, by the joint's name.
 
     Raises
     ------
@@ -218,9 +242,15 @@ class System(Value):
     forces: Mapping[str, PointForce] = field(default_factory=dict)
     gravity: Numbers | None = None
     controllers: Mapping[str, Feedback] = field(default_factory=dict)
-    order: tuple[str, ...] = field(init=False, repr=False, compare=False)
-    tree: Tree = field(init=False, repr=False, compare=False)
-    courses: Mapping[str, Course] = field(init=False, repr=False, compare=False)  # of joints whose spin is prescribed
+    order: tuple[str, ...] = follows()
+    points: tuple[str, ...] = follows()
+    coordinates: tuple[str, ...] = follows()
+    unknown_coordinates: tuple[str, ...] = follows()
+    flexible: dict[str, Structure] = follows()
+    holding: dict[str, str] = follows()
+    prescribed: list[Prescribed] = follows()
+    tree: Tree = follows()
+    courses: dict[str, Course] = follows()
 
     def __post_init__(self) -> None:
         if not self.bodies:
@@ -231,17 +261,22 @@ class System(Value):
                     raise InputError(f"{where}.{name}", "is no name", "give letters, digits and underscores")
         if self.gravity is not None:
             vector("gravity", self.gravity)
-        object.__setattr__(self, "order", self._ordered())
-        object.__setattr__(self, "tree", self._assembled())
-        spun = [name for name, numbers, _ in self._prescribed if len(numbers) > 1]
-        object.__setattr__(self, "courses", {name: self.joints[name].course for name in spun})
+        assign(self, holding={joint.body: name for name, joint in self.joints.items()})
+        assign(self, flexible={name: body for name, body in self.bodies.items() if isinstance(body, Structure)})
+        assign(self, order=self._ordered())
+        assign(self, points=tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body)))
+        assign(self, coordinates=self._named(), prescribed=self._prescribed())
+        assign(self, tree=self._assembled())
+        assign(self, unknown_coordinates=tuple(self.coordinates[k] for k in self.tree.free))
+        spun = [name for name, numbers, _ in self.prescribed if len(numbers) > 1]
+        assign(self, courses={name: self.joints[name].course for name in spun})
         drives, signals = drives_of(self), measurable(self)
         for name, controller in self.controllers.items():
             for each in controller.measure:
                 choice(f"controllers.{name}.measure", each, signals)
             for each in controller.drive:
                 choice(f"controllers.{name}.drive", each, drives)
-                if any(each == f"{joint}.{rate}" for joint, _, rates in self._prescribed for rate in rates):
+                if any(each == f"{joint}.{rate}" for joint, _, rates in self.prescribed for rate in rates):
                     fix = "leave out the rate: what is prescribed is not controlled"
                     raise InputError(f"controllers.{name}.drive", f"is {each!r}, whose rate is prescribed", fix)
 
@@ -284,7 +319,7 @@ class System(Value):
                 fix = f"keep one of {', '.join(holding)}: loops of joints are not computed"
                 raise InputError(f"joints.{holding[1]}.body", f"is {body!r}, which {holding[0]} holds already", fix)
         order: list[str] = []
-        left = [self._holding(body) for body in self.bodies]
+        left = [self.holding[body] for body in self.bodies]
         while left:
             ready = [name for name in left if self._parent(name) in (GROUND, *order)]
             if not ready:
@@ -293,10 +328,6 @@ class System(Value):
             order += [self.joints[name].body for name in ready]
             left = [name for name in left if name not in ready]
         return tuple(order)
-
-    def _holding(self, body: str) -> str:
-        """Name of the joint that holds a body."""
-        return next(name for name, joint in self.joints.items() if joint.body == body)
 
     def _parent(self, joint: str) -> str:
         """Name of the body that a joint hangs on."""
@@ -359,11 +390,6 @@ class System(Value):
         return "system"
 
     @property
-    def flexible(self) -> dict[str, Structure]:
-        """Bodies that deform, by name."""
-        return {name: body for name, body in self.bodies.items() if isinstance(body, Structure)}
-
-    @property
     def alone(self) -> Structure | None:
         """The only body, where it is a structure that the ground holds by its root as it is, and nothing else acts."""
         acting = self.forces or self.controllers or self.gravity is not None
@@ -383,7 +409,7 @@ class System(Value):
         """Names of the bodies that hang on nothing but a free joint, or on a body that does."""
         names = list[str]()
         for body in self.order:
-            joint = self.joints[self._holding(body)]
+            joint = self.joints[self.holding[body]]
             if joint.floats or joint.on.partition(".")[0] in names:
                 names.append(body)
         return tuple(names)
@@ -410,33 +436,21 @@ class System(Value):
             if kind not in joint.rates
         )
 
-    @property
-    def points(self) -> tuple[str, ...]:
-        """Names of all points, as ``body.point``."""
-        return tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body))
-
-    @property
-    def coordinates(self) -> tuple[str, ...]:
+    def _named(self) -> tuple[str, ...]:
         """Names of all coordinates: those of the joints, and numbered ones of the flexible bodies."""
         names: list[str] = []
         for body in self.order:
-            joint = self._holding(body)
+            joint = self.holding[body]
             names += [f"{joint}.{each}" for each in self.joints[joint].coordinates]
             names += [f"{body}.q{k + 1}" for k in range(self._size(body))]
         return tuple(names)
-
-    @property
-    def unknown_coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates that nothing prescribes."""
-        names = self.coordinates
-        return tuple(names[k] for k in self.tree.free)
 
     def _assembled(self) -> Tree:
         """Links, forces and indices of prescribed coordinates of the equations."""
         index = {body: k for k, body in enumerate(self.order)}
         links, free = [], set[str]()  # bodies whose root moves by unknown coordinates
         for body in self.order:
-            name = self._holding(body)
+            name = self.holding[body]
             joint = self.joints[name]
             parent, on = -1, 0
             if joint.on != GROUND:
@@ -449,7 +463,7 @@ class System(Value):
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
                 free.add(body)
-            first = self.joints[self._holding(self.order[0])]
+            first = self.joints[self.holding[self.order[0]]]
             hinged = parent == 0 and joint.kind == "fixed" and first.kind == "revolute"
             terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free, hinged=hinged)
             links.append(Link(joint.steps, joint.holder, terms, parent, on, joint.loose))
@@ -457,13 +471,13 @@ class System(Value):
         for name, force in self.forces.items():
             body, on = self.point(f"forces.{name}.on", force.on)
             forces.append(Force(index[body], on, force.follower))
-        fixed = [self._first(name) + k for name, numbers, _ in self._prescribed for k in numbers]
+        fixed = [self._first(name) + k for name, numbers, _ in self.prescribed for k in numbers]
         return Tree(tuple(links), tuple(forces), tuple(fixed))
 
     def _first(self, joint: str) -> int:
         """Index of a joint's first coordinate among all, or where it would be if the joint has none."""
         before = self.order[: self.order.index(self.joints[joint].body)]
-        sizes = (len(self.joints[self._holding(body)].coordinates) + self._size(body) for body in before)
+        sizes = (len(self.joints[self.holding[body]].coordinates) + self._size(body) for body in before)
         return sum(sizes)
 
     def _size(self, body: str) -> int:
@@ -482,11 +496,8 @@ class System(Value):
         joint, _, rate = name.rpartition(".")
         return self._first(joint) + self.joints[joint].row(rate)
 
-    @property
-    def _prescribed(self) -> list[tuple[str, tuple[int, ...], tuple[str, ...]]]:
-        """Groups of coordinates that are prescribed together, one, or a ball's four: name of the joint, indices among
-        its coordinates, and names of the rates.
-        """
+    def _prescribed(self) -> list[Prescribed]:
+        """Groups of coordinates that are prescribed together."""
         groups = []
         for name, joint in self.joints.items():
             rates_of = dict[tuple[int, ...], list[str]]()
@@ -500,7 +511,7 @@ class System(Value):
         """All coordinates and rates at the start, flexible bodies undeformed."""
         q, qd = [], []
         for body in self.order:
-            joint, still = self.joints[self._holding(body)], np.zeros(self._size(body))
+            joint, still = self.joints[self.holding[body]], np.zeros(self._size(body))
             q += [joint.start, still]
             qd += [joint.start_rate, still]
         xp = namespace(*q, *qd)
@@ -552,7 +563,7 @@ class System(Value):
             base = motion.base(t)
             ground = Frame(eye, zero, zero, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
         prescribed, efforts = [], None
-        for name, numbers, rates in self._prescribed:
+        for name, numbers, rates in self.prescribed:
             joint = self.joints[name]
             if len(numbers) > 1:
                 parts = self.courses[name](t)
