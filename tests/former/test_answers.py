@@ -11,26 +11,34 @@ from tests.former.cases import INTEGRATORS, MODELS, MOTIONS, QUESTIONS, SPECIMEN
 EVERY = 3  # of the seeds, one in so many is tried by every run of the tests, the others by `make thorough`
 EQUAL, ALIKE = 1e-9, 1e-2  # answers, and stated errors
 PEAKS = {"tip_peaks", "root", "stress"}  # between samples: of two neighbours nearly as large either may be looked at
-NEXT = 1e-6  # difference of the two
+NEXT = 3e-5  # difference of the two
+# The condition of a mesh's stiffness multiplies rounding, which is another one on another processor; and of points that
+# are equally stressed it chooses those whose stress is followed, by whose error that of steps changes.
+MESHED, FOLLOWED = 1e-6, 0.5
 SLIGHT = 1e-7  # a stated error below is that of rounding
 # Differences that are faults of what was, of stated errors by the theory of slender beams. Thick beams were linearised
 # about straight ones, which leaves out the twist that bending couples to, see tests of bent strips;
 # and where fast modes ring, they were read at the coarser times of a first look. They change by 18 % at most.
 # Rounding in the torque of a beam that does not twist kept the peak of its stress between two samples from being seen.
-FAULTS = {**{seed: {"errors"} for seed in (7, 56, 76, 105, 132)}, 21: {"stress"}}
+# The least number of steps was 502 for 500 where a quotient was rounded up; so were its multiples.
+FAULTS = {seed: {"errors"} for seed in (7, 56, 76, 105, 132)}
+FAULTS |= {seed: {"steps", "tip", "root", "stress", "errors"} for seed in (21, 32, 102, 190)}
 
 
 def apart(before: Answers, now: Answers) -> list[str]:
     """Names of what is not as it was."""
     names = [name for name in before.keys() | now.keys() if (before.get(name) is None) != (now.get(name) is None)]
+    solid = before["model"] == "solid"
     for name in before.keys() & now.keys():
         one, other = before[name], now[name]
         if not isinstance(one, list):
             names += [name] if one != other else []
             continue
         was, is_now = (np.array(each, dtype=float) for each in (one, other))
-        equal = NEXT if name in PEAKS else EQUAL
-        close, size = (ALIKE, SLIGHT) if "errors" in name else (equal, equal * np.nanmax(np.abs(was), initial=0.0))
+        equal = NEXT if name in PEAKS else MESHED if solid else EQUAL
+        close, size = (equal, equal * np.nanmax(np.abs(was), initial=0.0))
+        if "errors" in name:
+            close, size = np.array([ALIKE, ALIKE, FOLLOWED]) if solid and name == "errors" else ALIKE, SLIGHT
         same = was.shape == is_now.shape and np.isclose(is_now, was, rtol=close, atol=size, equal_nan=True).all()
         names += [] if same else [name]
     return sorted(names)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from operator import itemgetter
 from types import MappingProxyType
@@ -203,12 +203,3 @@ class Judgement(NamedTuple):
     def loads(self, body: str) -> ErrorEstimate:
         """The larger errors of the force and the moment at a body's root."""
         return ErrorEstimate.largest(self.error((body, load)) for load in ("force", "moment"))
-
-
-def worst(errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
-    """The estimate with the largest total, of those whose total is known, and the largest error of a peak; unknown if
-    there are none.
-    """
-    known = [each for each in errors if not math.isnan(each.total)]
-    largest_total = max(known, key=lambda each: each.total, default=ErrorEstimate())
-    return replace(largest_total, peak=max((each.peak for each in known), default=math.nan))

@@ -28,6 +28,7 @@ ONE_CORNER = 1e-6  # of the duration: corners nearer to one another are one
 JUMPS = 2, 3, 4, 6, 8, 12, 16  # numbers of steps that a step is divided into; a check joins four, three or two of these
 BENT = 4  # the largest division where a law bends, so that errors can be seen to fall
 RIGID = 2e-3  # s: longest step of the results where nothing is unknown
+ROUNDING = 1e-9  # of a number of steps
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
 # Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
 R = TypeVar("R", bound=Stepped)
@@ -78,7 +79,7 @@ def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> i
     """Least even number of steps over the duration, none longer than the largest, s, or than from corner to corner."""
     gaps = np.diff(np.unique(np.clip(corners - settings.start, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
-    return 2 * math.ceil(settings.duration / largest / 2)
+    return 2 * math.ceil(settings.duration / largest / 2 - ROUNDING)
 
 
 def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:

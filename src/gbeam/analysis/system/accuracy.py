@@ -29,7 +29,6 @@ from gbeam.analysis.accuracy.estimate import (
     negligible,
     of_bodies,
     percent,
-    worst,
 )
 from gbeam.analysis.system.richer import (
     coarser,
@@ -105,11 +104,11 @@ def unjudged(
         return ErrorEstimate(step, rest, rest, total=step + rest).adding(friction=friction.get(key, math.nan))
 
     place, bent = error(PLACE), [error((name, DEFLECTION)) for name in system.flexible]
-    worst_bent = max(bent, key=lambda each: each.step, default=place)
-    loads, stress = ([error(key) for key in steps if key[1] in of] for of in (("force", "moment"), ("stress",)))
-    return Errors(
-        worst_bent if worst_bent.step > 0 else place, place, loads=worst(loads), stress=worst(stress), note=note
+    deflected = ErrorEstimate.largest(bent)
+    loads, stress = (
+        ErrorEstimate.largest(error(key) for key in steps if key[1] in of) for of in (("force", "moment"), ("stress",))
     )
+    return Errors(deflected if deflected.step > 0 else place, place, loads=loads, stress=stress, note=note)
 
 
 def system_errors(
@@ -287,10 +286,10 @@ def _judged(
     loads, stress = by_body(judgement.loads), by_body(lambda name: judgement.error((name, "stress")))
     deforms = any((name, DEFLECTION) not in known.nothing for name in judged)
     return Errors(
-        displacement=worst(bent) if deforms else of_places,
+        displacement=ErrorEstimate.largest(bent) if deforms else of_places,
         place=of_places,
-        loads=worst(loads),
-        stress=worst(stress),
+        loads=ErrorEstimate.largest(loads),
+        stress=ErrorEstimate.largest(stress),
         beams=tuple(judged),
         by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in apart.alone or [apart.truth]]),
         displacement_by_beam=np.array([each.total for each in bent]),
@@ -314,7 +313,7 @@ def _bounded(judged: Mapping[str, Structure], known: _Known) -> Errors | None:
         size, step = known.sizes[name, DEFLECTION], known.steps.get((name, DEFLECTION), math.nan)
         model = LARGEST * (size / body.length) ** 2
         bounds[name] = ErrorEstimate(step, math.nan, model, total=step + model)
-    return Errors(worst(bounds.values()), note=TOO_FAR)
+    return Errors(ErrorEstimate.largest(bounds.values()), note=TOO_FAR)
 
 
 def _missed(rings: _Rings, known: _Known, errors: Errors, fastest: float) -> float:
