@@ -72,7 +72,7 @@ class Solution:
         for times in pieces(len(of.time), tree.size):
             inputs, at = self.inputs(self.system, times), of.at(times)
             state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, inputs)
-            places.append(np.stack([frame.p for frame in state.every_point], axis=1))
+            places.append(state.places)
             if along:
                 acting = tree.demanded(state, inputs)[2] if self.system.laden & {*along} else [[] for _ in tree.links]
                 for name, carried_pieces in along.items():

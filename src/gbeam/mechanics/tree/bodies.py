@@ -47,6 +47,10 @@ class Body(Protocol):
         """Motions of the points in the root's axes, by coordinates (..., n)."""
         ...
 
+    def places_of(self, q: Array) -> Array:
+        """Places (..., p, 3) m of the points in the root's axes, by coordinates (..., n)."""
+        ...
+
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         """Forces (..., n) on the coordinates and wrench at the root that a motion demands under load components."""
         ...
@@ -91,6 +95,9 @@ class Rigid:
             Relative(xp.broadcast_to(r, (*shape, 3)), None, None, R)
             for r, R in zip(self.places, self.rotations, strict=True)
         ]
+
+    def places_of(self, q: Array) -> Array:
+        return namespace(q, self.places).broadcast_to(self.places, (*q.shape[:-1], *self.places.shape))
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         if self.contraction is not None:
@@ -137,6 +144,10 @@ class StrainedPoints:
             for k, turn in enumerate(turns)
         ]
 
+    def places_of(self, q: Array) -> Array:
+        """Places (..., p, 3) m in the root's axes, by coordinates (..., n)."""
+        return self.field.positions(q)
+
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         at_root = [(turned(by.R, wrench.force), turned(by.R, wrench.moment)) for _, by, wrench in wrenches]
@@ -160,6 +171,11 @@ class PolynomialPoints:
         R, w, alpha = rotation_by_vector(*_polynomial(self.turn, self.bend, q, qd, qdd), plane=False)
         r = self.r0 + r
         return [_point(k, (r, rd, rdd), R, w, alpha) for k in range(len(self.r0))]
+
+    def places_of(self, q: Array) -> Array:
+        """Places (..., p, 3) m in the root's axes, by coordinates (..., n)."""
+        slope = self.first + _times(self.second, q) / 2
+        return self.r0 + namespace(slope, q).einsum("...pai,...i->...pa", slope, q)
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
@@ -195,6 +211,9 @@ class FieldBody:
 
     def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
         return self.points.relative(q, qd, qdd)
+
+    def places_of(self, q: Array) -> Array:
+        return self.points.places_of(q)
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         along, *wrench = self.equations.demanded(q, qd, qdd, root.a, root.w, root.alpha, loads)
@@ -246,6 +265,9 @@ class LinearBody:
 
     def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
         return self.points.relative(q, qd, qdd)
+
+    def places_of(self, q: Array) -> Array:
+        return self.points.places_of(q)
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
         c = self.coefficients

@@ -205,6 +205,17 @@ class State:
         return self._points[body]
 
     @property
+    def places(self) -> Array:
+        """Places (..., p, 3) m of the points of all bodies, in the order of :attr:`every_point`."""
+        places = list[Array]()
+        for body, link in enumerate(self.links):
+            root = self.moved(body)[1]
+            away = link.body.places_of(self.q[body][-1])
+            moved = root.p[..., None, :] + away @ namespace(root.R).swapaxes(root.R, -1, -2)
+            places += [moved, root.p[..., None, :]]
+        return namespace(*places).concatenate(places, axis=-2)
+
+    @property
     def every_point(self) -> list[Frame]:
         """Motions of the points of all bodies, one after the other, each with its root the last."""
         return [frame for body in range(len(self.links)) for frame in self.points_of(body)]

@@ -526,7 +526,7 @@ class System(Value):
     @property
     def undeformed(self) -> Floats:
         """Places of all points, (points, 3) m, with the joints at the start and bodies undeformed."""
-        return np.stack([frame.p for frame in self.at_start.every_point])
+        return np.asarray(self.at_start.places)
 
     def corners(self, step: float) -> Floats:
         """Return the times that steps should not pass unseen, s.
