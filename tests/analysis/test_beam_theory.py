@@ -19,8 +19,9 @@ import gbeam as gb
 from gbeam.analysis.accuracy.estimate import cure_of_theory
 from gbeam.analysis.steady.loss import _lost
 from gbeam.analysis.steady.subject import subject_of
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.path import Path
 from gbeam.analysis.system.richer import with_beams
-from gbeam.analysis.system.steady import Drive, Path
 from gbeam.mechanics.theory import theory_of
 
 from ..frame import Frame, cantilever

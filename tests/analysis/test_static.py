@@ -24,7 +24,8 @@ from gbeam import (
 )
 from gbeam.analysis.steady.static import rest_of
 from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.steady import Drive, settled
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.rest import settled
 from gbeam.motion import Base
 
 from .helpers import EA, EI, LENGTH, LINE, strip

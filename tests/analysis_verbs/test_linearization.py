@@ -12,7 +12,8 @@ from gbeam.analysis.control.reduction import balanced_truncation, modal_truncati
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.static import static
 from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.steady import Drive, placed, settled
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.rest import placed, settled
 from gbeam.motion import Base, Centrifuge, Flight, Hub, constant
 from gbeam.report import text
 from gbeam.results.facts import json_of

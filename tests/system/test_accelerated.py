@@ -8,7 +8,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 import gbeam as gb
-from gbeam.analysis.system.steady import Drive, steady
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.rest import steady
 from gbeam.results.facts import json_of
 
 LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS = 2.0, 0.02, 0.004, 2700.0, 70e9

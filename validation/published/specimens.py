@@ -30,7 +30,8 @@ from gbeam import (
     simulate,
 )
 from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.steady import Drive, settled
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.rest import settled
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base
 from validation.published import hubbeam2009, zhang2020

@@ -13,11 +13,13 @@ from numpy.typing import ArrayLike
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, doubtful, pole_errors, unknown_errors
 from gbeam.analysis.steady.stability import hub_of
 from gbeam.analysis.steady.subject import Subject, subject_of
+from gbeam.analysis.system.drive import Drive, turning_of
 from gbeam.analysis.system.gauges import Strained
 from gbeam.analysis.system.linear import frozen, instabilities, linearize_system, named_acceleration
 from gbeam.analysis.system.point import Point
+from gbeam.analysis.system.rest import placed, undeformed
 from gbeam.analysis.system.richer import judged_bodies
-from gbeam.analysis.system.steady import Drive, SteadySystem, placed, turning_of, undeformed
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
 from gbeam.arrays.types import Floats

@@ -14,8 +14,10 @@ from gbeam.analysis.response.posed import pose, prepared
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
+from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.histories import deflection
-from gbeam.analysis.system.steady import Drive, SteadySystem, steady
+from gbeam.analysis.system.rest import steady
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.outline import ends_of
+from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.steady import Drive, steady
+from gbeam.analysis.system.rest import steady
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.system.steady import Drive, steady
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.rest import steady
 from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients

@@ -14,6 +14,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described
 from gbeam.analysis.accuracy.estimate import LIMIT, MORE_SHAPES, percent, wrong_by
+from gbeam.analysis.system.rest import transfer
 from gbeam.analysis.system.richer import (
     Directions,
     coarser,
@@ -124,7 +125,7 @@ class Richer:
             if richer is None:
                 return none
             try:
-                other = state.richer(richer.model)
+                other = transfer(state, richer.model)
                 moving = other.vibrations(gyroscopic=gyroscopic)
             except (ComputationError, np.linalg.LinAlgError):
                 return none
@@ -159,7 +160,7 @@ class Richer:
             return ByTheory(np.full(k, np.nan), "", ())
         models, plates = self.by_theories(point.system, point)
         try:
-            states = [point.richer(model) for model in models]
+            states = [transfer(point, model) for model in models]
             (slender, shape), (thick, deep), (plated, flat) = (
                 _oscillating(state, gyroscopic=gyroscopic) for state in states
             )

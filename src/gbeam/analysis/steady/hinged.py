@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.steady import Drive, steady, undeformed
+from gbeam.analysis.system.rest import steady, undeformed
 from gbeam.errors import ComputationError
 from gbeam.mechanics.tree.system import System
 

@@ -13,6 +13,7 @@ from gbeam.analysis.accuracy.estimate import MORE_SHAPES, ROUGH_MESH
 from gbeam.analysis.steady.frequency_errors import NO_REST, More, Richer
 from gbeam.analysis.system.closed_loop import ROUNDING, Loops
 from gbeam.analysis.system.linear import frozen
+from gbeam.analysis.system.rest import transfer
 from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats, Indices
@@ -66,7 +67,7 @@ class JudgedLoops:
 
     def _around(self, state: SteadySystem, model: More) -> Other:
         """The loops around another model, about its state under the same drives."""
-        other, count = state.richer(model.model), len(state.names)
+        other, count = transfer(state, model.model), len(state.names)
         first = np.array([other.names.index(model.renamed.get(name, name)) for name in state.names], dtype=int)
         of_laws = np.arange(2 * count, len(self.loops.closed.a)) + 2 * (len(other.names) - count)  # and of commands
         return Other(self.loops.around(other), np.concatenate([first, first + len(other.names), of_laws]))

@@ -14,8 +14,10 @@ from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, not_known, pe
 from gbeam.analysis.steady.frequency_errors import Richer, among
 from gbeam.analysis.steady.subject import Subject
 from gbeam.analysis.system.linear import instabilities
+from gbeam.analysis.system.path import Path
+from gbeam.analysis.system.rest import transfer
 from gbeam.analysis.system.richer import judged_bodies, left_unjudged
-from gbeam.analysis.system.steady import Path, SteadySystem, open_loops
+from gbeam.analysis.system.steady import SteadySystem, open_loops
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.plausibility import input_warnings
@@ -169,7 +171,7 @@ def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
 def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
     """Causes of the beam theory's error, in words, by the shape with the least stiffness; "" without equilibrium."""
     try:
-        slender, thick = (point.richer(model) for model in models[:2])
+        slender, thick = (transfer(point, model) for model in models[:2])
     except ComputationError:
         return ""
     stiffness, mass = symmetric(slender.linear.stiffness), symmetric(slender.linear.mass)

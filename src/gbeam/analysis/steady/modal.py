@@ -13,8 +13,9 @@ from gbeam.analysis.outline import assembly_of, outline_in_modes
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, unknown_errors
 from gbeam.analysis.steady.subject import Subject, directions_of, edges_of, subject_of
 from gbeam.analysis.system.linear import framed, instabilities, largest_component
+from gbeam.analysis.system.rest import settled
 from gbeam.analysis.system.richer import judged_bodies
-from gbeam.analysis.system.steady import SteadySystem, settled
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure

@@ -15,16 +15,8 @@ import numpy as np
 
 from gbeam.analysis.steady.loss import doubtful_loss, first_loss_along, judged, with_frequencies
 from gbeam.analysis.steady.subject import Subject, subject_of
-from gbeam.analysis.system.steady import (
-    Drive,
-    Path,
-    loaded,
-    pushed,
-    refuse_changing,
-    share_of_loads,
-    turning_at,
-    turning_of,
-)
+from gbeam.analysis.system.drive import Drive, loaded, pushed, turning_at, turning_of
+from gbeam.analysis.system.path import Path, refuse_changing, share_of_loads
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed

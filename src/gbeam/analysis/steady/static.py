@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from operator import itemgetter
 from typing import Any
 
@@ -13,9 +14,11 @@ from gbeam.analysis.accuracy.estimate import LIMIT, not_known
 from gbeam.analysis.outline import assembly_of, outline_of
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.accuracy import FAR, doubts, system_errors
+from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.histories import ROUNDING, carried, histories, loads_of
+from gbeam.analysis.system.rest import settled, standing, transfer
 from gbeam.analysis.system.richer import theories_of, with_beams
-from gbeam.analysis.system.steady import Drive, SteadySystem, settled
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
@@ -42,8 +45,10 @@ def stepless(system: System) -> dict[Quantity, float]:
 
 def rest_errors(state: SteadySystem, start: Floats, *, stable: bool) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of an equilibrium, stable or not, whose points (p, 3) begin at a `start`, and warnings."""
-    system, solution = state.system, state.standing(state.system)
-    errors, off_axis = system_errors(lambda _: solution, state.standing, stepless(system), start=start, tolerance=LIMIT)
+    system, solution = state.system, standing(state, state.system)
+    errors, off_axis = system_errors(
+        lambda _: solution, partial(standing, state), stepless(system), start=start, tolerance=LIMIT
+    )
     errors = replace(errors, note=LOST) if FAR in errors.note else errors
     return errors, (*doubts(errors, LIMIT), *off_axis, *(_sideways(state) if stable and errors.note != LOST else ()))
 
@@ -55,7 +60,7 @@ def _sideways(state: SteadySystem) -> tuple[str, ...]:
         return ()
     thick = with_beams(state.system, {name: theory.thick for name, theory in theories.items()})
     try:
-        if state.richer(thick).stable:
+        if transfer(state, thick).stable:
             return ()
     except (ComputationError, np.linalg.LinAlgError):
         pass
@@ -133,7 +138,7 @@ def _pushed(motion: Motion | None, time: float, acceleration: Numbers) -> Drive:
 
 def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
     """Describe a system at rest in a steady state: places, efforts and loads, with errors and warnings."""
-    system, point, solution = state.system, state.point, state.standing(state.system)
+    system, point, solution = state.system, state.point, standing(state, state.system)
     inputs = solution.inputs(system, None)
     (begun, _), (resting, _) = (
         histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
@@ -171,7 +176,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
 def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[str, BodyRest]:
     """Describe the bodies that deform, and rigid specimens, in a steady state, by name."""
     system, point, time = state.system, state.point, np.array([state.drive.time])
-    inputs = state.standing(system).inputs(system, None)
+    inputs = standing(state, system).inputs(system, None)
     moving = system.tree.motion(point.y[None], point.yd[None], point.ydd[None], inputs)
     acting = system.tree.demanded(moving, inputs)[2]
     environment = "rest" if subject.motion is None else subject.motion.kind

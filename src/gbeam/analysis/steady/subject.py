@@ -9,7 +9,8 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import BEAM
 from gbeam.analysis.steady.hinged import turned_by_effort
-from gbeam.analysis.system.steady import Drive, SteadySystem, open_loops
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.steady import SteadySystem, open_loops
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import bend, bent_far, input_warnings

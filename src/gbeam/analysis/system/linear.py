@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.gauges import Strained, read_signals
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.steady import Drive, SteadySystem, beginning, settled
+from gbeam.analysis.system.rest import beginning, settled
+from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.equations import Inputs

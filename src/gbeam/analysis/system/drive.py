@@ -1,0 +1,103 @@
+"""Drives of a system in a steady state: what turns at which rate, under which loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gbeam.errors import InputError
+from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.steps import turned_on
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.hub import Hub
+from gbeam.motion.protocol import Motion
+from gbeam.results.parts import Base
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Drives of a system in a steady state: profiles and motion of the ground at a time, or a frozen motion `base` of
+    the ground, beside gravity; forces and loads times a factor; a coordinate, or the hub below where none is named,
+    turns at a rate rad/s that changes by `faster` rad/s², and has turned by an angle.
+    """
+
+    motion: Motion | None = None
+    time: float = 0.0
+    coordinate: str = ""
+    rate: float | None = None
+    turn: float = 0.0
+    factor: float = 1.0
+    base: Base | None = None
+    faster: float = 0.0
+
+    def inputs(self, system: System) -> Inputs:
+        """Inputs of a system's tree; a coordinate that turns without being prescribed is added as the last of these."""
+        hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
+        inputs, base = system.inputs(np.asarray(float(self.time)), None if hub_turns else self.motion), self.base
+        if hub_turns:
+            base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
+        if base is not None:
+            ground = inputs.ground
+            a = base.a_WO_B if hub_turns else base.a_WO_B + ground.a
+            inputs = replace(inputs, ground=replace(ground, w=base.w_WB_B, a=a, alpha=base.alpha_WB_B))
+        if self.factor != 1.0:
+            loads = tuple(None if each is None else self.factor * each for each in inputs.loads)
+            wrenches = None if inputs.wrenches is None else self.factor * inputs.wrenches
+            inputs = replace(inputs, loads=loads, wrenches=wrenches)
+        prescribed = np.zeros((3, 0)) if inputs.prescribed is None else np.array(inputs.prescribed)
+        if self.coordinate and self.rate is not None:
+            k = system.coordinates.index(self.coordinate)
+            if k not in system.tree.fixed:
+                prescribed = np.append(prescribed, [[system.start[0][k]], [0.0], [0.0]], axis=1)
+            column = system.tree.fixed.index(k) if k in system.tree.fixed else -1
+            prescribed[1:, column] = self.rate, self.faster
+        if self.turn:
+            # All prescribed coordinates go on for as long as the fastest one takes to turn so far.
+            fastest = np.abs(np.append(prescribed[1], self.rate or 0.0)).max()
+            before = prescribed.copy()
+            prescribed[0] += prescribed[1] * self.turn / fastest
+            for column, k in enumerate(system.tree.fixed):
+                if system.coordinates[k].endswith(".e0"):  # the first of four Euler parameters
+                    euler = slice(column, column + 4)
+                    prescribed[:, euler] = turned_on(before[:, euler], self.turn / fastest)
+        return replace(inputs, prescribed=prescribed if prescribed.size else None)
+
+
+def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
+    """Name of the coordinate that turns: `turning`, or the only prescribed angle, or the only angle; "" for a hub."""
+    angles = [
+        f"{name}.{each}"
+        for name, joint in system.joints.items()
+        for each in joint.coordinates
+        if each.startswith("angle")
+    ]
+    if turning is None and isinstance(motion, Hub):
+        return ""
+    if not angles:
+        fix = "hold a body by a revolute joint, whose rate is raised, or let the ground move as a hub"
+        raise InputError("joints", "have no angle that turns", fix)
+    if turning is not None:
+        if turning not in angles:
+            fix = f"choose from {', '.join(angles)}"
+            raise InputError("turning", f"is {turning!r}, which is no angle of a joint", fix)
+        return turning
+    choices = [each for each in angles if system.coordinates.index(each) in system.tree.fixed] or angles
+    if len(choices) != 1:
+        raise InputError("turning", "is missing", f"say which angle turns: {', '.join(choices)}")
+    return choices[0]
+
+
+def turning_at(drive: Drive, value: float) -> Drive:
+    """Return drives whose coordinate turns at a rate, rad/s."""
+    return replace(drive, rate=value)
+
+
+def loaded(drive: Drive, value: float) -> Drive:
+    """Return drives with loads and forces times a factor."""
+    return replace(drive, factor=value)
+
+
+def pushed(drive: Drive, value: float) -> Drive:
+    """Return drives whose ground is accelerated along its x axis, m/s²."""
+    return replace(drive, base=Base(np.array([value, 0.0, 0.0]), np.zeros(3), np.zeros(3)))

@@ -1,0 +1,226 @@
+"""Steady states of a system, found from where its joints begin, or given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.initial import Initial
+from gbeam.analysis.system.point import (
+    NEAR,
+    Point,
+    bends_back,
+    followed,
+    relaxed,
+    rested,
+    started,
+)
+from gbeam.analysis.system.solution import Solution
+from gbeam.analysis.system.steady import SteadySystem, release
+from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Floats
+from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.tree.equations import Inputs, Tree
+from gbeam.mechanics.tree.joints import SPIN
+from gbeam.mechanics.tree.linear import is_linear
+from gbeam.mechanics.tree.signal_names import unit_of_effort
+from gbeam.mechanics.tree.system import System
+
+PREDICTED = 1e-3  # of the coordinates: a state so near to where those of lower drives lead has not left their path
+CORRECTIONS, CLOSE = 50, 1e-12  # of joints beside bodies that are held: their number, and m or rad
+
+
+def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
+    """System in equilibrium relative to what turns, whose coordinate is free, under the effort that it needs, unless
+    `held`. The search begins at coordinates `start`, by default those of the joints. Where it ends nowhere, or far from
+    there in a state that is unstable, the system goes from there down its forces, to one that is stable if it can.
+    """
+    state = _branch(system, drive, system.start[0] if start is None else start)
+    if state.accelerated and state.changing:
+        names = " and ".join(each.coordinate for each in state.accelerated)
+        problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
+        raise ComputationError("no equilibrium", problem)
+    return release(state, held=held)
+
+
+def settled(system: System, drive: Drive) -> SteadySystem:
+    """System in equilibrium as of :func:`steady`, without friction; where it has none, or would not stay there, joints
+    without a spring are held where they begin, if their friction suffices.
+    """
+    state, lost, stuck = None, ComputationError("no equilibrium", ""), _rubbing(system)
+    try:
+        state = steady(system, drive)
+    except ComputationError as error:
+        lost = error
+    while stuck and (state is None or state.grows):
+        try:
+            held = steady(_holding(system, stuck), drive)
+        except ComputationError:
+            break
+        point, efforts = held.point, drive.inputs(system).efforts
+        force, _ = point.tree.rows(point.y, point.yd, point.ydd, point.inputs)
+        force = np.abs(force - (0.0 if efforts is None else efforts))
+        shares, words = dict[str, float](), list[str]()
+        for name, kinds in stuck.items():
+            for kind in kinds:
+                size, friction = force[system.row(f"{name}.{kind}")], system.joints[name].frictions[kind]
+                shares[name] = max(shares.get(name, 0.0), size / friction)
+                share = f"{size:.4g} of its {friction:.4g} {unit_of_effort(kind)}"
+                held_by = f"nothing but friction holds {name}.{kind}, where it begins, with {share}"
+                words.append(f"{held_by}; small departures are those with it held")
+        worst = max(shares, key=lambda name: shares[name])
+        if shares[worst] <= 1:
+            return replace(held, stuck=tuple(words))
+        del stuck[worst]
+    if state is None:
+        raise lost
+    return state
+
+
+def _holding(system: System, stuck: Mapping[str, Sequence[str]]) -> System:
+    """The system with rates, by joint, prescribed to be zero, and no efforts along them."""
+    joints = dict(system.joints)
+    for name, kinds in stuck.items():
+        joint: Any = joints[name]
+        efforts = {kind: effort for kind, effort in joint.efforts.items() if kind not in kinds}
+        joints[name] = replace(joint, rate=joint.rates | dict.fromkeys(kinds, 0.0), effort=efforts)
+    return replace(system, joints=joints)
+
+
+def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
+    """Rates, by joint, that friction alone may hold: no spring, no prescribed rate and no controller has them."""
+    driven = {each for controller in system.controllers.values() for each in controller.drive}
+    rubbing = {}
+    for name, joint in system.joints.items():
+        sprung = dict(zip(joint.rate_names, joint.holder.stiffness, strict=True))
+        kinds = [
+            kind
+            for kind in joint.frictions
+            if kind not in joint.rates and not sprung[kind] and f"{name}.{kind}" not in driven
+        ]
+        if not {*SPIN} <= {*kinds}:  # a ball is held about all axes or none
+            kinds = [kind for kind in kinds if kind not in SPIN]
+        if kinds:
+            rubbing[name] = tuple(kinds)
+    return rubbing
+
+
+def beginning(system: System, drive: Drive) -> SteadySystem:
+    """System in motion as it starts, its bodies bent as in inertia relief, so that none of them is shaken."""
+    return SteadySystem(system, drive, started(system, drive.motion, drive.time, Initial("relief")), begins=True)
+
+
+def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
+    """The equilibrium of :func:`steady`, what turns held."""
+    tree, inputs, state, lost = held_tree(system, drive), drive.inputs(system), None, None
+    only_bodies = len(tree.free) == sum(link.body.size for link in tree.links)
+    try:
+        # Where nothing but bodies gives way, a state that is not near is found along the path of growing drives.
+        state = SteadySystem(system, drive, rested(system, tree, inputs, start, nearby=only_bodies))
+        if is_linear(tree):
+            return state
+    except ComputationError as error:
+        lost = error
+    if state is None:
+        off_path = only_bodies and not is_linear(tree)
+    else:
+        y = state.point.y
+        apart = np.abs(y - start[tree.free]).max(initial=0.0)
+        off_path = apart > PREDICTED * np.abs(y).max(initial=0.0) and not bends_back(tree, state.point.slopes()[1])
+    if off_path:
+        try:
+            state = SteadySystem(system, drive, followed(system, tree, inputs))
+        except ComputationError as error:
+            if only_bodies:
+                raise error from None
+    if state is not None and (state.moved(start) <= NEAR or not state.grows):
+        return state
+    if only_bodies:
+        raise lost or ComputationError("no equilibrium", "")
+    with suppress(ComputationError, np.linalg.LinAlgError):
+        other = SteadySystem(system, drive, relaxed(system, tree, inputs, start))
+        if state is None or not other.grows:
+            return other
+    if state is None:
+        raise lost or ComputationError("no equilibrium", "")
+    return state
+
+
+def held_tree(system: System, drive: Drive) -> Tree:
+    """The system's tree with the coordinate that turns among the prescribed ones."""
+    tree = system.tree
+    k = system.coordinates.index(drive.coordinate) if drive.coordinate else -1
+    return tree if k < 0 or k in tree.fixed else replace(tree, fixed=(*tree.fixed, k))
+
+
+def undeformed(system: System) -> SteadySystem:
+    """System at its start, bodies undeformed and all at rest, as nothing need hold it, on ground at rest."""
+    y, still = system.start[0][system.tree.free], np.zeros(len(system.tree.free))
+    return SteadySystem(system, Drive(), Point(system.tree, y, still, still, system.inputs(np.zeros(()))))
+
+
+def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) -> SteadySystem:
+    """System whose bodies are held at coordinates and rates (n,), by default those of :func:`steady`, and accelerate as
+    their equations say; joints are where the drive and their springs hold them.
+    """
+    if q is None and qd is None:
+        return steady(system, drive)
+    if q is None:
+        state = steady(system, drive)
+    else:
+        tree, inputs = held_tree(system, drive), drive.inputs(system)
+        still = np.zeros(len(tree.free))
+        point = Point(tree, system.start[0][tree.free], still, still, inputs)
+        state = release(SteadySystem(system, drive, point), held=False)
+    point, names = state.point, [system.coordinates[k] for k in state.point.tree.free]
+    bent = np.array([".q" in name for name in names])
+    y, yd = np.array(point.y), np.array(point.yd)
+    y[bent] = y[bent] if q is None else q
+    if q is not None and not drive.coordinate and not bent.all():
+        joints = Point(point.tree, y, yd, point.ydd, point.inputs)
+        for _ in range(CORRECTIONS):
+            left, k, *_ = joints.slopes()
+            change = np.zeros_like(left)
+            change[~bent] = np.linalg.lstsq(k[~bent][:, ~bent], -left[~bent], rcond=None)[0]
+            joints = replace(joints, y=joints.y + change)
+            if np.abs(change).max() <= CLOSE:
+                break
+        y = joints.y
+    yd[bent] = yd[bent] if qd is None else qd
+    left, _, _, m = Point(point.tree, y, yd, np.where(bent, 0.0, point.ydd), point.inputs).slopes()
+    ydd = np.array(point.ydd)
+    ydd[bent] = np.linalg.solve(m[bent][:, bent], -left[bent])
+    return replace(state, point=replace(point, y=y, yd=yd, ydd=ydd))
+
+
+def transfer(state: SteadySystem, system: System) -> SteadySystem:
+    """Transfer a state to a system with richer bodies, under the same drives; ComputationError if it has none."""
+    try:
+        if state.begins:
+            return beginning(system, state.drive)
+        # Joints begin where they rest in the state: there may be several places.
+        resting = zip(state.system.coordinates, state.coordinates, strict=True)
+        joints = {name: value for name, value in resting if ".q" not in name}
+        pairs = zip(system.coordinates, system.start[0], strict=True)
+        return steady(system, state.drive, start=np.array([joints.get(*pair) for pair in pairs]))
+    except InputError as error:
+        raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
+
+
+def standing(state: SteadySystem, of: System) -> Solution:
+    """Solution, of one time, of another system in the state of one, what turns free as in that system."""
+    drive, system = state.drive, state.system
+    moved = state if of is system else transfer(state, of)
+    if drive.coordinate and system.coordinates.index(drive.coordinate) not in system.tree.fixed:
+        drive = replace(drive, coordinate="", rate=None)
+    point = release(moved, held=False).point
+
+    def inputs(system: System, _: Any) -> Inputs:
+        return each_leaf(lambda leaf: leaf[None], drive.inputs(system))
+
+    return Solution(of, point.standing(drive.time), inputs)
