@@ -3,7 +3,7 @@
 from gbeam.analysis.case import Case as Case
 from gbeam.analysis.control.linearization import linearize as linearize
 from gbeam.analysis.control.linearization import nonlinear_system as nonlinear_system
-from gbeam.analysis.control.linearization import surface_gauges as surface_gauges
+from gbeam.analysis.control.outputs import surface_gauges as surface_gauges
 from gbeam.analysis.control.reduction import balanced_truncation as balanced_truncation
 from gbeam.analysis.control.reduction import modal_truncation as modal_truncation
 from gbeam.analysis.control.shaping import shape_command as shape_command

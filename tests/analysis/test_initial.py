@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Hub, Initial, InputError, Response, Structure, modes, simulate, static
-from gbeam.analysis.system.point import started
+from gbeam.analysis.system.start import started
 from gbeam.mechanics.tree.system import System
 
 from ..calling import Answer, gbeam

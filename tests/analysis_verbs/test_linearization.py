@@ -7,7 +7,8 @@ import pytest
 import scipy.io
 
 from gbeam import Beam, Gauge, InputError, Model, Root, assemble
-from gbeam.analysis.control.linearization import linearize, nonlinear_system, outputs_of
+from gbeam.analysis.control.linearization import linearize, nonlinear_system
+from gbeam.analysis.control.outputs import outputs_of
 from gbeam.analysis.control.reduction import balanced_truncation, modal_truncation
 from gbeam.analysis.steady.modal import modes
 from gbeam.analysis.steady.static import static

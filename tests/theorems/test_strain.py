@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.analysis.control.linearization import surface_gauge
+from gbeam.analysis.control.outputs import surface_gauge
 from gbeam.results.errors import FrequencyErrors
 from gbeam.studies.measurement import read_measurement
 

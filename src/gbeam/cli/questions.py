@@ -274,7 +274,7 @@ def linearize(
 
 def _gauges_at(system: System, text: str) -> list[Gauge]:
     """Gauges of one --strain-at: on two faces of a beam at a position, or along the three axes of a solid's point."""
-    from gbeam.analysis.control.linearization import surface_gauges
+    from gbeam.analysis.control.outputs import surface_gauges
     from gbeam.guards.checks import choice, index_of
     from gbeam.results.state_space import Gauge
 

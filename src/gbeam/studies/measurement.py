@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.case import Case
-from gbeam.analysis.control.linearization import surface_gauge
+from gbeam.analysis.control.outputs import surface_gauge
 from gbeam.errors import InputError
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.units import read_quantity

@@ -27,7 +27,8 @@ from gbeam.analysis.response.stepping import (
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.feedback import SystemControllers
 from gbeam.analysis.system.initial import STATE_WORDS, Initial, on_bodies
-from gbeam.analysis.system.point import Point, started, started_traced, unknown_at_start
+from gbeam.analysis.system.point import Point
+from gbeam.analysis.system.start import started, started_traced, unknown_at_start
 from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags, Floats

@@ -19,8 +19,9 @@ from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, deflections, histories, loads_of
-from gbeam.analysis.system.point import Point, unknown_at_start
+from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.solution import Solution
+from gbeam.analysis.system.start import unknown_at_start
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory, masses

@@ -8,10 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.point import (
-    rested_together,
-)
 from gbeam.analysis.system.rest import held_tree, steady
+from gbeam.analysis.system.search import rested_together
 from gbeam.analysis.system.steady import SteadySystem, release
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError

@@ -11,16 +11,10 @@ import numpy as np
 
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.initial import Initial
-from gbeam.analysis.system.point import (
-    NEAR,
-    Point,
-    bends_back,
-    followed,
-    relaxed,
-    rested,
-    started,
-)
+from gbeam.analysis.system.point import Point
+from gbeam.analysis.system.search import NEAR, bends_back, followed, relaxed, rested
 from gbeam.analysis.system.solution import Solution
+from gbeam.analysis.system.start import started
 from gbeam.analysis.system.steady import SteadySystem, release
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats

@@ -10,12 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.point import (
-    NONE,
-    Point,
-    adrift,
-    refuse_massless,
-)
+from gbeam.analysis.system.point import Point, refuse_massless
+from gbeam.analysis.system.search import NONE, adrift
 from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS

@@ -1,0 +1,177 @@
+"""Starts of a run: coordinates at which bodies rest, or are bent, while joints are where they begin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.analysis.system.initial import Initial, on_bodies, rates_of, shape_of
+from gbeam.analysis.system.point import Point, refuse_massless
+from gbeam.analysis.system.search import CLOSE, ITERATIONS, SHORTEST
+from gbeam.arrays.namespace import Array, holds_jax, namespace
+from gbeam.arrays.types import Flags, Floats
+from gbeam.errors import ComputationError
+from gbeam.integrate.equations import accelerations, masses, solved
+from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.signal_names import deforming
+from gbeam.mechanics.tree.system import System
+from gbeam.motion.protocol import Motion
+from gbeam.numerics.series import STEP
+
+
+class Begun(NamedTuple):
+    """Coordinates and accelerations (n,) of a start, and the index of the coordinate that goes on and on where there is
+    none, else −1.
+    """
+
+    q: Array
+    qdd: Array
+    adrift: int = -1
+
+
+def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags, accelerated: Flags) -> Begun:
+    """Start near q, qd (n,) at which the forces on coordinates that are `bent`, which rest there, are in balance, and
+    those on `accelerated` ones are answered by their accelerations; the others are held. NaN where JAX traces it and
+    there is none.
+    """
+    held, traced = ~(bent | accelerated), holds_jax(residual, q, qd, inputs)
+    begun: Array = np.zeros(len(bent))
+    if traced:
+        import jax.numpy as jnp
+
+        q, qd, begun = map(jnp.asarray, (q, qd, begun))  # beside inputs that are traced, NumPy would read them
+
+    def forces(z: Array) -> Array:
+        """Forces left over (..., n); z (..., n) are displacements and accelerations."""
+        left = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
+        return namespace(left).where(held, z, left)
+
+    def left(z: Array, share: Any, first: Array) -> Array:
+        return forces(z) - (1.0 - share) * first
+
+    if traced:
+        from gbeam.mechanics.equations.compiled import root
+
+        z = root(partial(left, first=forces(begun)), begun)
+        return Begun(q + bent * z, accelerated * z)
+    z, reached, stride = begun, 0.0, 1.0
+    while reached < 1.0:
+        share = min(reached + stride, 1.0)
+        wanted = forces if share == 1.0 else partial(left, share=share, first=forces(begun))
+        moved, change, converged = _root_near(wanted, z, bent)
+        if converged:
+            z, reached, stride = moved, share, 2 * stride
+        elif stride > SHORTEST:
+            stride /= 4
+        else:
+            return Begun(q, 0 * begun, int(np.abs(np.nan_to_num(change, nan=np.inf)).argmax()))
+    return Begun(q + bent * z, accelerated * z)
+
+
+@np.errstate(all="ignore")  # corrections may leave all numbers
+def _root_near(left: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
+    """Root of a function near z (n,) by Newton's method, the last correction where `bent`, and True if it converged."""
+    change = z
+    for _ in range(ITERATIONS):
+        values = left(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
+        change = solved(values.imag.T / STEP, -values[0].real)
+        z, change = z + change, np.where(bent, change, 0.0)
+        if np.abs(change).max(initial=0.0) <= CLOSE * (1e-3 + np.abs(z[bent]).max(initial=0.0)):
+            return z, change, True
+    return z, change, False
+
+
+def started(system: System, motion: Motion | None, time: float, initial: Initial) -> Point:
+    """State at the start of the joints, with the accelerations that its forces make. ComputationError where no shape of
+    the bodies is as `initial` says: see :class:`gbeam.Initial`.
+    """
+    tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
+    y, yd = (each[tree.free] for each in system.start)
+    undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
+    refuse_massless(system, undeformed, masses(tree, y[None], yd[None], undeformed.driven())[0])
+    begun, bent, accelerated = _begun(system, inputs, initial)
+    y, yd = begun.q, _moving(system, begun.q, yd, initial)
+    if begun.adrift >= 0:
+        body, fix = system.coordinates[tree.free[begun.adrift]].rpartition(".")[0], 'begin with initial = "undeformed"'
+        raise ComputationError("no equilibrium", f"{body} has no place to rest at the start; {fix}")
+    ydd = begun.qdd
+    if initial.acceleration is not None or initial.moving or not (bent | accelerated).all():  # what was held is let go
+        (ydd,) = accelerations(tree, y[None], yd[None], undeformed.driven())
+    return Point(tree, y, yd, ydd, inputs)
+
+
+def started_traced(system: System, motion: Motion | None, time: float, initial: Initial) -> tuple[Array, Array]:
+    """Coordinates and rates (n,) as `started` has them, of a system that JAX traces; NaN where no shape is at rest."""
+    y = _begun(system, system.inputs(np.asarray(time), motion), initial)[0].q
+    return y, _moving(system, y, system.start[1][system.tree.free], initial)
+
+
+def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Flags, Flags]:
+    """Coordinates and accelerations of a start, and flags (n,) of the coordinates that were bent and accelerated."""
+    tree, moved = system.tree, on_bodies(system.flexible, initial.displaced)
+    y, yd = (each[tree.free] for each in system.start)
+    bent, accelerated = unknown_at_start(system, initial.state)
+    if initial.acceleration is not None:  # joints are held, and what floats deforms, too
+        bodies = [_of_body(system, name).any(axis=0) for name in system.flexible]
+        bent, accelerated = np.any([bent, *bodies], axis=0), np.zeros_like(bent)
+        inputs, yd = _accelerated(inputs, np.asarray(initial.acceleration)), 0 * yd
+    for name, components in moved.items():
+        if components:
+            onto = _of_body(system, name)
+            y = y + shape_of(system.flexible[name], components) @ onto
+            held = ~onto.any(axis=0)
+            bent, accelerated = bent & held, accelerated & held
+    if not (bent | accelerated).any():
+        return Begun(y, 0 * y), bent, accelerated
+    return solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated), bent, accelerated
+
+
+def _of_body(system: System, name: str) -> Floats:
+    """Entries of one (m, n) at the free coordinates that deform a body."""
+    return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.free).astype(float)
+
+
+def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
+    """Rates (n,) of coordinates y, of which the joints' begin with `yd`."""
+    for name, components in on_bodies(system.flexible, initial.moving).items():
+        if components:
+            onto = _of_body(system, name)
+            yd = yd + rates_of(system.flexible[name], onto @ y, components) @ onto
+    return yd
+
+
+def _accelerated(inputs: Inputs, acceleration: Floats) -> Inputs:
+    """Inputs of a ground with an acceleration alone, and joints that rest."""
+    ground, still = inputs.ground, 0 * inputs.ground.w
+    moving = inputs.prescribed
+    return replace(
+        inputs,
+        ground=replace(ground, a=still + acceleration, w=still, alpha=still),
+        prescribed=None if moving is None else moving * np.array([[1.0], [0.0], [0.0]]),
+    )
+
+
+def unknown_at_start(system: System, initial: str) -> tuple[Flags, Flags]:
+    """Flags (n,) of the free coordinates that a start bends and of those that it accelerates; the others are held.
+
+    By `initial` = "equilibrium" joints hold what they move. Springs of a clamp bend as a body does, unless it is said
+    where they begin; springs at the root of a body that deforms let it go, for it has no mass there to be held by. What
+    floats is undeformed.
+    """
+    bent, accelerated = list[bool](), list[bool]()
+    for k in system.tree.free:
+        owner, _, coordinate = system.coordinates[k].rpartition(".")
+        if coordinate.startswith("q"):
+            body, deforms, gives = owner, True, False
+        else:
+            joint = system.joints[owner]
+            body, deforms = joint.body, joint.kind == "fixed" and joint.initial is None and initial == "equilibrium"
+            gives = joint.sprung and body in system.flexible
+        floats = body in system.floating
+        bends = deforms and {"equilibrium": not floats, "undeformed": False, "relief": True}[initial]
+        bent.append(bends)
+        accelerated.append(not bends and (initial != "equilibrium" or floats or gives))
+    return np.array(bent, dtype=bool), np.array(accelerated, dtype=bool)
