@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from gbeam.results.doors import Panels
+from gbeam.results.doors import Panels
 
 
 def to_xarray(result: Any) -> Any:

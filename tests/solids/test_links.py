@@ -11,7 +11,8 @@ import pytest
 
 import gbeam as gb
 from gbeam.solids.elements import stiffness_matrix
-from gbeam.solids.links import WAYS, Linked
+from gbeam.solids.linked import Linked
+from gbeam.solids.links import WAYS
 
 from .bodies import STIFF, block, solid
 

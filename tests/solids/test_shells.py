@@ -12,7 +12,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.solids.elements import chunks, stiffness_matrix
-from gbeam.solids.links import Linked
+from gbeam.solids.linked import Linked
 from gbeam.solids.shape_functions import KINDS as ELEMENTS
 from gbeam.solids.shape_functions import shape_functions
 from validation.codes.calculix_specimens import example as board

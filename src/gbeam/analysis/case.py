@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import InitVar, dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gbeam.analysis.one_body import OneBody, points_of, refuse_no_point, structure_of
 from gbeam.analysis.response.settings import ResponseSettings
@@ -29,10 +29,8 @@ from gbeam.results.criteria import (
     refuse_unknown,
 )
 from gbeam.results.provenance import Provenance, ScenarioText
+from gbeam.results.sensors import Sensor
 from gbeam.structure.beam import Beam
-
-if TYPE_CHECKING:
-    from gbeam.results.sensors import Sensor
 
 
 @kinds(accept={"*": KINDS_OF_LIMITS})

@@ -9,17 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
+from gbeam.mechanics.equations.linear import Bending
+from gbeam.mechanics.structure import Structure
 from gbeam.numerics.sparse import HOLD, factorised, lowest_modes
-
-if TYPE_CHECKING:
-    from gbeam.mechanics.equations.linear import Bending
-    from gbeam.mechanics.structure import Structure
 
 _UNIT, _SPINS = np.eye(3), [*np.eye(3), (0, 1, 1), (1, 0, 1), (1, 1, 0)]
 # Motions of a base as factors (12, 12) of unit loads: accelerations, angular accelerations, and spins.
@@ -31,7 +29,7 @@ MOTIONS = np.stack(
 )
 
 Solve = Callable[[Floats], Floats]
-BendingOf = Callable[[Floats, Floats, Solve], "Bending"]
+BendingOf = Callable[[Floats, Floats, Solve], Bending]
 NEGATIVE = 1e-6  # of the largest: a mass that is less than none, and no rounding
 ZERO = 1e-10  # of the largest of the eigenvalues computed: a smaller one is that of a motion without strain
 ALIKE = 1e-9  # of its energy: what is left of a static answer beside the modes and the others adds nothing

@@ -5,14 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gbeam.report.blocks import FIGURES, Block, Facts, Items, Place, Section, Sentence, in_words, quantities
 from gbeam.report.words import as_json, plain
-from gbeam.results.result import each_once
-
-if TYPE_CHECKING:
-    from gbeam.results.result import Result
+from gbeam.results.result import Result, each_once
 
 __all__ = ["as_json", "blocks_of", "lines_of", "remarks_of", "text"]
 # Kinds by the module that has a function of their name; of others every quantity is listed.

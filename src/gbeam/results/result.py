@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
+from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Complex as Complex
@@ -16,9 +16,7 @@ from gbeam.results.declared import document, fact
 from gbeam.results.doors import Panels, doors
 from gbeam.results.part import Part as Part
 from gbeam.results.part import brief as brief
-
-if TYPE_CHECKING:
-    from gbeam.results.provenance import Provenance
+from gbeam.results.provenance import Provenance
 
 
 def each_once(sentences: Mapping[str, Iterable[str]]) -> tuple[str, ...]:

@@ -12,7 +12,8 @@ from gbeam.guards.arguments import typed
 from gbeam.results.criteria import RULES, Acceptance
 from gbeam.scenario import schema
 from gbeam.scenario.build_beam import beam_of, model_of
-from gbeam.scenario.load import Collector, load, loads, placed, provenance, text_of
+from gbeam.scenario.collector import Collector
+from gbeam.scenario.load import load, loads, placed, provenance, text_of
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case

@@ -10,11 +10,11 @@ from gbeam.errors import InputError, naming
 from gbeam.guards.limits import ENTRIES
 from gbeam.guards.units import UnitError, quantity
 from gbeam.scenario import schema
+from gbeam.scenario.collector import Collector
 
 if TYPE_CHECKING:
     from gbeam.io.table import Table
     from gbeam.mechanics.models import Model
-    from gbeam.scenario.load import Collector
     from gbeam.structure.attachments import Load
     from gbeam.structure.beam import Beam
     from gbeam.structure.line import Line

@@ -15,12 +15,11 @@ from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, Recording
 from gbeam.motion.records.rest import Rest
 from gbeam.scenario import schema
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.profile import PartOfRecord, Record
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
-
-    from gbeam.scenario.load import Collector
 
 
 def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:

@@ -13,7 +13,7 @@ from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.system import PointForce, System
 from gbeam.scenario.bodies import OF_TABLE
 from gbeam.scenario.build_motion import components, profile_of
-from gbeam.scenario.load import Collector
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema import system as schema
 from gbeam.scenario.schema.fields import fields_of
 from gbeam.scenario.schema.profile import Smoothed

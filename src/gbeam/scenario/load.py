@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from copy import deepcopy
 from dataclasses import replace
 from functools import lru_cache
@@ -22,13 +22,12 @@ from gbeam.scenario.schema.fields import files
 from gbeam.scenario.schema.profile import Record
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
-from gbeam.scenario.text.source import Source, parse, read_text
+from gbeam.scenario.text.source import Mark, Source, parse, read_text
 from gbeam.scenario.values import Distribution, find_distributions, from_table, parse_path, path_text
 
 if TYPE_CHECKING:
     from gbeam.results.provenance import Provenance, RecordFile, ScenarioText
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
-    from gbeam.scenario.text.source import Mark
 
     AnyScenario: TypeAlias = Scenario | SpecimenScenario | SystemScenario
 
@@ -83,24 +82,6 @@ def _record(motion: str, file: str) -> RecordFile:
     content = Path(file).read_bytes()
     small = len(content) <= EMBEDDED
     return RecordFile(motion, os.fspath(file), hashlib.sha256(content).hexdigest(), content if small else None)
-
-
-Built = TypeVar("Built")
-
-
-class Collector:
-    """Collects in `errors` the InputErrors of the constructors that it attempts."""
-
-    def __init__(self) -> None:
-        self.errors: list[InputError] = []
-
-    def attempt(self, where: str, make: Callable[..., Built], *args: Any, **options: Any) -> Built | None:
-        """Return ``make(*args, **options)``, or None if it raises an InputError, which is kept, placed at `where`."""
-        try:
-            return make(*args, **options)
-        except InputError as error:
-            self.errors.append(error.within(where))
-            return None
 
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, SMALLEST, existing, parse_json, refuse_large_file
 from gbeam.io.hdf5 import RECORD
-from gbeam.io.netcdf import FACTS
+from gbeam.io.netcdf import FACTS, Stored
 from gbeam.progress import Progress
 from gbeam.results.provenance import Provenance, present
 from gbeam.results.study import Difference, Reproduction
@@ -26,9 +26,6 @@ from gbeam.scenario.build import build
 from gbeam.scenario.load import fingerprint, loads
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import parse
-
-if TYPE_CHECKING:
-    from gbeam.io.netcdf import Stored
 
 # Names, in files and in JSON, of estimates of errors, which are shares where no unit is said.
 _SHARE = re.compile(r"(^|[@./])(error_\w+|errors?|total_error|run_error)($|[.])")

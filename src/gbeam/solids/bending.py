@@ -9,7 +9,6 @@ is small in a stout solid, and in a thin one of the size of its stiffness.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,10 +16,8 @@ from gbeam.arrays.types import Floats
 from gbeam.mechanics.equations.linear import Bending
 from gbeam.numerics.sparse import add_to_rows
 from gbeam.solids.elements import FEW, TENSOR, chunks, geometric_stiffness, near
-
-if TYPE_CHECKING:
-    from gbeam.solids.links import Linked
-    from gbeam.solids.mesh import SolidMesh
+from gbeam.solids.geometry import Mesh
+from gbeam.solids.linked import Linked
 
 SOFT = 2  # modes that bend a solid far: those of a rod of any section
 ROWS, COLUMNS = np.array([[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]])  # of strains
@@ -28,7 +25,7 @@ REACH = 3.0  # times the highest frequency of the modes: shapes of higher ones f
 
 
 def bending(
-    mesh: SolidMesh,
+    mesh: Mesh,
     linked: Linked,
     modes: int,
     stations: Callable[[Floats], Floats],
@@ -74,7 +71,7 @@ def bending(
     return Bending(basis, drawn, bent, second, places)
 
 
-def _of_higher_order(mesh: SolidMesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
+def _of_higher_order(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
     """Forces of second order (k, 3, b, r) on the nodes, by shapes (k, 3, r) that the solid moves in while the first b
     bend it, and the stiffness (b, b, r, r) by the strains of second order of those.
     """

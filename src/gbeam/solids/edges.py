@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.solids.elements import Block
+from gbeam.solids.geometry import Mesh
 from gbeam.solids.shape_functions import jacobians, reference, shapes_at
 from gbeam.solids.stress import FACES, corners_of, on_face, outer_faces
-
-if TYPE_CHECKING:
-    from gbeam.solids.mesh import SolidMesh
 
 SHARP = np.cos(np.radians(30.0))  # between the normals of two faces; in a fillet's elements they are nearer
 
 
-def without_limit(mesh: SolidMesh) -> Flags:
+def without_limit(mesh: Mesh) -> Flags:
     """Flags (k,) of nodes where stress has no limit: on the edges of clamps and rigid links, where its growth is slow,
     and of the elements at re-entrant edges.
     """
@@ -27,7 +23,7 @@ def without_limit(mesh: SolidMesh) -> Flags:
     return flags
 
 
-def _edges_of_held(mesh: SolidMesh) -> Flags:
+def _edges_of_held(mesh: Mesh) -> Flags:
     """Flags (k,) of nodes that a clamp or a rigid link holds, on outer faces that it does not hold as a whole."""
     flags = np.zeros(len(mesh.points), dtype=bool)
     rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
@@ -40,7 +36,7 @@ def _edges_of_held(mesh: SolidMesh) -> Flags:
     return flags
 
 
-def _re_entrant(mesh: SolidMesh) -> Flags:
+def _re_entrant(mesh: Mesh) -> Flags:
     """Flags (k,) of nodes on edges that two outer faces meet at from outside, at an angle that no fillet has."""
     parts = [_edges_of_faces(mesh, *each) for each in outer_faces(mesh)]
     ends, normals, centres = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -56,7 +52,7 @@ def _re_entrant(mesh: SolidMesh) -> Flags:
     return flags
 
 
-def _edges_of_faces(mesh: SolidMesh, block: Block, face: int, elements: Indices) -> tuple[Indices, Floats, Floats]:
+def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> tuple[Indices, Floats, Floats]:
     """Edges of one face of some elements: nodes (m, 3) at its ends, ascending, and in its middle, or again at an end;
     outward normals at both ends (m, 2, 3), and the middle of the face (m, 3).
     """

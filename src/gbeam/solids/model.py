@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,11 +17,9 @@ from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
 from gbeam.solids.edges import without_limit
 from gbeam.solids.elements import mass_matrix
+from gbeam.solids.geometry import Mesh
 from gbeam.solids.plausibility import locking
 from gbeam.solids.stress import NodalStress, solid_stress
-
-if TYPE_CHECKING:
-    from gbeam.solids.mesh import SolidMesh
 
 MOST = 0.1  # of the nodes: where more would be left out, the largest stress is not known
 COARSER = 2**0.5  # times as large elements, from where an error of second order is less than the difference
@@ -34,7 +31,7 @@ class SolidModel(Value):
 
     Parameters
     ----------
-    mesh : SolidMesh
+    mesh : Mesh
     structure : Structure
         That analyses take; its coordinates are modes of unit modal mass, ascending in frequency.
     frequency : (m,) natural frequencies of the modes, Hz
@@ -49,7 +46,7 @@ class SolidModel(Value):
     Structure(solid, 16 coordinates, 0.215 kg)
     """
 
-    mesh: SolidMesh
+    mesh: Mesh
     structure: Structure
     frequency: Floats
 
@@ -194,10 +191,10 @@ def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:
     return nearest
 
 
-def hardly_coarser(coarser: SolidMesh, finer: SolidMesh) -> tuple[str, ...]:
+def hardly_coarser(coarser: Mesh, finer: Mesh) -> tuple[str, ...]:
     """Warn of a coarser mesh whose elements are hardly larger in any direction."""
 
-    def size(mesh: SolidMesh) -> Floats:
+    def size(mesh: Mesh) -> Floats:
         boxes = [np.ptp(mesh.points[block.nodes], axis=1) for block in mesh.blocks]
         return np.asarray(np.concatenate(boxes).mean(axis=0))
 

@@ -1,155 +1,132 @@
-"""Masses, rigid links and springs of a file among those of a solid."""
+"""Mesh of a file in the axes of the base: its points, and elements, groups and places among them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats, Indices
-from gbeam.mechanics.tree.system import RigidBody
-from gbeam.solids.cards import Cards, refused
-from gbeam.solids.links import Links, coupling
+from gbeam.arrays.types import Floats, Indices, Numbers
+from gbeam.errors import InputError
+from gbeam.guards.checks import positive
+from gbeam.numerics.sparse import refuse_cost
+from gbeam.solids.elements import Block
+from gbeam.solids.foreign import Elements, assigned, elements_of, nodes_in, numbers_of, refuse_missing
+from gbeam.solids.plausibility import refuse_far
+from gbeam.solids.shells import points_of, refuse_oblique
+from gbeam.structure.attachments import TIP, checked_name
+from gbeam.structure.material import Material, Orthotropic
 
-APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one place
+MIDDLE = 1e-6  # of half of the thickness of a shell: a place that is nearer to the middle is on neither side
 
 
 @dataclass(frozen=True)
 class Placed:
-    """Nodes of a file: places (f, 3) m in base axes, and rotation to these from the file's; points (k, 3) of the solid,
-    the indices (k,) of the nodes for which they stand, and flags (k,) of those that follow the base.
+    """Mesh of a file, as of meshio: places (f, 3) m of its nodes in base axes, and rotation to these from the file's;
+    points (k, 3) of the solid, and the indices (k,) of the nodes for which they stand; elements, block by block, and
+    their points.
     """
 
+    mesh: Any
     places: Floats
     rotation: Floats
     points: Floats
     numbers: Indices
-    clamped: Any
+    elements: list[Elements]
+    points_of: list[Indices]
+
+    @classmethod
+    def of(cls, mesh: Any, size: float, thickness: Any, *, origin: Numbers, turn: Numbers, scale: Numbers) -> Placed:
+        """Place a mesh in a unit of a `size`, m: scaled, moved from the origin, turned by a rotation vector."""
+        from scipy.spatial.transform import Rotation
+
+        places = np.asarray(mesh.points, dtype=float)
+        if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
+            raise InputError("mesh", f"has points of shape {places.shape}, or not finite", "give x, y and z of each")
+        refuse_far("mesh", places, size)
+        elements = elements_of(mesh, thickness)
+        used = np.unique(np.concatenate([block.nodes.ravel() for block in elements]))
+        refuse_cost("mesh", 3 * len(used) * (1 if thickness is None else 2))
+        refuse_missing(mesh, elements)
+        for i, factor in enumerate(scale):
+            positive(f"scale[{i}]", factor, "")
+        rotation = Rotation.from_rotvec(turn).as_matrix()
+        middles = (size * places * np.asarray(scale, dtype=float) - np.asarray(origin, dtype=float)) @ rotation.T
+        points, numbers, of_elements = points_of(middles, elements)
+        return cls(mesh, middles, rotation, points, numbers, elements, of_elements)
+
+    @property
+    def middles(self) -> Floats:
+        """Places (k, 3) of the nodes for which the points stand: of shells on their middle surface."""
+        return self.places[self.numbers]
+
+    def group(self, where: str, name: str) -> Indices:
+        """Points of a group of nodes or elements; an InputError about `where` refuses one without."""
+        points = np.flatnonzero(np.isin(self.numbers, nodes_in(self.mesh, where, name)))
+        if not len(points):
+            raise InputError(where, f"is {name!r}, which has no node of a solid element or shell", "merge their nodes")
+        return points
+
+    def nearest(self, name: str, place: Any) -> int:
+        """Point nearest to a place, or of a group's only node; of a shell on the face on the place's side, or the upper
+        one.
+        """
+        where = f"points.{name}"
+        if name != TIP:
+            try:
+                checked_name(name)
+            except InputError as error:
+                raise error.within("points") from None
+        middles = self.middles
+        if isinstance(place, str):
+            points = self.group(where, place)
+            if len(count := np.unique(middles[points], axis=0)) != 1:
+                raise InputError(where, f"is the group {place!r} of {len(count)} nodes", "give one node, or a place")
+            return int(points[0])
+        place = np.asarray(place, dtype=float)
+        if place.shape != (3,) or not np.isfinite(place).all():
+            raise InputError(where, f"is {place!r}", "give x, y and z in m, or a group")
+        away = np.linalg.norm(middles - place, axis=1)
+        size = float(np.linalg.norm(np.ptp(self.points, axis=0)))
+        if away.min() > 0.1 * size:
+            x, y, z = middles[away.argmin()]
+            fix = f"give a place on the solid, in m: that node is at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+            raise InputError(where, f"is {away.min():.3g} m from the nearest node", fix)
+        points = np.flatnonzero(away == away.min())
+        arms = self.points[points] - middles[points]
+        return int(points[(arms @ (place - middles[points[0]]) > MIDDLE * (arms**2).sum(axis=1)).argmax()])
+
+    def blocks(self, materials: Any) -> tuple[Block, ...]:
+        """Elements of each kind and material, one or by groups, whose axes are turned with the mesh."""
+        owner = assigned(self.mesh, "materials", materials, (part.block for part in self.elements))
+        without = sum(int((owner[part.block][part.which] < 0).sum()) for part in self.elements)
+        if without:
+            raise InputError("materials", f"give {without} elements none", "name the groups of all elements")
+        by_group = materials if isinstance(materials, Mapping) else {"": materials}
+        numbers, names, blocks = numbers_of(self.mesh), shared_names(by_group), []
+        for m, (name, material) in enumerate(by_group.items()):
+            where = f"materials.{name}" if name else "materials"
+            try:
+                turned = isinstance(material, Orthotropic)
+                along = replace(material, axes=np.asarray(material.axes) @ self.rotation.T) if turned else material
+                elasticity = along.elasticity
+            except InputError as error:
+                raise error.within(where) from None
+            for (i, which, kind, _, thickness), nodes in zip(self.elements, self.points_of, strict=True):
+                chosen = owner[i][which] == m
+                if thickness is not None and turned:
+                    refuse_oblique(where, self.points, nodes[chosen], kind, along.axes)
+                if chosen.any():
+                    named = numbers[i][which[chosen]]
+                    blocks.append(Block(kind, nodes[chosen], named, names[name], float(material.density), elasticity))
+        return tuple(blocks)
 
 
-def with_cards(cards: Cards, links: Links, nodes: Placed, size: float, mass: float) -> tuple[Links, Floats]:
-    """Links of a solid with those of a file's cards added, and the cards' masses (k,) on its points, kg; `size` and
-    `mass` are the file's units, m and kg, of time the second.
-    """
-    ends = np.cumsum(np.bincount(nodes.numbers, minlength=len(nodes.places)))[:-1]
-    points_of = np.split(np.argsort(nodes.numbers, kind="stable"), ends)
-    listed = np.asarray(cards.nodes).tolist()
-    solid_of = dict(zip(listed, points_of, strict=False))
-    place_of = dict(zip(listed, nodes.places, strict=False))
-    within = float(np.linalg.norm(np.ptp(nodes.places, axis=0))) * APART
-    members, places, owner = dict(links.nodes), dict(links.places), dict[int, str]()
-    mean = dict[str, Floats]()
-    base, weights = "the base", np.zeros(len(nodes.clamped))
-
-    def refuse_unknown(name: str, numbers: Iterable[int]) -> None:
-        if unknown := [number for number in numbers if number not in solid_of]:
-            raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
-
-    def link(name: str, numbers: tuple[int, ...]) -> None:
-        """Make nodes of the file, by number, a rigid link, or let the base own them if all their points are clamped."""
-        refuse_unknown(name, numbers)
-        chosen = np.unique(np.concatenate([solid_of[number] for number in numbers]))
-        if len(chosen) and nodes.clamped[chosen].all():
-            owner.update(dict.fromkeys(numbers, base))
-            return
-        shared = [owner[number] for number in numbers if number in owner]
-        shared += [other for other, held in members.items() if other not in mean and np.isin(chosen, held).any()]
-        if shared or nodes.clamped[chosen].any():
-            raise refused(name, f"shares nodes with {shared[0] if shared else 'the clamp'}", "make them one")
-        if len(np.unique(nodes.numbers[chosen])) > 1:
-            coupling(f"mesh, {name}:", nodes.points[chosen])
-        members[name], places[name] = chosen, place_of[numbers[0]]
-        owner.update(dict.fromkeys(numbers, name))
-
-    def owner_of(name: str, number: int) -> str:
-        """Name of the link that moves a node; a node that has none becomes one of its own."""
-        if number not in owner:
-            link(f"node {number}" if number in solid_of else name, (number,))
-        return owner[number]
-
-    for name, numbers in cards.rigid.items():
-        link(name, numbers)
-    for name, (number, shares) in cards.mean.items():
-        refuse_unknown(name, (number, *shares))
-        if len(solid_of[number]) or number in owner:
-            raise refused(name, f"moves node {number}, which the solid or a rigid link moves too", "leave one out")
-        members[name] = np.concatenate([solid_of[followed] for followed in shares])
-        parts = [(solid_of[followed], weight) for followed, weight in shares.items()]
-        mean[name] = np.concatenate([np.full(len(points), weight / max(len(points), 1)) for points, weight in parts])
-        coupling(f"mesh, {name}:", nodes.points[members[name]], mean[name])
-        places[name], owner[number] = place_of[number], name
-    carried: dict[str, list[tuple[float, Floats, Floats]]] = {}
-    # First those that turn, which a mass on the same node joins.
-    for lump in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
-        tensor = mass * size**2 * nodes.rotation @ lump.inertia @ nodes.rotation.T
-        offset = size * nodes.rotation @ lump.offset
-        points = solid_of.get(lump.node, ())
-        if lump.node not in owner and len(points):
-            if not tensor.any() and not offset.any():
-                weights[points] += mass * lump.mass / len(points)
-                continue
-            if len(points) == 1:
-                fix = "join it to the solid by a rigid link"
-                raise refused(lump.name, f"has an offset or inertia on node {lump.node}, which does not turn", fix)
-        name = owner_of(lump.name, lump.node)
-        if name != base:
-            centre = place_of[lump.node] + offset - places[name]
-            carried.setdefault(name, []).append((mass * lump.mass, centre, tensor))
-    springs = dict(links.springs)
-    for k, spring in enumerate(cards.springs):
-        joined = [owner_of(spring.name, number) for number in spring.nodes]
-        across = max(float(np.linalg.norm(place_of[node] - place_of[spring.nodes[0]])) for node in spring.nodes)
-        if across > within:
-            raise refused(spring.name, f"joins nodes {across:.3g} m apart", "let it join nodes at one place")
-        between = tuple(dict.fromkeys(name for name in joined if name != base))
-        if not between or (len(spring.nodes) == 2 and joined[0] == joined[1]):
-            continue  # between what moves together
-        if not np.allclose(nodes.rotation, np.eye(3)):
-            raise refused(spring.name, "lies along the mesh's axes, and turn turns them", "leave turn out")
-        single = [name for name in between if len(members[name]) == 1]
-        if spring.stiffness[3:].any() and single:
-            raise refused(spring.name, f"turns {single[0]} of the solid, which does not", "join it by a rigid link")
-        springs[f"{spring.name}, {k + 1}"] = (
-            between,
-            mass * spring.stiffness * np.repeat([1.0, size**2], 3),
-            place_of[spring.nodes[0]],
-        )
-    bodies = dict(links.bodies) | {name: _together(name, parts) for name, parts in carried.items()}
-    used = {*bodies, *(name for between, *_ in springs.values() for name in between)}
-    members = {name: points for name, points in members.items() if len(points) or name in used}
-    tied = Links(
-        nodes=members,
-        bodies=bodies,
-        springs=springs,
-        places={name: places[name] for name in members if name in places},
-        weights={name: mean[name] for name in members if name in mean},
-    )
-    for name, chosen in members.items():
-        if not len(chosen):
-            _refuse_unheld(name, tied)
-    return tied, weights
-
-
-def _refuse_unheld(name: str, links: Links) -> None:
-    """Refuse a link of no node of the solid that no spring holds."""
-    stiffness = sum((values for between, values, _ in links.springs.values() if name in between), np.zeros(6))
-    body = links.bodies.get(name)
-    resisting = np.zeros(3) if body is None else np.diag(body.tensor) + np.abs(body.centre).sum()
-    loose = stiffness[:3].min() == 0 or (stiffness[3:] == 0)[resisting > 0].any()
-    if loose:
-        raise refused(name, "is on no node of the solid, and its springs leave it a way to move", "hold it")
-
-
-def _together(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody:
-    """One body of several parts, each its mass, kg, centre (3,) m and inertia (3, 3) about that, kg m²."""
-    whole = sum(mass for mass, *_ in parts)
-    centre = sum((mass * part_centre for mass, part_centre, _ in parts), np.zeros(3)) / whole if whole else np.zeros(3)
-    tensor = np.zeros((3, 3))
-    for mass, part_centre, inertia in parts:
-        arm = part_centre - centre
-        tensor += inertia + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    if tensor.any() and not whole:
-        raise refused(name, "has inertia and no mass")
-    return RigidBody(whole, (tensor + tensor.T) / 2, tuple(centre))  # turned, it is symmetric but for rounding
+def shared_names(materials: Mapping[str, Material | Orthotropic]) -> dict[str, str]:
+    """Names of materials by those of their groups: of groups of the same material all, for stress is shared by them."""
+    return {
+        name: ", ".join(other for other, alike in materials.items() if alike == each)
+        for name, each in materials.items()
+    }

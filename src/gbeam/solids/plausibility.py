@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.solids.elements import determinants
+from gbeam.solids.geometry import Mesh
 from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import corners_of, outer_triangles
-
-if TYPE_CHECKING:
-    from gbeam.solids.mesh import SolidMesh
 
 FLAT = 1e-6  # of the largest volume of a part of it: an element with less anywhere is folded
 STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a body
@@ -32,7 +28,7 @@ def refuse_far(where: str, places: Floats, unit: float = 1.0) -> None:
         raise InputError(where, f"has a node at {farthest:.4g} in a unit of {unit:g} m", "write it again")
 
 
-def refuse_folded(mesh: SolidMesh) -> None:
+def refuse_folded(mesh: Mesh) -> None:
     """Refuse elements that are turned inside out or folded."""
     bad: list[int] = []
     for block in mesh.blocks:
@@ -45,7 +41,7 @@ def refuse_folded(mesh: SolidMesh) -> None:
         raise InputError("mesh", f"has {count} turned inside out or folded: {listed}", fix)
 
 
-def refuse_twice(mesh: SolidMesh) -> None:
+def refuse_twice(mesh: Mesh) -> None:
     """Refuse elements on the corners of others, which would count twice."""
     by_corners: dict[bytes, int] = {}
     pairs = list[tuple[int, int]]()
@@ -62,7 +58,7 @@ def refuse_twice(mesh: SolidMesh) -> None:
         raise InputError("mesh", f"has {count} on the nodes of others: {listed}", "delete one of each pair")
 
 
-def refuse_loose(mesh: SolidMesh) -> None:
+def refuse_loose(mesh: Mesh) -> None:
     """Refuse a part of the mesh that the clamp does not hold."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -90,7 +86,7 @@ def refuse_loose(mesh: SolidMesh) -> None:
         raise InputError("clamp", f"holds {where} at {len(held)} nodes, so that it moves without strain", fix)
 
 
-def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
+def doubts_of(mesh: Mesh, unit: str) -> list[str]:
     """Warnings of what is implausible in a mesh, or known to be inaccurate."""
     size, mass = float(np.linalg.norm(np.ptp(mesh.points, axis=0))), mesh.mass
     doubts = []
@@ -108,7 +104,7 @@ def doubts_of(mesh: SolidMesh, unit: str) -> list[str]:
     return doubts + locking(mesh)
 
 
-def locking(mesh: SolidMesh) -> list[str]:
+def locking(mesh: Mesh) -> list[str]:
     """Warnings of elements that are too stiff, by more than meshes of them differ."""
     doubts, of_blocks = list[str](), _slenderness(mesh)
     linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
@@ -141,7 +137,7 @@ def locking(mesh: SolidMesh) -> list[str]:
     return doubts
 
 
-def _unmerged(mesh: SolidMesh, distance: float) -> Indices:
+def _unmerged(mesh: Mesh, distance: float) -> Indices:
     """Pairs (p, 2) of points within `distance` of each other, of different nodes that share no element and are not both
     in rigid links.
     """
@@ -160,7 +156,7 @@ def _unmerged(mesh: SolidMesh, distance: float) -> Indices:
     return pairs
 
 
-def _slenderness(mesh: SolidMesh) -> list[Floats]:
+def _slenderness(mesh: Mesh) -> list[Floats]:
     """Ratios (e,) of length to thickness of the elements of each block, along principal axes of their corners; NaN of
     an element with a corner inside the solid, which does not fill the solid's thickness alone.
     """

@@ -16,6 +16,7 @@ from gbeam.errors import InputError
 from gbeam.numerics.sparse import add_to_rows
 from gbeam.results.solids import SolidStress, StressAt, Surface, SurfaceModes, von_mises
 from gbeam.solids.elements import TENSOR, chunks
+from gbeam.solids.geometry import Mesh
 from gbeam.solids.norms import LargestNorms
 from gbeam.solids.shape_functions import KINDS, extrapolation, reference
 
@@ -41,7 +42,7 @@ class NodalStress(Value):
     be too many, `excess` is the number of their nodes, and none is flagged.
     """
 
-    mesh: Any
+    mesh: Mesh
     every_shape: Floats
     envelope: Floats
     known: Indices
@@ -53,7 +54,7 @@ class NodalStress(Value):
     excess: int = 0
 
     @classmethod
-    def of(cls, mesh: Any, shapes: Floats) -> Self:
+    def of(cls, mesh: Mesh, shapes: Floats) -> Self:
         """Stresses in shapes (k, 3, n) of nodes, extrapolated to these, and averaged over elements of one material."""
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
@@ -112,7 +113,8 @@ class NodalStress(Value):
         """Pairs, one for the node of a named point or for each node of an interface: where a node has several materials
         that of the largest `size` (p,), or the first.
         """
-        nodes = self.mesh.interfaces.get(point, [self.mesh.stations.get(point)])
+        interfaces = self.mesh.interfaces
+        nodes = interfaces[point] if point in interfaces else self.mesh.stations[point]
         order = np.flatnonzero(np.isin(self.node, nodes))
         order = order if size is None else order[np.argsort(-size[order], kind="stable")]
         return np.asarray(order[np.unique(self.node[order], return_index=True)[1]])

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gbeam.analysis.case import Case
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.system import stations_of
 from gbeam.printable import advise, closest
@@ -21,7 +22,6 @@ from gbeam.scenario.values import path_text
 from gbeam.studies.template import Template
 
 if TYPE_CHECKING:
-    from gbeam.analysis.case import Case
     from gbeam.results.facts import Entry
     from gbeam.results.study import Study
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Literal
 from pydantic import Field
 
 from gbeam.scenario.bodies.common import BodyKind
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.beam import Beam
 from gbeam.scenario.schema.fields import Position, listed
 from gbeam.scenario.schema.scenario import Model
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.scenario.load import Collector
 
 
 class BeamBody(Beam):

@@ -8,11 +8,11 @@ from pydantic import Field, StrictInt
 
 from gbeam.errors import naming
 from gbeam.scenario.bodies.common import BodyKind, Inertia, NodePoints, Reduced, inertia_of
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.fields import File, Mass, OneOrSome, Place3, optional
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.scenario.load import Collector
 
 
 class MatricesBody(Reduced):

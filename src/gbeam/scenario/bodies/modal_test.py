@@ -11,11 +11,11 @@ from pydantic import Field, model_validator
 from gbeam.errors import InputError, naming
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.bodies.common import BodyKind, Direction, NodePoints
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.fields import File, Mass, OneOrSome, Place3, Quantity, Ratios, Table, optional, refuse, wrong
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.scenario.load import Collector
     from gbeam.solids.modal_test import ModalTest
 
 _Frequencies = Annotated[

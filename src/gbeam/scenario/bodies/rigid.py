@@ -11,12 +11,12 @@ from pydantic import Field
 from gbeam.errors import InputError
 from gbeam.guards.limits import ENTRIES
 from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, Name, Point, inertia_of, points_of
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.fields import Exponent, Mass, Offset, Place3, Table, by_name, optional
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
     from gbeam.mechanics.tree.system import RigidBody as Rigid
-    from gbeam.scenario.load import Collector
     from gbeam.solids.rigid import RigidSpecimen
 
 _ITEM = "corners", "bolts", "bolt_axis", "spread_limit"  # of an item under test, on whose points nothing hangs

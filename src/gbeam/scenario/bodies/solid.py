@@ -11,6 +11,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from gbeam.errors import InputError, naming, placing_within
 from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, PlaceOfBody, Reduced, placed, points_of
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.beam import Material
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
@@ -34,7 +35,6 @@ from gbeam.scenario.schema.fields import (
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
     from gbeam.mechanics.tree.system import RigidBody
-    from gbeam.scenario.load import Collector
     from gbeam.solids.mesh import SolidMesh
     from gbeam.solids.model import SolidModel
 

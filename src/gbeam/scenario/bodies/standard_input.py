@@ -8,11 +8,11 @@ from pydantic import Field
 
 from gbeam.errors import naming
 from gbeam.scenario.bodies.common import BodyKind, NodePoints
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.fields import File, Ratios, Table, optional
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.scenario.load import Collector
 
 
 class StandardInputBody(Table):

@@ -43,10 +43,10 @@ from gbeam.scenario.schema.fields import (
 )
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
 from gbeam.scenario.schema.profile import PartOfRecord, Record
+from gbeam.scenario.text.source import Source
 
 if TYPE_CHECKING:
     from gbeam.constants import Verb
-    from gbeam.scenario.text.source import Source
 else:
     Verb = Literal[tuple(QUESTIONS)]  # with those that are declared elsewhere
 

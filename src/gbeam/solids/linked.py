@@ -1,0 +1,238 @@
+"""Displacements of a mesh by what moves on its own: free nodes, rigid links, and nodes of shells."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.types import Floats, Indices
+from gbeam.mechanics.reduction import Reduced
+from gbeam.mechanics.tree.system import RigidBody
+from gbeam.solids.geometry import Mesh
+from gbeam.solids.links import ON_A_LINE, coupling
+
+CROSS = np.zeros((3, 3, 3))  # θ × r = θ_a r_b CROSS[a, b]
+for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+    CROSS[_a, _b, _c], CROSS[_b, _a, _c] = 1.0, -1.0
+
+
+class Linked:
+    """Displacements of all points, of a mesh, of its bodies and of ends of springs, as linear maps of the independent
+    unknowns: displacements of free nodes, and displacement and rotation of each link. A node of a shell is a link of
+    its points, which does not turn about the line on which they are. Tied points are those of links.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        from scipy.sparse import coo_array
+
+        links, self.count = mesh.links, len(mesh.points)
+        self._links, self._number = links, {name: i for i, name in enumerate(links.nodes)}
+        members = {name: [] if name in links.weights else list(nodes) for name, nodes in links.nodes.items()}
+        named = np.array(
+            [
+                links.places[name] if name in links.places else mesh.points[nodes].mean(axis=0)
+                for name, nodes in links.nodes.items()
+            ]
+        ).reshape(-1, 3)
+        points, masses, self._ends = [*mesh.points], [*mesh.point_masses], list[tuple[int, ...]]()
+
+        def add(name: str, place: Floats, mass: float) -> int:
+            """Add a point to a link; return its number."""
+            members[name].append(len(points))
+            points.append(place)
+            masses.append(mass)
+            return len(points) - 1
+
+        for name, body in links.bodies.items():
+            for place, mass in zip(*_particles(body), strict=True):
+                add(name, named[self._number[name]] + place, mass)
+        for between, _, spring_place in links.springs.values():
+            place = named[self._number[between[0]]] if spring_place is None else spring_place
+            self._ends.append(tuple(add(name, place, 0.0) for name in between))
+        self.points, self.masses = np.array(points), np.array(masses)
+        of_link = np.full(len(points), -1)  # of each point, named links first, then nodes of shells
+        for name, linked in members.items():
+            of_link[linked] = self._number[name]
+        _, node, shared = np.unique(mesh.numbers, return_inverse=True, return_counts=True)
+        of_shell = (shared[node] > 1) & ~mesh.clamped & (of_link[: self.count] < 0)
+        within = np.unique(node[of_shell], return_inverse=True)[1]
+        of_link[np.flatnonzero(of_shell)] = len(named) + within
+        self._tied = np.flatnonzero(of_link >= 0)
+        self._of = of = of_link[self._tied]  # the link of each tied point
+        count = np.bincount(of, minlength=len(named))
+        sums = [np.bincount(of, x, minlength=len(named)) for x in self.points[self._tied].T]
+        middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
+        middles[: len(named)] = named
+        for name, weights in links.weights.items():
+            middles[self._number[name]] = coupling("", mesh.points[links.nodes[name]], weights)[0]
+        self._arms = self.points[self._tied] - middles[of]
+        second = np.zeros((len(middles), 3, 3))
+        on_mesh = self._tied < self.count
+        np.add.at(second, of[on_mesh], (self._arms[:, :, None] * self._arms[:, None])[on_mesh])
+        size, axes = np.linalg.eigh(second)
+        on_line = (size[:, 1] <= ON_A_LINE * size[:, 2]) & (size[:, 2] > 0)
+        self._axes = np.where(on_line[:, None, None], axes, np.eye(3))
+        turning = np.stack([np.ones_like(on_line), np.ones_like(on_line), ~on_line], axis=1)
+        untied, moving = np.flatnonzero(of_link < 0), np.ones((len(middles), 6), dtype=bool)
+        for name, i in self._number.items():
+            moving[i] = links.moving(name)
+        unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
+        unknown[[self._number[name] for name in links.weights]] = False
+        free = np.concatenate([np.repeat(~mesh.clamped[untied], 3), moving[unknown]])
+        # Of links' displacements and rotations (l, 6) numbers among the unknowns, −1 of none, and those of tied points.
+        numbers = np.where(unknown, 3 * len(untied) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
+        move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
+        used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
+        row = np.broadcast_to((3 * self._tied[:, None] + np.arange(3))[..., None], move.shape)[used]
+        column = np.broadcast_to(numbers[of][:, None], move.shape)[used]
+        untied_rows = (3 * untied[:, None] + np.arange(3)).ravel()
+        self._map = coo_array(
+            (
+                np.concatenate([np.ones(len(untied_rows)), move[used]]),
+                (np.concatenate([untied_rows, row]), np.concatenate([np.arange(len(untied_rows)), column])),
+            ),
+            shape=(3 * len(points), len(free)),
+        ).tocsr()[:, free]
+        self._kept = np.flatnonzero(free)
+        number = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)[:, None, 3:]
+        turns = np.broadcast_to(number >= 0, self._axes.shape)
+        row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turns.shape)[turns]
+        entries = self._axes[turns], (row, np.broadcast_to(number, turns.shape)[turns])
+        self._turn = coo_array(entries, shape=(3 * len(middles), len(self._kept))).tocsr()
+        for name, weights in links.weights.items():
+            self._follow(self._number[name], members[name], links.nodes[name], weights)
+
+    def _follow(self, link: int, members: list[int], nodes: Indices, weights: Floats) -> None:
+        """Let the `members` of a link, points, and its rotation follow the mean motion of nodes."""
+        from scipy.sparse import coo_array
+
+        centre, mean = coupling("", self.points[nodes], weights)
+        mean = mean.reshape(6, -1)
+        arms = np.einsum("pb,abc->pca", self.points[members] - centre, CROSS)
+        moved = mean[:3] + np.einsum("pca,ak->pck", arms, mean[3:])
+        sources, points = (3 * nodes[:, None] + np.arange(3)).ravel(), 3 * len(self.points)
+
+        def on_unknowns(rows: Indices, values: Floats, count: int) -> Any:
+            """Values (rows, 3 g) that act on displacements of the nodes, as a matrix (count, u) on the unknowns."""
+            pairs = np.repeat(rows, len(sources)), np.tile(sources, len(rows))
+            return coo_array((values.ravel(), pairs), shape=(count, points)).tocsr() @ self._map
+
+        self._turn = self._turn + on_unknowns(3 * link + np.arange(3), mean[3:], self._turn.shape[0])
+        rows = (3 * np.array(members)[:, None] + np.arange(3)).ravel()
+        self._map = self._map + on_unknowns(rows, moved, points)
+
+    def _about(self, arms: Floats) -> Floats:
+        """Displacements (p, 3, 3) of tied points by turns about the axes of their links, in columns."""
+        return np.einsum("pai,pb,abc->pci", self._axes[self._of], arms, CROSS, optimize=True)
+
+    def widened(self, matrix: Any, unknowns: int) -> Any:
+        """A matrix of the nodes with empty rows and columns for the other points, as many as `unknowns` of each."""
+        from scipy.sparse import block_diag, csr_array
+
+        added = unknowns * (len(self.points) - self.count)
+        return block_diag([matrix, csr_array((added, added))], format="csr") if added else matrix
+
+    def widened_loads(self, loads: Floats) -> Floats:
+        """Loads (3 k, m) of the nodes, and none on the other points."""
+        return np.concatenate([loads, np.zeros((3 * (len(self.points) - self.count), loads.shape[1]))])
+
+    def elastic(self, matrix: Any) -> Any:
+        """Stiffness of all points by that of the nodes, with the springs along x, y and z."""
+        from scipy.sparse import coo_array
+
+        total = self.widened(matrix, 3)
+        size = 3 * len(self.points)
+        for ends, (_, stiffness, _) in zip(self._ends, self._links.springs.values(), strict=True):
+            signs = np.array([1.0, -1.0])[: len(ends)]
+            rows = 3 * np.array(ends)[:, None] + np.arange(3)
+            values = np.einsum("i,j,a->ija", signs, signs, stiffness[:3])
+            pairs = np.broadcast_to(rows[:, None], values.shape), np.broadcast_to(rows[None], values.shape)
+            total = (
+                total + coo_array((values.ravel(), tuple(index.ravel() for index in pairs)), shape=(size, size)).tocsr()
+            )
+        return total
+
+    def condensed(self, matrix: Any) -> Any:
+        """A sparse matrix, or loads, of all points in terms of the independent unknowns."""
+        from scipy.sparse import issparse
+
+        if not len(self._tied):
+            return matrix[self._kept][:, self._kept] if issparse(matrix) else matrix[self._kept]
+        left = self._map.T @ matrix
+        return left @ self._map if issparse(matrix) else left
+
+    def condensed_stiffness(self, matrix: Any) -> Any:
+        """A stiffness of all points in terms of the unknowns, with the springs about x, y and z between links added."""
+        from scipy.sparse import diags_array
+
+        total = self.condensed(matrix)
+        for between, stiffness, _ in self._links.springs.values():
+            turn, *second = (self._turn[3 * self._number[name] :][:3] for name in between)
+            turn = turn - second[0] if second else turn
+            total = total + turn.T @ diags_array(stiffness[3:]) @ turn
+        return total
+
+    def displacements(self, unknowns: Floats) -> Floats:
+        """Displacements (points, 3, n) by unknowns (u, n)."""
+        return np.asarray(self._map @ unknowns).reshape(len(self.points), 3, -1)
+
+    @property
+    def tied(self) -> bool:
+        """True if some points move by links, or by those of shells."""
+        return bool(len(self._tied)) or len(self.points) > self.count
+
+    @property
+    def _rows(self) -> Indices:
+        """Rows of the tied points in matrices of all."""
+        return np.asarray((3 * self._tied[:, None] + np.arange(3)).ravel())
+
+    def held(self, stiffness: Any) -> Any:
+        """Rows of the tied points in a stiffness of all points."""
+        return stiffness[self._rows]
+
+    def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
+        """Two halves (2, m, n, n) of what links add to :func:`gbeam.solids.elements.geometric_stiffness`: the work of
+        the forces that hold tied points on a link, in the displacements θ × (θ × r)/2 as it turns by θ.
+
+        In the first half the forces are those under loads (points · 3, m), whose answers are `static` (u, m), and two
+        coordinates turn the links; in the second the forces are a coordinate's, and a load and another coordinate turn
+        them. `held` are the tied points' rows of the stiffness.
+        """
+        shapes = reduced.shapes
+        halves = np.zeros((2, loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
+        if not len(self._tied):
+            return halves
+        static_moved, moved = self._map @ static, self._map @ shapes
+        inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) @ reduced.stiffness
+        pulling = self._moments(held @ static_moved - loads[self._rows])
+        holding = self._moments(held @ moved - inertia[self._rows])
+        holding += np.swapaxes(holding, 1, 2)
+        turn, turned = self._rotations(shapes), self._rotations(static)
+        for load in range(loads.shape[-1]):
+            flat = turn.reshape(-1, turn.shape[-1])
+            halves[0, load] = flat.T @ np.matmul(pulling[..., load], turn).reshape(flat.shape) / 2
+            pulled = np.einsum("lb,lbcn->lcn", turned[..., load], holding)
+            halves[1, load] = pulled.reshape(flat.shape).T @ flat / 2
+        return halves
+
+    def _moments(self, forces: Floats) -> Floats:
+        """Matrices (l, 3, 3, m) with f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ), summed over links, of forces
+        (p · 3, m) on the tied points at r from their middles.
+        """
+        moments = np.zeros((len(self._axes), 3, 3, forces.shape[-1]))
+        tied = forces.reshape(len(self._tied), 1, 3, -1)
+        np.add.at(moments, self._of, self._arms[:, :, None, None] * tied)
+        return moments - np.einsum("lbbm,ac->lacm", moments, np.eye(3))
+
+    def _rotations(self, unknowns: Floats) -> Floats:
+        """Rotations (l, 3, n) of the links by unknowns (u, n)."""
+        return np.asarray(self._turn @ unknowns).reshape(len(self._axes), 3, -1)
+
+
+def _particles(body: RigidBody) -> tuple[Floats, Floats]:
+    """Places (6, 3) from the root and masses (6,) of particles with the mass, centre and inertia of a body."""
+    moments, axes = np.linalg.eigh(body.tensor)
+    spread = np.sqrt(np.maximum(1.5 * (moments.sum() - 2 * moments), 0.0) / body.mass) if body.mass else np.zeros(3)
+    arms = (axes * spread).T
+    return np.asarray(body.centre) + np.concatenate([arms, -arms]), np.full(6, body.mass / 6)

@@ -1,0 +1,104 @@
+"""Reading of a solid from the mesh of a file: what is clamped, named, carried and linked in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from gbeam.arrays.types import Floats, Numbers
+from gbeam.guards.checks import positive
+from gbeam.mechanics.plausibility import implausible_material
+from gbeam.mechanics.tree.system import Place, RigidBody
+from gbeam.solids.cad import mesh_of
+from gbeam.solids.card_links import with_cards
+from gbeam.solids.cards import Cards
+from gbeam.solids.foreign import THICKNESS, left_out, node_numbers_of, unit_size
+from gbeam.solids.geometry import Mesh
+from gbeam.solids.links import Links, LinkSpring, refuse_names
+from gbeam.solids.placed import Placed, shared_names
+from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose, refuse_twice
+from gbeam.structure.attachments import TIP
+from gbeam.structure.material import Material, Orthotropic
+
+M = TypeVar("M", bound=Mesh)
+
+
+def read_solid(
+    solid_type: type[M],
+    source: Any,
+    *,
+    materials: Material | Orthotropic | Mapping[str, Material | Orthotropic],
+    clamp: str | Sequence[str],
+    unit: str | None,
+    thickness: float | Mapping[str, float] | None,
+    element_size: float | None,
+    points: Mapping[str, Any],
+    point_masses: Mapping[str, float],
+    interfaces: Mapping[str, str],
+    links: Mapping[str, str | Sequence[str]],
+    carried: Mapping[str, RigidBody],
+    springs: Mapping[str, LinkSpring],
+    origin: Numbers,
+    turn: Numbers,
+    scale: Numbers,
+    mass_unit: str | None,
+) -> M:
+    """Read a solid of some type; :meth:`gbeam.SolidMesh.read` says of each argument its meaning."""
+    mesh, size = mesh_of(source, unit, element_size, cards=mass_unit is not None)
+    placed = Placed.of(mesh, size, thickness, origin=origin, turn=turn, scale=scale)
+    clamps = {name: placed.group("clamp", name) for name in ([clamp] if isinstance(clamp, str) else clamp)}
+    clamped = np.isin(np.arange(len(placed.points)), np.concatenate([np.zeros(0, dtype=int), *clamps.values()]))
+    named = {name: placed.nearest(name, getattr(place, "at", place)) for name, place in points.items()}
+    tip = named.pop(TIP, int(np.argmax(np.linalg.norm(placed.middles, axis=1) * ~clamped)))
+    stations = named | {TIP: tip}
+    weights = _spread(placed, stations, point_masses)
+    blocks = placed.blocks(materials)
+    by_group = materials if isinstance(materials, Mapping) else {"": materials}
+    names = shared_names(by_group)
+    kinds = {names[name]: material for name, material in by_group.items()}
+    refuse_names(interfaces, stations)
+    hung = {name: placed.group(f"interfaces.{name}", group) for name, group in interfaces.items()}
+    tied = Links.of(placed.group, links, carried, springs, placed.points, clamped)
+    statements = tuple[str, ...]()
+    if mass_unit is not None:
+        cards, weight = getattr(mesh, "cards", Cards()), unit_size("mass_unit", mass_unit, "mass")
+        tied, lumped = with_cards(cards, tied, placed, clamped, size, weight)
+        weights, statements = weights + lumped, cards.words
+    if thickness is not None:
+        statements += THICKNESS
+    solid = solid_type(
+        points=placed.points,
+        blocks=blocks,
+        clamped=clamped,
+        numbers=node_numbers_of(mesh)[placed.numbers],
+        point_masses=weights,
+        stations=stations,
+        strengths={name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None},
+        interfaces=hung,
+        links=tied,
+        exponents={name: float(each.fatigue_exponent) for name, each in kinds.items()},
+        turns={name: tuple(place.turn) for name, place in points.items() if isinstance(place, Place)},
+        clamps={name: len(np.unique(placed.numbers[nodes])) for name, nodes in clamps.items()},
+    )
+    refuse_folded(solid)
+    refuse_twice(solid)
+    refuse_loose(solid)
+    doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, statements)]
+    for name, material in by_group.items():
+        doubts += implausible_material(f"materials.{name}" if name else "material", material)
+    return replace(solid, warnings=tuple(doubts))
+
+
+def _spread(placed: Placed, stations: Mapping[str, int], point_masses: Mapping[str, float]) -> Floats:
+    """Masses (k,) on the points, kg, of those by the name of a station, or of a group over whose points one is
+    spread.
+    """
+    weights = np.zeros(len(placed.points))
+    for name, mass in point_masses.items():
+        where = f"point_masses.{name}"
+        nodes = np.array([stations[name]]) if name in stations else placed.group(where, name)
+        weights[nodes] += positive(where, mass, "kg") / len(nodes)
+    return weights
