@@ -27,18 +27,14 @@ from gbeam.scenario.schema.scenario import PARAMETERS
 from gbeam.structure.shapes import SHAPES, Dimensions
 
 SOURCE = Path(gbeam.__file__)
+STUB = ast.parse(SOURCE.with_suffix(".pyi").read_text(encoding="utf-8")).body
+IMPORTS = [(node.module, alias) for node in STUB if isinstance(node, ast.ImportFrom) for alias in node.names]
+HOMES = {alias.name: f"gbeam.{module}" for module, alias in IMPORTS}
 
 
 def test_the_stub_has_every_public_name() -> None:
-    body = ast.parse(SOURCE.with_suffix(".pyi").read_text(encoding="utf-8")).body
-    seen = {}
-    for node in body:
-        if isinstance(node, ast.ImportFrom):
-            for alias in node.names:
-                assert alias.asname == alias.name  # what is not imported as itself is private
-                seen[alias.name] = (node.module or "").removeprefix("gbeam.")
-    assert seen == gbeam._HOME
-    assert dir(gbeam) == gbeam.__all__ == sorted(seen)
+    assert all(alias.asname == alias.name for _, alias in IMPORTS)  # what is not imported as itself is private
+    assert dir(gbeam) == gbeam.__all__ == sorted(HOMES)
     assert SOURCE.with_name("py.typed").exists()
 
 
@@ -55,7 +51,7 @@ def test_every_name_is_documented(name: str) -> None:
     if not callable(value):
         assert name == "machines" and set(value) >= {"human-7.6m", "specimen-3.3m", "large-15m"}
         return
-    assert value.__module__ == f"gbeam.{gbeam._HOME[name]}"
+    assert value.__module__ == HOMES[name]
     text = inspect.getdoc(value)
     assert text and text.splitlines()[0].partition("  #")[0].endswith((".", ":"))  # a citation may follow
     if not (isinstance(value, type) and issubclass(value, Exception)):

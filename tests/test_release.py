@@ -67,6 +67,7 @@ MODULES = {  # by distribution
     "h5netcdf": {"h5netcdf", "h5py"},
     "jax": {"jax", "jaxlib"},
     "matplotlib": {"matplotlib", "mpl_toolkits"},
+    "pillow": {"PIL"},
     "pydantic": {"pydantic", "pydantic_core"},
     "scikit-fem": {"skfem"},
 }

@@ -9,9 +9,7 @@ A name is imported when it is first used, and with it what it needs: importing g
 
 from __future__ import annotations
 
-import re
-from importlib import import_module
-from pathlib import Path
+import lazy_loader
 
 from gbeam import doors
 from gbeam.results.doors import bind
@@ -20,13 +18,10 @@ from gbeam.version import __version__ as __version__
 bind(doors)
 
 # Every public name, and the module it is in: as the stub has them, which type checkers read.
-_STUB = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
-_HOME = {name: home for home, name in re.findall(r"^from gbeam\.(\S+) import (\w+) as", _STUB, re.MULTILINE)}
+_public, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 # Former names, which warn until the next version.
 _FORMER = {"commands": "axis_commands", "shape": "shape_hub_command"}
-
-__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> object:
@@ -34,13 +29,7 @@ def __getattr__(name: str) -> object:
         import warnings
 
         warnings.warn(f"gbeam.{name} is now gbeam.{_FORMER[name]}", DeprecationWarning, stacklevel=2)
-        return globals().get(_FORMER[name]) or __getattr__(_FORMER[name])
-    if name not in _HOME:
+        return _public(_FORMER[name])
+    if name not in __all__:
         raise AttributeError(f"module 'gbeam' has no attribute {name!r}")
-    value = getattr(import_module(f"gbeam.{_HOME[name]}"), name)
-    globals()[name] = value  # this function is not called for the name again
-    return value
-
-
-def __dir__() -> list[str]:
-    return __all__
+    return _public(name)

@@ -149,6 +149,11 @@ def test_signature(tmp_path: Path) -> None:
         copy.write_bytes(file.read_bytes())
         assert signature(copy) == ""  # a copy is no longer what the command made
     assert [signature(file) for file in save(figure, tmp_path, "plain")] == ["", ""]
+    for file in save(figure, tmp_path, "Böe λ", "gbeam run"):
+        assert signature(file) == "gbeam run"
+        for content in (b"", b"<svg", file.read_bytes()[:60], b'<?xml version="1.0" encoding="none"?><svg/>'):
+            file.write_bytes(content)
+            assert signature(file) == ""
 
 
 def _of_all_kinds() -> Figure:

@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, BinaryIO, cast
+from xml.etree.ElementTree import iterparse
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from PIL.PngImagePlugin import PngImageFile
 
 from gbeam.figures import Describe, figure_of
 from gbeam.plots.draw import Shown, draw, style
@@ -52,10 +55,8 @@ def write_figures(
 
 DPI = 150
 _LEVEL = 3  # of compression: more takes longer than it is worth
-_BEGINNING = 2000  # bytes of a file that hold its signature
-_ESCAPED = ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")  # of XML; its own module imports what fetches from the net
-_TEXT = re.compile(rb"(....)(tEXtSource\0|iTXtSource\0{5})", re.DOTALL)  # of PNG: length, kind and key
-_ELEMENT = re.compile(rb"<dc:source>([^<]*)</dc:source>")  # of SVG
+_BEGINNING = 2000  # bytes of an SVG file that hold its signature
+_SOURCE = "{http://purl.org/dc/elements/1.1/}source"  # element of SVG's metadata
 
 
 def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path]:
@@ -76,25 +77,23 @@ def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path
 def signature(file: Path) -> str:
     """Return the `source` that :func:`save` signed a file with; empty where there is none, or for another name."""
     with file.open("rb") as opened:
-        beginning = opened.read(_BEGINNING)
-    source, _, name = (_in_png if file.suffix == ".png" else _in_svg)(beginning).rpartition(": ")
+        source, _, name = (_in_png if file.suffix == ".png" else _in_svg)(opened).rpartition(": ")
     return source if name == file.name else ""
 
 
-def _in_png(beginning: bytes) -> str:
-    """Source that the text of a PNG file states; empty where there is none."""
-    match = _TEXT.search(beginning)
-    if match is None:
+def _in_png(opened: BinaryIO) -> str:
+    """Source that the text before the pixels of a PNG file states; empty where there is none."""
+    try:
+        with PngImageFile(opened) as image:
+            return str(image.info.get("Source", "")).rstrip("\0")  # version 0.2 ended it with a zero
+    except (OSError, SyntaxError, ValueError):  # no PNG file, or none that is whole
         return ""
-    text = beginning[match.end() : match.start(2) + 4 + int.from_bytes(match[1])]
-    # Version 0.2 ended it with a zero.
-    return text.rstrip(b"\0").decode("latin-1" if match[2].startswith(b"tEXt") else "utf-8", errors="replace")
 
 
-def _in_svg(beginning: bytes) -> str:
+def _in_svg(opened: BinaryIO) -> str:
     """Source that the metadata of an SVG file state; empty where there are none."""
-    match = _ELEMENT.search(beginning)
-    text = match[1].decode(errors="replace") if match else ""
-    for escaped, letter in _ESCAPED:
-        text = text.replace(escaped, letter)
-    return text
+    try:
+        elements = (element for _, element in iterparse(BytesIO(opened.read(_BEGINNING))))
+        return next((element.text or "" for element in elements if element.tag == _SOURCE), "")
+    except (LookupError, SyntaxError, ValueError):  # no XML, or in an encoding that is none
+        return ""
