@@ -13,15 +13,14 @@ units of the figures in it, and :func:`parameters` the docstring. Where a record
 from __future__ import annotations
 
 import dataclasses
-import re
 import sys
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, partial
 from operator import attrgetter
-from types import EllipsisType
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+from types import EllipsisType, SimpleNamespace
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 Role = Literal["variable", "coordinate", "labels", "fact", "part", "rows"]
 INSIDE = "."  # name or key of a part whose fields stand among those of the record that has it
@@ -200,11 +199,17 @@ def document(kind: type) -> None:
 def _type_words(annotation: str, declaration: Declaration) -> str:
     """Type of a field as docstrings have it: shape, kind and unit."""
     kinds = {"Floats": "", "Complex": "complex", "Flags": "bool", "NDArray[np.int_]": "int"}
-    base, optional, _ = annotation.partition(" | None")
-    words = kinds.get(base, re.sub(r"tuple\[(\w+), \.\.\.\]", r"tuple of \1", base)) + (" or None" if optional else "")
+    *parts, last = annotation.split(" | ")
+    parts, optional = (parts, True) if last == "None" else ([*parts, last], False)
+    words = " | ".join(kinds.get(part, _word(part)) for part in parts) + (" or None" if optional else "")
     unit = declaration.unit if isinstance(declaration.unit, str) else ""
-    shape = _shape(declaration) if base in kinds else ""
+    shape = _shape(declaration) if parts[0] in kinds else ""
     return ", ".join(filter(None, (" ".join(filter(None, (shape, words.strip()))), unit)))
+
+
+def _word(annotation: str) -> str:
+    element = annotation.removeprefix("tuple[").removesuffix(", ...]")
+    return f"tuple of {element}" if annotation == f"tuple[{element}, ...]" and element.isidentifier() else annotation
 
 
 def _shape(declaration: Declaration) -> str:
@@ -212,28 +217,39 @@ def _shape(declaration: Declaration) -> str:
     return f"({', '.join(dims)}{',' if len(dims) == 1 else ''})" if dims else ""
 
 
-def annotation(kind: type, name: str) -> str:
-    """Return the annotation of a field, or of what a property returns, as it is written; empty where there is none."""
-    return _annotated(kind, name)[0]
+def annotation(kind: type, name: str) -> Any:
+    """Return the type of a field, or of what a property returns; None where there is none."""
+    for base in kind.__mro__:
+        if name in vars(base).get("__annotations__", {}):
+            return _type_of(vars(base)["__annotations__"][name], base.__module__)
+        if isinstance(vars(base).get(name), property):
+            return _type_of(vars(base)[name].fget.__annotations__.get("return"), base.__module__)
+    return None
+
+
+@cache
+def _type_of(written: str | None, module: str) -> Any:
+    """Type that an annotation of a module names."""
+    return get_type_hints(SimpleNamespace(__annotations__={"": written}), vars(sys.modules[module]))[""]
+
+
+def types_in(hint: Any) -> Iterator[Any]:
+    """Yield a type and all that it is made of, such as float and None of ``float | None``; of arrays their numbers'."""
+    yield hint
+    parts = get_args(hint)
+    for part in get_args(parts[1]) if getattr(get_origin(hint), "__name__", "") == "ndarray" else parts:
+        yield from types_in(part)
 
 
 def record_in(kind: type, name: str) -> Any:
-    """Return the record that a field's annotation names, such as Crossing of ``tuple[Crossing, ...]``; None if none."""
+    """Return the record that a field's type has in it, such as Crossing of ``tuple[Crossing, ...]``; None if none."""
     return next(iter(records_in(kind, name)), None)
 
 
 def records_in(kind: type, name: str) -> tuple[Any, ...]:
-    """Return the records that a field's annotation names, of which a value is any."""
-    text, module = _annotated(kind, name)
-    named = (vars(sys.modules[module]).get(word) for word in re.findall(r"\w+", text))
-    return tuple(each for each in named if isinstance(each, type) and dataclasses.is_dataclass(each))
-
-
-def _annotated(kind: type, name: str) -> tuple[str, str]:
-    """Annotation of a field, or of a property's result, and the module in which it is written; "" if there is none."""
-    for base in kind.__mro__:
-        if name in vars(base).get("__annotations__", {}):
-            return vars(base)["__annotations__"][name], base.__module__
-        if isinstance(vars(base).get(name), property):
-            return vars(base)[name].fget.__annotations__.get("return", ""), base.__module__
-    return "", kind.__module__
+    """Return the records that a field's type has in it, of which a value is any."""
+    return tuple(
+        each
+        for each in types_in(annotation(kind, name))
+        if isinstance(each, type) and get_origin(each) is None and dataclasses.is_dataclass(each)
+    )

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from types import NoneType
+from typing import Any, get_args, get_origin
 
 import numpy as np
 
-from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, records_in
+from gbeam.arrays.types import Complex
+from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, records_in, types_in
 
 ANY = "*"  # in units: any key that has no entry of its own
 Units = dict[str, Any]
+_NUMBERS = frozenset({float, int, np.float64, np.complex128, np.int_, np.intp})
 
 
 def json_of(result: Any) -> dict[str, Any]:
@@ -83,7 +85,7 @@ def tree_of(kind: type) -> dict[str, Any]:
         inner = next(iter(records), None)
         leaf: Any = _joined(*map(tree_of, records)) if records else _leaf(declaration, row_keys, hint)
         row_dim = _along(declaration, row_keys)
-        if declaration.role == "part" and "None" in hint and row_dim is None and not declaration.optional:
+        if declaration.role == "part" and NoneType in types_in(hint) and row_dim is None and not declaration.optional:
             leaf = Nullable(leaf)
         if inner and declaration.unit and isinstance(declaration.unit, str):
             leaf = _changed(leaf, partial(_united, unit=declaration.unit))
@@ -99,7 +101,7 @@ def tree_of(kind: type) -> dict[str, Any]:
                 _put(tree, f"{key}.{row}" if inner else row, united | named_unit if inner else united)
             continue
         if declaration.role == "rows":
-            named = "Mapping" in hint or (inner and _label(inner))
+            named = get_origin(hint) is Mapping or (inner and _label(inner))
             leaf = {ANY: leaf} if named else Rows(leaf)
         parent = tree
         if row_dim is not None and row_keys[row_dim]:
@@ -107,24 +109,26 @@ def tree_of(kind: type) -> dict[str, Any]:
         if row_dim is not None and _is_labelled(kind, row_dim):
             parent = parent.setdefault(ANY, {})
         _put(parent, key, leaf)
-        if hint == "Complex":
+        if hint == Complex:
             _put(parent, f"{key}_imaginary", leaf)
     return tree
 
 
-def _leaf(declaration: Declaration, row_keys: Mapping[str, str], hint: str) -> Entry:
+def _leaf(declaration: Declaration, row_keys: Mapping[str, str], hint: Any) -> Entry:
     """Entry of a quantity that is no record: its unit, words, components and type in JSON."""
     in_rows = not (declaration.key or "").startswith("/")
     dims = [dim for dim in declaration.dims if dim not in row_keys or not in_rows]
-    scalar_too = hint == "Limit" or re.search(r"float \| tuple", hint)
-    depth = len(re.findall("dict|Mapping", hint))
-    ends: tuple[str, ...] = ("[i]",) if dims or ("tuple" in hint and not declaration.dims and not scalar_too) else ()
+    types = list(types_in(hint))
+    origins = [get_origin(each) for each in types]
+    scalar_too = float in get_args(hint) and any(get_origin(each) is tuple for each in get_args(hint))
+    depth = sum(origin in (dict, Mapping) for origin in origins)
+    ends: tuple[str, ...] = ("[i]",) if dims or (tuple in origins and not declaration.dims and not scalar_too) else ()
     if depth:
         ends = (".".join(ANY for _ in range(depth)),)
     elif dims and dims[-1] in NAMES:
         ends = NAMES[dims[-1]]
-    number = re.search("float|Floats|int|Complex|Limit|Any", hint)
-    kind = "number" if number else "boolean" if re.search("bool|Flags", hint) else "string"
+    number = any(each is Any or each in _NUMBERS for each in types)
+    kind = "number" if number else "boolean" if bool in types or np.bool_ in types else "string"
     unit = declaration.unit if isinstance(declaration.unit, str) else "unit"
     return Entry(unit, declaration.words, ends, (kind, "array") if scalar_too else (kind,))
 

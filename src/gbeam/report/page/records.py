@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from typing import Any, TypeVar
+from types import NoneType
+from typing import Any, TypeVar, get_origin
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from gbeam.io.layout import SHARED, name_of, pattern_of
 from gbeam.report.page.parts import under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
-from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in
+from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, types_in
 from gbeam.results.equilibrium import BodyRest, Critical
 from gbeam.results.machine import AxesResult
 from gbeam.results.measures import Shock
@@ -128,7 +129,7 @@ def _has(kind: type, v: Facts, pattern: str) -> bool:
 def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any:
     """Value of a field in JSON, in the rows of a dimension or at its key; None where it is not there."""
     value = _at_key(kind, name, declaration, facts, declaration.key or name)
-    if value is None or "Complex" not in annotation(kind, name):
+    if value is None or np.complex128 not in types_in(annotation(kind, name)):
         return value
     return value + 1j * _at_key(kind, name, declaration, facts, f"{declaration.key or name}_imaginary")
 
@@ -142,7 +143,7 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
     if declaration.role == "labels" and row_dim is not None:
         rows = rows if row_keys[row_dim] else facts
         return tuple(rows) if isinstance(rows, dict) else _words(rows, key)
-    if declaration.key is None or (key == INSIDE and "None" in hint):
+    if declaration.key is None or (key == INSIDE and NoneType in types_in(hint)):
         return None
     inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
     if row_dim is not None:
@@ -151,7 +152,7 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
         if inner is not None:  # such as errors: of a record of arrays, what the rows have
             names: Facts = next((cell for cell in cells if cell), {})
             return read(inner, {part: [cell[part] for cell in cells] for part in names}) if names else None
-        if "tuple" in hint:
+        if any(get_origin(each) is tuple for each in types_in(hint)):
             return tuple(cells)
         if len(declaration.dims) > 1 and all(cell is None for cell in cells):
             return None
@@ -173,15 +174,15 @@ def _at(facts: Any, key: str) -> Any:
     return facts
 
 
-def _bare(value: Any, hint: str, declaration: Declaration) -> Any:
+def _bare(value: Any, hint: Any, declaration: Declaration) -> Any:
     """A value of JSON as a record has it: arrays for lists, vectors for components, NaN for null."""
     if isinstance(value, dict) and declaration.dims[-1:] and declaration.dims[-1] in NAMES:
         return _vectors(value)
-    if value is not None and ("Floats" in hint or "Complex" in hint):
+    if value is not None and not {np.float64, np.complex128}.isdisjoint(types_in(hint)):
         return _array(value)
     if isinstance(value, list):
         return tuple(value)
-    return np.nan if value is None and hint == "float" else value
+    return np.nan if value is None and hint is float else value
 
 
 def _array(values: Any) -> Floats:
