@@ -10,6 +10,7 @@ from collections.abc import Iterable
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 _NOT_STORABLE = re.compile("[\0\ud800-\udfff]")
 _EXPONENTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+LEAST_SHARE = 1e-5  # that is printed as a number: what is smaller is "< 0.001 %"
 LONGEST = 200  # characters of one value in a message
 
 
@@ -29,9 +30,11 @@ def raised(unit: str) -> str:
 
 
 def percent(share: float) -> str:
-    """Write a share in percent: ``1.3 %``, ``110 %``, and ``over 1000 %``, where digits say nothing."""
+    """Write a share in percent: ``1.3 %``, ``110 %``; ``< 0.001 %`` and ``over 1000 %``, where digits say nothing."""
     if not math.isfinite(share):
         return "–"
+    if 0 < share < LEAST_SHARE:
+        return f"< {100 * LEAST_SHARE:g} %"
     return "over 1000 %" if share > 10 else f"{100 * share:{'.0f' if share > 0.1 else '.2g'}} %"
 
 

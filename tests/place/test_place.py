@@ -184,7 +184,8 @@ def test_a_placement_says_when_the_load_itself_dominates() -> None:
     before = replace(best, control_point=0.15, difference=0.01, total_error=0.043)
     placement = Placement("f", "s", {"tip": 1.0}, 0.3, best, (best,), 0.15, {}, before=before)
     assert placement.changes == {"control_point": "220 mm"}
-    assert "no lever" in placement.message and "makes 4 %, and axis 2 jerk 10 of 10" in placement.message
+    assert "changes little" in placement.message
+    assert "makes 4 %; the machine is at its limit: axis 2 jerk 10 of 10" in placement.message
     assert replace(placement, before=replace(before, total_error=0.08)).message == ""
     rounded = replace(best, smoothing=0.0600001)  # never less than what keeps the limits
     assert replace(placement, best=rounded, before=replace(before, smoothing=0.12)).changes["smoothing"] == "60.01 ms"

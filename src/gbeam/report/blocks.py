@@ -25,7 +25,7 @@ _SHOWN = {
     "rpm": 30 / math.pi,
 }
 
-_NUMERIC = re.compile(r"[-+±–]?\s*\d.*|–?")
+_NUMERIC = re.compile(r"[-+±–<]?\s*\d.*|–?")
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def _at_rest(loads: Facts) -> Facts:
     sizes = {"force": force, "moment": max(moment, force * loads["stations"][-1])}
     row = {**loads}
     for key, size in sizes.items():
-        row[key] = f"({', '.join(f'{each:.5g}' for each in tidy(loads[f'root_{key}'].values(), size))})"
+        row[key] = f"({', '.join(map(number, tidy(loads[f'root_{key}'].values(), size)))})"
     if not max(high.max(), -low.min()) > 1e-20:  # rounding, or not known
         return row | {"stress": None}
     sign = "tension" if high.max() >= -low.min() else "compression"
@@ -214,7 +214,8 @@ def errors(motions: Facts) -> Blocks:
     ]
     names = [name for name, _ in declarations(ErrorEstimate) if name != "slender"]  # for comparisons: files have it
     causes = {name.replace("_", " "): f"{name}:%" for name in names}
-    yield table(rows, {"motion": "name", "of": "of"} | causes, "Estimated errors, of the largest size", optional=causes)
+    cells = {"motion": "name", "of": "of"} | causes
+    yield table(rows, cells, "Estimated errors, of the largest value", optional=causes)
     if not rows and any("displacement" in _judged(each) for each in motions.values()):
         yield Sentence("no error estimate", "faint")
     for name, each in motions.items():
@@ -239,4 +240,4 @@ def errors_by_body(errors: Facts) -> Block:
     shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}
     cells = {"body": "beams", **shares, "beam theory": "theory"}
-    return table(rows, cells, "Estimated errors that each body brings, of the largest", optional=tuple(cells)[1:])
+    return table(rows, cells, "Estimated errors that each body brings, of the largest value", optional=tuple(cells)[1:])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from gbeam.printable import raised
+from gbeam.printable import LEAST_SHARE, raised
 from gbeam.report.blocks import (
     FIGURES,
     Block,
@@ -141,8 +141,8 @@ def shaped_command(facts: Facts) -> Blocks:
     words = f"{facts['kind']} {GOALS[goal].format(size)} in {number(facts['duration'])} s"
     columns: Columns = {
         "command": "name",
-        "leaves, mm": "residual_amplitude:#.3g",
-        f"largest, {raised(COMMANDS[facts['kind']][1])}": "largest",
+        "vibration left, mm": "residual_amplitude:#.3g",
+        f"largest command, {raised(COMMANDS[facts['kind']][1])}": "largest",
         "run": "outcome",
     }
     yield Sentence(f"{words}, designed on {facts['design']}, run on {facts['check']}{span}")
@@ -185,7 +185,7 @@ def placement(facts: Facts) -> Blocks:
 def _best(facts: Facts) -> Iterator[tuple[str, Value]]:
     """Rows of the best placement: control point, largest load, mounting and smoothing, beside those now."""
     share, before, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
-    now = _point(before) if before else f"{1e3 * facts['current_control_point']:.2f} mm"
+    now = _point(before) if before else f"{number(1e3 * facts['current_control_point'])} mm"
     length = f", {share:.4f} of the length" if share else ""
     yield "control point", f"{_point(facts)} from the root{length} (now {now})"
     yield "largest load", _largest(best["largest_load"], before and before["largest_load"])
@@ -267,10 +267,10 @@ def _options(options: Sequence[Facts], measure: str) -> Block:
         "error": lambda each: _of_peak(each["total_error"]),
         "largest load, g": "largest_load.machine",
         "at": lambda each: each["largest_load"].get("place_machine", "").removeprefix("the "),
-        "axis accelerations, rad/s²": lambda each: ", ".join(f"{known(peak):.3g}" for peak in each["accelerations"]),
+        "of axes 1, 2, 3, rad/s²": lambda each: ", ".join(f"{known(peak):.3g}" for peak in each["accelerations"]),
         "limits": limits,
     }
-    caption = f"Options by {measure} with what smoothing and tracking change of the load, best first"
+    caption = f"Options, best first by {measure}, with the errors of smoothing and tracking"
     return table(options, cells, caption, optional=("largest load, g", "at", "limits"), most=_LISTED)
 
 
@@ -280,12 +280,14 @@ def _of_peak(share: float | None) -> str:
         return "–"
     if share > 1e8:
         return "none in flight"
-    return f"{100 * share:.3g} %" if share > 1e-8 else "0 %"
+    if share < LEAST_SHARE:
+        return percent(share if share > 1e-8 else 0.0)
+    return f"{100 * share:.3g} %"
 
 
 def _point(facts: Facts) -> str:
     """A control point, along x or anywhere."""
-    words = [f"{1e3 * each:.2f}" for each in facts["place"].values()]
+    words = [number(1e3 * each) for each in facts["place"].values()]
     return f"({', '.join(words)}) mm" if any([*facts["place"].values()][1:]) else f"{words[0]} mm"
 
 

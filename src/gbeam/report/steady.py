@@ -26,7 +26,6 @@ from gbeam.report.blocks import (
     named,
     numbered,
     pairs,
-    six,
     table,
 )
 from gbeam.report.loads import by_body, errors, errors_by_body, parts_tables, resting_loads, several
@@ -35,6 +34,7 @@ from gbeam.results.equilibrium import CriticalMap
 from gbeam.results.errors import Accelerated, along
 from gbeam.results.state_space import ACCURATE
 
+SYSTEM = "system"  # in the place of a model's name, of several bodies
 RESTING = 1e-9  # rad/s: a smaller rate of a base is a profile's rounding
 ROUNDING = 1e-10  # a damping ratio smaller than this is none
 
@@ -49,7 +49,7 @@ def rest(facts: Facts) -> Blocks:
         yield from evenly(each)
     yield Section("View", (Place("viewer"),))
     tips: Columns = {head: "name", "at, s": "of.time", "model": "model"}
-    tips |= {f"{axis}, mm": f"tip.{axis}:.6g" for axis in "xyz"}
+    tips |= {f"{axis}, mm": f"tip.{axis}" for axis in "xyz"}
     bending = [each for each in named(bodies) if "specimen" not in each]
     yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(apart)))
     loads = {name: each["loads"] for name, each in bodies.items() if "loads" in each}
@@ -64,7 +64,7 @@ def _points(motions: Facts) -> Blocks:
     """Tables of the displacements of points, and on a page of all coordinates and drives."""
     rows = [{"motion": name, **each} for name, rest in motions.items() for each in named(rest["points"])]
     of_motion: Columns = {"motion": "motion"} if len(motions) > 1 else {}
-    cells: Columns = {**of_motion, "point": "name", **{f"{axis}, mm": f"displacement.{axis}:.6g" for axis in "xyz"}}
+    cells: Columns = {**of_motion, "point": "name", **{f"{axis}, mm": f"displacement.{axis}" for axis in "xyz"}}
     places = (abs(each) for row in rows for each in row["place"].values())
     yield table(
         rows, cells, "Displacement of points from the start, axes of the ground", scale=max(places, default=0.0)
@@ -79,7 +79,7 @@ def _on_ground(motions: Facts) -> Blocks:
     for name, each in motions.items():
         force, moment = ([*each[key].values()] for key in ("ground_force", "ground_moment"))
         largest = max(map(abs, force + moment))
-        pair = (", ".join(f"{part:.5g}" for part in tidy(vector, largest)) for vector in (force, moment))
+        pair = (", ".join(map(number, tidy(vector, largest))) for vector in (force, moment))
         before = f"motion {name}: " if len(motions) > 1 else ""
         yield Sentence("{}on the ground: force ({}) N, moment ({}) N m".format(before, *pair))
 
@@ -92,7 +92,7 @@ def modes(facts: Facts) -> Blocks:
         pairs = zip(facts["body_names"], each["share"], strict=True)
         # Bodies of equal shares in their own order, whatever the last digits say.
         ranked = sorted(pairs, key=lambda pair: -round(pair[1], 2))
-        return ", ".join(f"{body} {share:.0%}" for body, share in ranked if share > 0.005) if several else None
+        return ", ".join(f"{body} {100 * share:.0f} %" for body, share in ranked if share > 0.005) if several else None
 
     rates = [np.linalg.norm([*each["base"]["angular_velocity"].values()]) for each in bodies.values()]
     rate = float(max(rates, default=0.0))
@@ -119,7 +119,7 @@ def where(facts: Facts, *words: str) -> Sentence:
     motion = f"motion {facts['motion']}" if facts["motion"] else ""
     modelled = [facts, *facts.get("bodies", {}).values()]  # a rigid body has no model
     models = dict.fromkeys(each["model"] for each in modelled if "model" in each)
-    return Sentence(", ".join(filter(None, (motion, *(f"model {each}" for each in models), *words))))
+    return Sentence(", ".join(filter(None, (motion, *(f"model {each}" for each in models if each != SYSTEM), *words))))
 
 
 ERROR: Columns = {"estimated error": "error_estimate:%"}
@@ -131,7 +131,7 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
     def damping(each: Facts) -> Value:
         return f"{each['damping_ratio'] if abs(each['damping_ratio']) > ROUNDING else 0.0:.4g}"
 
-    cells: Columns = {"mode": "number", "frequency, Hz": "frequency:.6g", GROUND: "ground_frequency:.6g"}
+    cells: Columns = {"mode": "number", "frequency, Hz": "frequency", GROUND: "ground_frequency"}
     cells |= {"damping ratio": damping, **more}
     modes_of = table(numbered(facts["modes"]), cells, optional=(GROUND, *ERROR, "kinetic energy"))
     return Section("Modes", (modes_of, *framed(facts), *noted(facts)))
@@ -177,7 +177,7 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     """
 
     def speed(factor: float) -> Column:
-        return lambda each: six(factor * each["speed"])
+        return lambda each: factor * each["speed"]
 
     low, high = facts["speed"][0], facts["speed"][-1]
     span = where(facts, *(f"{factor * low:.4g} to {factor * high:.4g} {unit}" for unit, factor in speeds.items()))
@@ -190,8 +190,11 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
         after = "" if not on or facts["unstable"] else "; stable beyond"
         yield Sentence(f"{'critical' if on else 'the equilibrium is lost'} at {lost_at}{reason}{error}{after}", "bad")
     yield Items(tuple(_stretch(each, speeds) for each in facts["unstable"]), "bad")
-    ends: Columns = {"Hz at the start": "frequency.0:.6g", "Hz at the end": "frequency.-1:.6g"}
-    ends |= {GROUND: "ground_frequency.-1:.6g"}
+    (unit, factor), *_ = speeds.items()
+    ends: Columns = {
+        f"at {factor * rate:.4g} {raised(unit)}, Hz{' ' * k}": f"frequency.{k - 1}" for k, rate in ((1, low), (0, high))
+    }
+    ends |= {GROUND: "ground_frequency.-1"}
     cells: Columns = {"mode": "number", "along": "direction", **ends, **ERROR}
     tracks = table(numbered(facts["tracks"]), cells, optional=(GROUND,))
     yield Section("Modes", (tracks, *framed(facts), *noted(facts)))
@@ -199,7 +202,7 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
         "mode": lambda each: each["track"] + 1,
         "multiple": lambda each: f"{each['order']} ×",
         **{f"speed, {raised(unit)}": speed(factor) for unit, factor in speeds.items()},
-        "frequency, Hz": "frequency:.6g",
+        "frequency, Hz": "frequency",
         **ERROR,
     }
     remark = () if facts["crossings"] else (Sentence("no crossing in this range", "faint"),)
@@ -260,7 +263,7 @@ def critical_map(facts: Facts) -> Blocks:
     )
     if shapes:
         in_all = f", {percent(total)} in all" if total else ""
-        yield Sentence(f"estimated errors up to {percent(shapes)} from too few shapes{in_all}")
+        yield Sentence(f"largest estimated error {percent(shapes)} from too few shapes{in_all}")
     yield Section("Figure", (FIGURES,))
 
 
@@ -279,7 +282,7 @@ def state_space(facts: Facts) -> Blocks:
     cells: Columns = {
         "name": "name",
         "unit": lambda each: raised(each["unit"]),
-        "value": lambda each: tidy((each["value"],), sizes[each["unit"]], max(1.0, sizes.get("m", 0.0)))[0],
+        "at equilibrium": lambda each: tidy((each["value"],), sizes[each["unit"]], max(1.0, sizes.get("m", 0.0)))[0],
     }
     for name in signals:
         yield Section(name, (table(facts[name], cells),), titled=True)
@@ -299,7 +302,7 @@ def state_space(facts: Facts) -> Blocks:
         yield from _in_steps(facts)
     if facts["truncation"]:
         yield from _left_out(facts, facts["truncation"])
-    poles = {"frequency, Hz": "frequency:.6g", "error": "errors.total:%"}
+    poles = {"frequency, Hz": "frequency", "error": "errors.total:%"}
     yield Section("poles", (table(facts["poles"], poles),), titled=True, detail=True)
     yield Sentence("--json prints the matrices, --out writes them for MATLAB too.", "faint")
 
@@ -319,7 +322,7 @@ def _accuracy(facts: Facts) -> Blocks:
     words = []
     if accurate:
         worst, end = percent(float(totals[:accurate].max())), facts["accurate_to"]
-        words.append(f"frequencies accurate to {worst} up to {end:.5g} Hz ({accurate} of {len(totals)})")
+        words.append(f"frequencies accurate to {worst} up to {number(end)} Hz ({accurate} of {len(totals)})")
     if accurate < len(totals):
         beyond = totals[accurate:][np.isfinite(totals[accurate:])]
         error = f"up to {percent(float(beyond.max()))} off" if len(beyond) else "not judged"
@@ -381,7 +384,7 @@ def _left_out(facts: Facts, left_out: Facts) -> Blocks:
     if shares.size:
         worst = np.unravel_index(int(shares.argmax()), shares.shape)
         output, input_ = facts["outputs"][worst[0]]["name"], facts["inputs"][worst[1]]["name"]
-        words += f": up to {left_out['to']:.5g} Hz at most {percent(float(shares[worst]))} of the largest gain"
+        words += f": up to {number(left_out['to'])} Hz {percent(float(shares[worst]))} of the largest gain at most"
         words += f" ({output} by {input_})" if shares.size > 1 else ""
     yield Sentence(words)
     if left_out["method"] == "balanced":

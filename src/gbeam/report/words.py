@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.printable import json_printable
+from gbeam.printable import LEAST_SHARE, json_printable
 from gbeam.printable import percent as percent_of
 from gbeam.results.errors import WHOLE
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from gbeam.results.parts import LoadPeaks
 
 ALONG = 1e-9  # of a direction along an axis
+LARGEST_WRITTEN = 1e6  # from here on numbers have an exponent
 
 
 def as_json(value: Any) -> str:
@@ -74,13 +75,14 @@ def number(value: float, digits: int = 4) -> str:
     """Write a number with significant digits; a dash where there is none."""
     if not math.isfinite(value):
         return "–"
-    return "0" if value == 0 else f"{value:#.{digits}g}".rstrip(".").replace(".e", "e")
+    text = "0" if value == 0 else f"{value:#.{digits}g}".rstrip(".").replace(".e", "e")
+    return f"{float(text):.0f}" if 1 <= abs(value) < LARGEST_WRITTEN and "e" in text else text
 
 
 def percent(share: float) -> str:
     """Write a share in percent; a dash where it is not known."""
     (share,) = tidy((share,), 0.0, 1.0) if math.isfinite(share) else (share,)
-    return f"{number(100 * share, 2)} %" if share < 0.1 else percent_of(share)
+    return f"{number(100 * share, 2)} %" if LEAST_SHARE <= share < 0.1 else percent_of(share)
 
 
 def errors_in_words(errors: Mapping[str, float | None]) -> str:

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from gbeam.printable import raised
 from gbeam.results.declared import BESIDE, declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a limit has a field of that name
 from gbeam.results.parts import Base
@@ -40,10 +41,8 @@ class LimitUse:
         return self.share > 1 + 1e-9
 
     def __str__(self) -> str:
-        return (
-            f"{self.axis} {self.quantity} {self.used:.4g} of {self.allowed:.4g} {self.unit} ({self.share:.0%}) "
-            f"at {self.time:.3f} s"
-        )
+        share = f"{raised(self.unit)} ({100 * self.share:.0f} %)"
+        return f"{self.axis} {self.quantity} {self.used:.4g} of {self.allowed:.4g} {share} at {self.time:.3f} s"
 
 
 @dataclass(frozen=True)

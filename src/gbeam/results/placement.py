@@ -203,10 +203,11 @@ class Placement(Figured[Literal["difference"]]):
         if before is None or before.exceeded or best.total_error <= (1 - _LEVER) * before.total_error:
             return ""
         most_used = best.most_used
-        limit = f", and {most_used} leaves no more" if most_used is not None and most_used.share >= _FULL else ""
+        full = most_used is not None and most_used.share >= _FULL
+        limit = f"; the machine is at its limit: {most_used}" if full else ""
         return (
-            f"placing is no lever here: it brings the measure from {100 * before.total_error:.3g} to "
-            f"{100 * best.total_error:.3g} % of flight's peak; what the load itself differs by at the control point "
+            f"another place changes little: the measure goes from {100 * before.total_error:.3g} % to "
+            f"{100 * best.total_error:.3g} % of flight's peak, of which the error of the load at the control point "
             f"makes {100 * best.tracking:.3g} %{limit}"
         )
 

@@ -316,7 +316,7 @@ def critical_load(
     if share < NOTHING:
         where, what = ("beam.loads", "a hub's") if subject.body else ("forces", "a joint's")
         fix = f"add one, or give a time at which one acts; `gbeam critical-speed` can raise {what} rate instead"
-        raise InputError(where, "have none that act", fix)
+        raise InputError(where, "has no load that acts", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
     lost = first_loss_along(path, subject, limit, "load factor", "times the loads", progress)
     return with_frequencies(judged(lost, path, subject, progress), path, subject.system, progress)

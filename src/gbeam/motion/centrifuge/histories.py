@@ -100,7 +100,7 @@ def _followed_worse(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple
             causes.insert(len(causes) if left > _MOST * size[worst] else 0, eased)
     return (
         f"the machine cannot follow the load at {time[worst]:.3f} s: error {in_g(size[worst])} "
-        f"({percent(share[worst])}; the plan aims at {percent(motion.inverse.within)}); "
+        f"({percent(share[worst])}; the plan aims at {100 * motion.inverse.within:.2g} %); "
         f"{'; '.join(causes) or motion.inverse.unless}",
     )
 
