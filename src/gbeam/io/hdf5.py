@@ -146,7 +146,7 @@ def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str,
             content = zlib.decompressobj().decompress(packed, EMBEDDED) if len(packed) > 1 else None
             file, digest = (str(attrs[name][key]) for key in ("file", "sha256"))
             records.append(RecordFile(name.removeprefix(RECORD), file, digest, content))
-    text = variables.get("scenario")  # in a fit of version 0.2 an array has this name, and it has no text
+    text = variables.get("scenario")
     return Provenance(
         scenario=text if isinstance(text, str) else "",
         overrides=tuple(str(root.get("overrides", "")).splitlines()),
