@@ -121,10 +121,15 @@ def _is_regular(file: Path) -> bool:
         return False
 
 
-_TEMPLATES = {"Flight and centrifuge": "flight", "Hub": "hub", "System of bodies": "system"}
+_TEMPLATES = {
+    "Flight and centrifuge": "flight",
+    "Box on a plain arm": "arm",
+    "Hub": "hub",
+    "System of bodies": "system",
+}
 _FLOWN = "F-16 turn of 8 g, with its record"
 _SCENARIO, _RECORD = "f16_8g_turn.toml", "f16_8g_turn.csv"
-EXAMPLES = ("Flight and centrifuge", _FLOWN, "Hub", "System of bodies")
+EXAMPLES = ("Flight and centrifuge", _FLOWN, "Box on a plain arm", "Hub", "System of bodies")
 
 
 def example(name: str, records: Path) -> str:

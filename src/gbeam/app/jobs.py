@@ -43,7 +43,6 @@ DOWNLOADS = (
     (_SCENARIO, _SCENARIO),  # of earlier runs
     (_SCENARIO, f"{INPUT}/{_SCENARIO}"),
     (_ANSWER, _ANSWER),
-    ("words.txt", "words.txt"),  # of runs of version 0.2
     (_MESSAGES, _MESSAGES),
     ("found.toml", f"{INPUT}/found.toml"),
     ("command.json", "out/command.json"),

@@ -129,7 +129,10 @@ export class Form {
     const inside = entry.inside ?? [];
     if (entry.kind === "table") this.table(box, entry, inside);
     else {
-      box.append(...inside.map((each) => this.group(each)));
+      // Of tables by name some may be written as a value, such as a direction.
+      const values = inside.filter((each) => each.kind === "value" && each.written);
+      if (values.length) box.append(this.values(values));
+      box.append(...inside.filter((each) => !values.includes(each)).map((each) => this.group(each)));
       const rest = (entry.count ?? inside.length) - inside.length;
       if (rest > 0) box.append(element("p", "faint", `and ${rest} more: see the text`));
       const next = `${entry.path}[${entry.count}]`;
@@ -181,7 +184,9 @@ export class Form {
     help.id = `help-${this.count++}`;
     input.setAttribute("aria-describedby", `${words.id} ${help.id}`);
     place.append(label, words, help);
-    if (entry.tables?.length) place.append(this.adder(entry, entry.path, entry.tables, "as a profile"));
+    // Kinds of profiles have names; a direction of an arm is a table of one kind.
+    const form = entry.tables?.[0] ? "as a profile" : "as a table";
+    if (entry.tables?.length) place.append(this.adder(entry, entry.path, entry.tables, form));
     this.fields.set(entry.path, { input, words, value: "" });
     return place;
   }
@@ -214,7 +219,7 @@ export class Form {
     let chosen = options[0] ?? "";
     const act = button(`Add ${words}`, () => this.add(path, chosen));
     act.dataset["path"] = `${path}+`;
-    if (words === "as a profile") act.setAttribute("aria-label", `Add ${entry.path} ${words}`);
+    if (words.startsWith("as a ")) act.setAttribute("aria-label", `Add ${entry.path} ${words}`);
     if (options.length > 1) {
       const select = choice("", options.map((each) => [each, each]), chosen, (word) => {
         chosen = word;

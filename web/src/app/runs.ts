@@ -157,15 +157,6 @@ export class Runs {
       frame.src = api.file(run.id, "report.html");
       this.shown.append(frame);
       whole(frame);
-    } else if (run.files.includes("words.txt")) {
-      const words = await api.text(run.id, "words.txt");
-      if (words.trim()) this.shown.append(element("pre", "words", words));
-      for (const name of run.files.filter((each) => each.endsWith(".png"))) {
-        const figure = element("img", "figure");
-        figure.src = api.file(run.id, name);
-        figure.alt = name;
-        this.shown.append(figure);
-      }
     }
   }
 
