@@ -161,3 +161,12 @@ def test_a_turn_says_all_of_a_hubs_mounting():
         gb.Hub(radius=1.0, rate=1.0, turn=(0, 0, 1), setting_angle=1.0)
     with pytest.raises(gb.InputError, match="pointing"):
         gb.Hub(radius=1.0, rate=1.0, turn=(0, 0, 1), pointing="inward")
+
+
+def test_a_beam_beside_the_axis_is_drawn_on_its_arm():
+    beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+    motion = gb.plain_arm(radius=1.2, control_point=(0.15, 0, 0), load="+z", up="+x", level=9 * G, ramp=1.0, dwell=0.5)
+    run = gb.simulate(gb.assemble(beam, "FOAM"), motion, duration=2.5, step=0.02, estimate=False, name="test")
+    assert run.environment == "arm" and "(arm, FOAM)" in repr(run)
+    outline = run.body.outline
+    assert outline.arm_root == pytest.approx([1.2, 0, -0.15], abs=1e-12) and outline.radius == pytest.approx(1.2)

@@ -62,3 +62,13 @@ def test_what_a_scenario_gives_stands_in_place_of_a_presets(tmp_path):
 def test_one_direction_alone_leaves_those_of_a_preset_out(tmp_path):
     case = read(tmp_path, "mil-std-810h-513-crash", level='"8 g"', load='"-z"')
     assert [*case.motions] == ["test"]
+
+
+def test_results_say_which_standard_and_clauses_they_rest_on(tmp_path):
+    (note,) = gb.describe(read(tmp_path, "mil-std-810h-513-structural", level='"9 g"')).notes
+    assert note.startswith("test by MIL-STD-810H, method 513.8, acceleration, procedure I: structural test (preset mil")
+    assert "dwell by 4.5.2, step 1, at second hand, directions by 4.5.2, step 4, at second hand" in note
+    assert "not checked against the standard: level (table 513.8-I" in note
+    own = {"level": '"9 g"', "dwell": '"90 s"', "directions": '{ fore = "+x" }'}
+    (note,) = gb.describe(read(tmp_path, "mil-std-810h-513-structural", **own)).notes
+    assert "4.5.2" not in note and "MIL-STD-810H" in note

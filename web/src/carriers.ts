@@ -110,23 +110,66 @@ export function centrifuge(arm: number, extent: number[][], place: number[], tur
   };
 }
 
+/** Base axes at a place in axes that turn; `mounting` is their rotation row by row. */
+function mounted(mounting: number[], [x, y, z]: number[]): Group {
+  const base = new Group();
+  const m = mounting;
+  base.applyMatrix4(
+    new Matrix4().set(m[0]!, m[1]!, m[2]!, x!, m[3]!, m[4]!, m[5]!, y!, m[6]!, m[7]!, m[8]!, z!, 0, 0, 0, 1),
+  );
+  return base;
+}
+
+/** A plain arm that turns about z and ends below the root of a beam, at `place`, with a counterweight on the other side;
+ * `mounting` is R_HB row by row. */
+export function plainArm(place: number[], length: number, mounting: number[]): Carrier {
+  const [world, turning, base] = [new Group(), new Group(), mounted(mounting, place)];
+  const [x, y, z] = place as [number, number, number];
+  const reach = Math.max(Math.hypot(x, y), 0.1 * length);
+  const thick = Math.min(0.06 * reach, 0.3 * length);
+  const post = upright(thick, 0.3 * reach, 0x8a8f98);
+  post.position.z = -0.15 * reach;
+  const foot = upright(3 * thick, 0.02 * reach, 0x6c717a);
+  foot.position.z = -0.3 * reach;
+  const beam = part(new BoxGeometry(1.3 * reach, thick, thick), 0xa9afb9);
+  beam.position.x = 0.35 * reach;
+  const weight = part(new BoxGeometry(2.5 * thick, 3 * thick, 2.5 * thick), 0x6c717a);
+  weight.position.x = -0.3 * reach;
+  const along = new Group();
+  along.rotation.z = Math.atan2(y, x);
+  along.add(beam, weight);
+  if (z) {
+    const column = part(new BoxGeometry(0.7 * thick, 0.7 * thick, Math.abs(z)), 0xa9afb9);
+    column.position.set(x, y, z / 2);
+    turning.add(column);
+  }
+  turning.add(along, base);
+  world.add(post, foot, turning);
+  return {
+    world,
+    base,
+    size: 1.08 * (reach + length),
+    middle: [0, 0, 0],
+    note: "",
+    turn: (angles) => {
+      turning.rotation.z = angles[0]!;
+    },
+  };
+}
+
 /** A hub that turns about z, the beam on its rim; `mounting` is R_HB row by row. */
 export function hub(radius: number, length: number, mounting: number[]): Carrier {
-  const [world, turning, base] = [new Group(), new Group(), new Group()];
+  const [world, turning, base] = [new Group(), new Group(), mounted(mounting, [radius, 0, 0])];
   const size = Math.max(radius, 0.03 * length);
   const disc = upright(size, 0.25 * size + 0.01 * length, 0x8a8f98);
   const mark = part(new BoxGeometry(0.8 * size, 0.08 * size, 0.27 * size + 0.012 * length), 0xe69f00);
   mark.position.x = 0.5 * size;
-  const m = mounting;
-  base.applyMatrix4(
-    new Matrix4().set(m[0]!, m[1]!, m[2]!, radius, m[3]!, m[4]!, m[5]!, 0, m[6]!, m[7]!, m[8]!, 0, 0, 0, 0, 1),
-  );
   turning.add(disc, mark, base);
   world.add(turning);
   return {
     world,
     base,
-    size: Math.max(radius + m[0]! * length, radius) * 1.08,
+    size: Math.max(radius + mounting[0]! * length, radius) * 1.08,
     middle: [0, 0, 0],
     note: "",
     turn: (angles) => {

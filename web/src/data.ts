@@ -86,6 +86,8 @@ export interface Motion {
   arm?: number;
   axes?: Ref;
   radius?: number;
+  /** Of the root, in axes of a plain arm. */
+  place?: number[];
   mounting?: number[];
   angle?: Ref;
   /** Quaternions w, x, y, z of base axes that turn in flight. */

@@ -14,7 +14,7 @@ import {
   type WebGLRenderer,
 } from "three";
 import { Body, type Settings } from "./bodies";
-import { axesOnly, type Carrier, centrifuge, flying, hub, surroundings } from "./carriers";
+import { axesOnly, type Carrier, centrifuge, flying, hub, plainArm, surroundings } from "./carriers";
 import { interpolate, locate, type Motion, view } from "./data";
 import { lineColour } from "./colours";
 import type { Orbit } from "./orbit";
@@ -66,7 +66,7 @@ export class Panel {
     const of = this.motion.name === this.motion.environment ? "" : ` (${this.motion.environment})`;
     if (this.motion.middle && !this.whole) return `${this.motion.name}${of}`;
     if (!this.whole) return `${this.motion.name}${of}, base axes`;
-    const whole = { hub: "hub", flight: "turning" }[this.motion.environment] ?? "machine";
+    const whole = { hub: "hub", arm: "arm", flight: "turning" }[this.motion.environment] ?? "machine";
     return `${this.motion.name}${of}, ${whole}`;
   }
 
@@ -131,6 +131,9 @@ export class Panel {
     const { motion, length } = this;
     if (this.whole && motion.axes && motion.arm) {
       return centrifuge(motion.arm, motion.extent!, motion.controlPlace!, motion.turn);
+    }
+    if (this.whole && motion.angle && motion.place) {
+      return plainArm(motion.place, length, motion.mounting ?? [1, 0, 0, 0, 1, 0, 0, 0, 1]);
     }
     if (this.whole && motion.angle && motion.radius !== undefined) {
       return hub(motion.radius, length, motion.mounting ?? [1, 0, 0, 0, 1, 0, 0, 0, 1]);

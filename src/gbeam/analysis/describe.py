@@ -17,7 +17,7 @@ from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.system import RigidBody, System
 from gbeam.motion import Flight
 from gbeam.motion.arm import level_of
-from gbeam.motion.protocol import notes_on
+from gbeam.motion.protocol import kind_of, notes_on
 from gbeam.results.description import (
     BodyDescription,
     ControllerDescription,
@@ -72,7 +72,7 @@ def describe(case: Case) -> Description:
             for name, law in system.controllers.items()
         },
         gravity=None if system.gravity is None else np.asarray(system.gravity, dtype=float),
-        motions={name: motion.kind for name, motion in case.motions.items()},
+        motions={name: kind_of(motion) for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
         spans=dict(case.spans),
         levels={name: level for name, each in case.motions.items() if (level := level_of(each)) is not None},

@@ -162,7 +162,9 @@ def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
-    """Radius and orientation of the hub that carries a beam; empty without a hub, or with a root beside its x axis."""
-    if motion is None or motion.kind != "hub" or np.any(motion.mount.place[1:]):
+    """Radius and orientation of the hub or arm that carries a beam, and the root's place on an arm; empty without."""
+    if motion is None or motion.kind != "hub":
         return {}
-    return {"radius": float(motion.mount.place[0]), "R_HB": np.asarray(motion.mount.R_HB)}
+    place = np.asarray(motion.mount.place)
+    of_arm = {"arm_root": place} if motion.name == "arm" else {}
+    return {"radius": float(place[0]), "R_HB": np.asarray(motion.mount.R_HB), **of_arm}

@@ -173,7 +173,7 @@ def _of_response(result: Response, title: str) -> dict[str, Describe]:
     if result.axes is not None:
         described |= _of_machine(result, result.axes, title)
     if result.hub is not None:
-        described["hub"] = partial(response.hub, result, result.hub, title)
+        described[result.environment] = partial(response.hub, result, result.hub, title)
     if result.invariants is not None:
         described["energy"] = partial(response.energy, result, result.invariants, title)
     return described

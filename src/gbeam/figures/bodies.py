@@ -45,7 +45,7 @@ def loads(response: Response, body: str, title: str = "") -> Figure:
     panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
     if carried.beam_torque is not None:
         scale, unit = scale_of("N m", carried.beam_torque)
-        panels.append(Panel(f"torque from the hub, {unit}", (Line(response.time, scale * carried.beam_torque),)))
+        panels.append(Panel(f"torque about the axis, {unit}", (Line(response.time, scale * carried.beam_torque),)))
     spans = stretches(response.axes, response.time)
     of_body = f" of {body}" if len(response.bodies) > 1 else ""
     section = f"loads in the root's section{of_body}, and stress anywhere along {'it' if of_body else 'the beam'}"

@@ -266,13 +266,14 @@ def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
 
 
 def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
-    """Describe the turning of a hub about z."""
+    """Describe the turning of a hub or an arm about z."""
     shown = [(f"{field}, {declared(HubResult, field)[1]}", getattr(motion, field)) for field in ("angle", "rate")]
     if motion.drive_torque is not None:
         scale, unit = scale_of("N m", motion.drive_torque)
         shown.append((f"drive torque, {unit}", scale * motion.drive_torque))
     panels = tuple(Panel(label, (Line(response.time, values),)) for label, values in shown)
-    return Figure(title, of_motion(response.name, "the hub, about z"), panels, outcomes=(response.outcome,))
+    subject = of_motion(response.name, f"the {response.environment}, about z")
+    return Figure(title, subject, panels, outcomes=(response.outcome,))
 
 
 def energy(response: Response, invariants: Invariants, title: str = "") -> Figure:

@@ -35,6 +35,7 @@ def plain_arm(
     dwell: float,
     down: float | None = None,
     gravity: bool = True,
+    standard: str = "",
 ) -> Hub:
     """Hub that turns up from rest to a level, holds it and stops: a centrifuge of one axis, with a fixed mounting.
 
@@ -65,6 +66,8 @@ def plain_arm(
         Time from the level to rest, s; as long as that up where it is left out.
     gravity : bool
         False to leave out the specimen's weight.
+    standard : str
+        Test of a standard that this is, in words: results have it among their notes.
 
     Raises
     ------
@@ -95,6 +98,7 @@ def plain_arm(
         turn=mounted(load, up),
         control_point=control_point,
         gravity=(0.0, 0.0, -STANDARD_GRAVITY if gravity else 0.0),
+        standard=standard,
     )
 
 
@@ -131,7 +135,7 @@ def mounted(load: Any, up: Any) -> tuple[float, float, float]:
 
 def extent_of(motion: Any) -> tuple[float, float] | None:
     """First and last time of a plain arm's motion, s; None of other motions, and of hubs without a control point."""
-    if motion is None or motion.kind != "hub" or motion.control_point is None or motion.free:
+    if motion is None or motion.kind != "hub" or motion.name != "arm":
         return None
     extent: tuple[float, float] | None = motion.rate.extent
     return extent

@@ -124,6 +124,8 @@ class Hub:
     stiffness, damping : float
         Torsional spring, at ease at the initial angle zero, and damper between a free hub and the ground, N m/rad,
         N m s/rad.
+    standard : str
+        Test of a standard that this is, in words: results have it among their notes.
 
     Raises
     ------
@@ -149,6 +151,7 @@ class Hub:
     setting_angle: Any | None
     turn: tuple[float, float, float] | None = static()
     control_point: Any | None
+    standard: str = static()
     times: Any
     angles: Any
 
@@ -166,6 +169,7 @@ class Hub:
         gravity: ArrayLike | None = None,
         stiffness: Any = 0.0,
         damping: Any = 0.0,
+        standard: str = "",
     ) -> None:
         if torque is not None and rate is not None:
             raise InputError("torque", "is given beside rate", "keep rate or torque, not both")
@@ -197,10 +201,16 @@ class Hub:
             setting_angle=None if setting_angle is None else as_array(setting_angle),
             turn=turned,
             control_point=controlled,
+            standard=standard,
         )
         # Gravity turns in base axes with the hub: only then does the motion of the base need the angle.
         times, angles = self._angles() if gravity is not None and not free else (np.zeros(1), np.zeros(1))
         assign(self, times=times, angles=angles)
+
+    @property
+    def name(self) -> str:
+        """Name of what turns: an arm where a control point is given, else a hub."""
+        return "hub" if self.control_point is None or self.free else "arm"
 
     @property
     def radius(self) -> Any:

@@ -11,6 +11,7 @@ from gbeam.arrays.namespace import holds_jax
 from gbeam.arrays.types import Floats
 from gbeam.guards.checks import implausible
 from gbeam.motion.flight import Flight
+from gbeam.motion.hub import Hub
 from gbeam.results.parts import Base
 from gbeam.results.result import each_once, part_words
 
@@ -53,12 +54,19 @@ def level_factor(motion: Any) -> float | None:
     return flown.level_factor if isinstance(flown, Flight) else None
 
 
+def kind_of(motion: Any) -> str:
+    """Word for a motion's kind, arm of a hub with a control point; ground where there is none."""
+    if motion is None:
+        return "ground"
+    return str(motion.name if motion.kind == "hub" else motion.kind)
+
+
 SAMPLES = 501
 
 
 def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
-    """Notes on motions by name: hubs, built or as a scenario has them, without gravity, which in orbit is meant; and
-    records of flights, to which something was done.
+    """Notes on motions by name: hubs, built or as a scenario has them, without gravity, which in orbit is meant;
+    records of flights, to which something was done; and the standards of tests.
     """
     records = {name: motion.unscaled.record if isinstance(motion, Flight) else None for name, motion in motions.items()}
     done = each_once(
@@ -73,7 +81,9 @@ def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
         for name, motion in motions.items()
         if motion is not None and motion.kind == "hub" and motion.gravity is None
     )
-    return (*done, *hubs)
+    standards = {name: each.standard for name, each in motions.items() if isinstance(each, Hub)}
+    tests = each_once({name: [f"test by {words}"] if words else [] for name, words in standards.items()})
+    return (*done, *hubs, *tests)
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:

@@ -48,7 +48,7 @@ def resting_loads(loads: Facts, row_of: str = "motion") -> Block:
     """Table of root loads and stress at rest, a row for every `row_of`: motion, body or both."""
     cells = {row_of: "name", "force, N": "force", "moment, N m": "moment"}
     cells |= {"stress, MPa": "stress", "largest in": "place"}
-    cells |= {"margin on yield": "least", "torque from the hub, N m": "beam_torque"}
+    cells |= {"margin on yield": "least", "torque about the axis, N m": "beam_torque"}
     rows = [_at_rest(each) for each in named(loads)]
     stressed = any(each["stress"] for each in rows)
     caption = f"Of the base on the root, base axes{'; largest stress anywhere' if stressed else ''}"

@@ -87,7 +87,7 @@ def response_lines(response: Response) -> Iterator[str]:
         yield from (f"{before}{line}" for line in _body_lines(body))
     if response.hub is not None:
         angle, rate = response.hub.angle_end, response.hub.rate_max
-        yield f"hub: angle at the end {number(angle)} rad, largest rate {number(rate)} rad/s"
+        yield f"{response.environment}: angle at the end {number(angle)} rad, largest rate {number(rate)} rad/s"
         if turning and np.any(response.body.damping_ratio):
             yield _damping(response.body)
     if response.invariants is not None:

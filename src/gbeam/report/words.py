@@ -130,7 +130,7 @@ def largest_loads(peaks: LoadPeaks) -> str:
         extremes = peaks.tension.value, peaks.compression.value
         words += f"; {stress_words(peaks.stations, *extremes, peaks.yield_strength)}"
     if peaks.beam_torque is not None:
-        words += f"; torque from the hub {number(float(peaks.beam_torque.value))} N m"
+        words += f"; torque about the axis {number(float(peaks.beam_torque.value))} N m"
     return words
 
 

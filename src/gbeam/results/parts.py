@@ -65,6 +65,9 @@ class Outline(Part):
         "", "direction of the section's width at rest", "point axis", name="outline_across", default=None
     )
     radius: float = quantity("m", "from the hub's axis to the root", name="hub_radius", optional=True, default=math.nan)
+    arm_root: Floats | None = quantity(
+        "m", "place of the root on an arm, hub axes", "hub_axis", note="None without an arm", default=None
+    )
     R_HB: Floats = quantity(
         "", "rotation from base axes to hub axes", "hub_axis axis", name=None, default_factory=lambda: np.eye(3)
     )

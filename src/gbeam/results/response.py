@@ -114,7 +114,7 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
     json_rows: ClassVar[dict[str, str]] = {"point": "points", "coordinate": "coordinates"}
 
     name: str = fact("name of the motion", note="empty where the ground rests")
-    environment: str = fact("flight, centrifuge or hub; ground where it rests")
+    environment: str = fact("flight, centrifuge, hub or arm; ground where it rests")
     outcome: str = fact(
         "how it ended",
         note="done, diverged (the displacement left what the model can mean, or a body lost its stability for so long "

@@ -253,7 +253,7 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     json_rows: ClassVar[dict[str, str]] = {"bolt": "bolts", "corner": "corners"}
 
     motion: str = fact("name of the motion")
-    environment: str = fact("flight, centrifuge or hub")
+    environment: str = fact("flight, centrifuge, hub or arm")
     mass: float = fact("mass of the specimen", "kg")
     time: Floats = quantity("s", "time", "time", role="coordinate")
     corners: Floats = quantity(

@@ -107,11 +107,11 @@ def _arms(parts: Collector, name: str, table: schema.Arm) -> dict[str, motion.Mo
     built: dict[str, motion.Motion | None] = {}
     for part, keys in table.motions.items():
         where = f"motion.{name}.directions.{part}" if part else f"motion.{name}"
-        built["-".join(filter(None, (name, part)))] = parts.attempt(where, _arm, table.gravity, **keys)
+        built["-".join(filter(None, (name, part)))] = parts.attempt(where, _arm, table, **keys)
     return built
 
 
-def _arm(gravity: bool, *, load: Any, up: Any, control_point: Any, **keys: Any) -> motion.Hub:
+def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: Any) -> motion.Hub:
     """Build the motion of an arm in one direction; of several directions that may be up the first across the load."""
     place = control_point if isinstance(control_point, tuple) else (control_point, 0.0, 0.0)
     several = isinstance(up, tuple) and isinstance(up[0], str)
@@ -122,7 +122,8 @@ def _arm(gravity: bool, *, load: Any, up: Any, control_point: Any, **keys: Any) 
         words = " and ".join(map(str, upwards))
         fix = 'give a direction across it, or several, such as up = ["+z", "+x"], of which one always is'
         raise InputError("up", f"is {words}, along load = {load}", fix)
-    return motion.plain_arm(gravity=gravity, load=load, up=chosen, control_point=place, **keys)
+    gravity, standard = table.gravity, table.standard
+    return motion.plain_arm(load=load, up=chosen, control_point=place, gravity=gravity, standard=standard, **keys)
 
 
 def components(parts: Collector, where: str, table: Any) -> Profile | None:

@@ -20,7 +20,7 @@ from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
-from gbeam.motion.protocol import Motion, notes_on
+from gbeam.motion.protocol import Motion, kind_of, notes_on
 from gbeam.results.solids import SpecimenLoads
 from gbeam.solids.stress import hull
 from gbeam.structure.attachments import TIP
@@ -198,7 +198,7 @@ class RigidSpecimen(Value):
         inside = breaks[(breaks > start) & (breaks < end)]
         time = np.union1d(np.linspace(start, end, count), inside)
         time = time[np.append(True, np.diff(time) > SAME * sample)]
-        return replace(self._loads(time, moving.base(time), name, motion.kind), notes=notes_on({name: motion}))
+        return replace(self._loads(time, moving.base(time), name, kind_of(motion)), notes=notes_on({name: motion}))
 
     def _loads(self, time: Floats, base: Any, name: str, environment: str) -> SpecimenLoads:
         """Loads at times (t,), s, by the motion of the root there."""

@@ -27,7 +27,7 @@ from gbeam.motion import Centrifuge
 from gbeam.motion.arm import imbalance_of, level_of
 from gbeam.motion.centrifuge.histories import axes_result
 from gbeam.motion.flight import Flight
-from gbeam.motion.protocol import level_factor, notes_on
+from gbeam.motion.protocol import kind_of, level_factor, notes_on
 from gbeam.progress import Progress
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.errors import Errors, StepErrors
@@ -218,11 +218,6 @@ class Histories:
             [] if self.run.traced else [_change(steps[0]), _change(steps[1]), _change(steps[2].sum(axis=1), steps[2])]
         )
         return every | {"invariants": Invariants(*kept, *changes)}
-
-
-def kind_of(motion: Any) -> str:
-    """Word for a motion's kind; ground where there is none."""
-    return "ground" if motion is None else motion.kind
 
 
 def response_of(

@@ -191,6 +191,8 @@ def _carrier(inner: Variables, v: Variables, index: Any, numbers: Numbers) -> di
     if "hub_radius" in inner:
         header |= {"radius": float(inner["hub_radius"]), "mounting": np.ravel(inner["hub_mounting"]).tolist()}
         header["angle"] = numbers.add(v["hub_angle"][index])
+    if "arm_root" in inner:
+        header["place"] = inner["arm_root"].tolist()
     return header
 
 

@@ -8,7 +8,7 @@ give it.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -35,6 +35,16 @@ class Preset:
     def directions(self) -> Mapping[str, Any]:
         """Directions of the load by name; empty where the scenario has to give them."""
         return self.arm.get("directions", {})
+
+    def words(self, name: str, taken: Iterable[str]) -> str:
+        """Words for results on the standard, the clauses of the keys that are `taken` from the preset, at second hand
+        where they are, and where the standard has those that a scenario gives.
+        """
+        sources = {key: clause.partition(":")[0] for key, clause in self.source.items() if key in taken}
+        parts = [f"{self.standard}, {self.title[:1].lower()}{self.title[1:]} (preset {name})"]
+        parts += [f"{', '.join(f'{key} by {clause}' for key, clause in sources.items())}"] if sources else []
+        given = [f"{key} ({clause})" for key, clause in self.asked.items()]
+        return "; ".join([*parts, f"from the scenario, and not checked against the standard: {', '.join(given)}"])
 
     def advice(self, key: str) -> str:
         """Words on where the standard has what a scenario leaves out at a key; empty of what it does not fix."""

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    StrictBool,
+    Tag,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Along, PresetName
@@ -118,6 +127,7 @@ class Arm(_Held):
     gravity: StrictBool = Field(
         default=True, description="false to leave out the weight, which a test on the ground always has"
     )
+    _taken: tuple[str, ...] = PrivateAttr(default=())  # keys that are the preset's
 
     @property
     def motions(self) -> dict[str, dict[str, Any]]:
@@ -127,12 +137,17 @@ class Arm(_Held):
             return {"": common | {"load": self.load}}
         return {name: _merged(common, each) for name, each in self.directions.items()}
 
-    @model_validator(mode="before")
+    @property
+    def standard(self) -> str:
+        """Words on the preset's standard and the clauses of what is taken from it; empty without a preset."""
+        return "" if self.preset is None else preset_of(self.preset).words(self.preset, self._taken)
+
+    @model_validator(mode="wrap")
     @classmethod
-    def _preset(cls, value: Any) -> Any:
+    def _preset(cls, value: Any, read: ModelWrapValidatorHandler[Self]) -> Self:
         """Take keys that are left out from the preset, and of directions their loads."""
         if not isinstance(value, dict) or value.get("preset") not in PRESETS:
-            return value
+            return read(value)
         preset = preset_of(value["preset"])
         left_out = {key: part for key, part in preset.arm.items() if key not in value}
         written = value.get("directions")
@@ -141,7 +156,9 @@ class Arm(_Held):
         elif isinstance(written, dict):
             left_out["directions"] = {name: _with_load(each, preset.directions.get(name)) for name, each in
                                       written.items()}  # fmt: skip
-        return value | left_out
+        arm = read(value | left_out)
+        arm._taken = tuple(key for key, part in left_out.items() if value.get(key) != part)
+        return arm
 
     @model_validator(mode="after")
     def _complete(self) -> Arm:
