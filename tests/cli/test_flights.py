@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -232,3 +233,11 @@ def test_check_draws_what_was_read_over_what_is_flown(gbeam: Call, with_figures:
     assert again.status == 2 and {file.name for file in folder.iterdir()} == expected  # nothing is half written
     only = gbeam("check", examples / "campaign.toml", "--out", folder, "--json")
     assert only.json["records"].keys() == {"turn", "pull", "push"} and "files in" not in only.out
+
+
+def test_the_page_of_check_has_its_words_and_the_records(scenario: Path, gbeam: Call, tmp_path: Path) -> None:
+    answer = gbeam("check", scenario, "--out", tmp_path / "checked", "--report")
+    page = (tmp_path / "checked" / "check.html").read_text(encoding="utf-8")
+    assert answer.status == 0 and "check.html" in answer.out
+    first = next(line.strip() for line in answer.out.splitlines() if line.startswith("  record"))
+    assert html.escape(first, quote=False) in page and "as flown in base axes" in page

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from gbeam.cli.options import Json, Out, Overrides, ScenarioFile, option, read, signed
+from gbeam.cli.options import Json, Output, ScenarioFile, option, read, signed
 from gbeam.cli.outputs import list_files, show, write_json
 from gbeam.cli.process import Watch, figures_wanted
 from gbeam.cli.publication import publish, refuse_unwritable
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from gbeam.results.description import Description
 
 
-def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = None, json: Json = False) -> int:
+def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     """Say what a scenario means, without computing a response.
 
     Loads, validates and builds everything, and prints the beam's mass, its natural frequencies at rest, the motions
     and the duration; where a value is a distribution it takes the centre. With --out also writes check.json, and
-    of every record a plot of what was read over what is flown. Exit status: 0 the scenario is valid, 2 it is not.
+    of every record a plot of what was read over what is flown, with --report check.html. Exit status: 0 the scenario is
+    valid, 2 it is not.
     """
-    if out is not None:
-        refuse_unwritable(out)
-    loaded = read("check", scenario, overrides)
+    folder = output.folder(scenario)
+    loaded = read("check", scenario, output.overrides)
 
     from gbeam.analysis.describe import describe
     from gbeam.report import description as report
@@ -43,22 +43,29 @@ def check(scenario: ScenarioFile, /, *, overrides: Overrides = (), out: Out = No
     assert source is not None  # it was read from a file
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
-    facts = signed(facts_of(description), loaded.case.provenance)
-    show(report.text(description), facts, json)
-    if out is not None:
+    facts, words = signed(facts_of(description), loaded.case.provenance), report.text(description)
+    show(words, facts, output.json)
+    if folder is not None:
         with Watch("drawing the records") as watch:
-            files = publish(out, lambda hidden: _write(hidden, description, facts, watch))
-        if not json:
-            list_files(out, sorted(files))
+            files = publish(folder, lambda hidden: _write(hidden, description, facts, words * output.report, watch))
+        if not output.json:
+            list_files(folder, sorted(files))
     return 0
 
 
-def _write(folder: Path, description: Description, facts: dict[str, Any], watch: Watch) -> None:
-    """Write what a scenario means, and figures of its records."""
+def _write(folder: Path, description: Description, facts: dict[str, Any], words: str, watch: Watch) -> None:
+    """Write what a scenario means, a page of its `words` unless they are empty, and figures of its records."""
     from gbeam.figures import figures_of
 
     write_json(folder / "check.json", facts)
-    if (described := figures_of(description)) and figures_wanted():
+    described = figures_of(description)
+    if words:
+        from gbeam.report.page.document import description_page
+        from gbeam.report.words import plain
+
+        html = description_page(words, plain(facts)["provenance"], described)
+        (folder / "check.html").write_text(html, encoding="utf-8")
+    if described and figures_wanted():
         from gbeam.plots import write_figures
 
         write_figures(described, folder, "gbeam check", watch)

@@ -6,7 +6,8 @@ import base64
 import hashlib
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from importlib.resources import files
 from typing import Any
 
@@ -15,7 +16,7 @@ from gbeam.figures import Describe
 from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
 from gbeam.report import blocks_of, remarks_of
-from gbeam.report.blocks import Blocks, Section, Sentence, Verbatim, pairs
+from gbeam.report.blocks import FIGURES, Block, Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
 from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped, heading
 from gbeam.report.page.records import figures_in
@@ -58,19 +59,38 @@ def html(
         fix = f"give the result of {', '.join(dict.fromkeys(f'gbeam {verb}' for verb in VERBS.values()))}"
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
+    described = figures_in(kind, facts, variables or {}) if figures is None else figures
+    verb = VERBS.get(kind) or (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
+    warned, noted = remarks_of(facts)
+    blocks = [Section("Warnings", (warned,)), Section("Notes", (noted,)), *blocks_of(kind, facts)]
+    state, title = facts.get("state", facts["outcome"]), facts.get("title") or _title(origin) or f"gbeam {verb}"
+    return assembled(title, state, verb, blocks, origin, described, partial(viewer, kind, facts, variables or {}))
+
+
+def assembled(
+    title: str,
+    state: str,
+    verb: str,
+    blocks: Iterable[Block],
+    origin: Mapping[str, Any],
+    figures: Mapping[str, Describe],
+    view: Callable[[Numbers], Mapping[str, Any]] = lambda _: {},
+) -> str:
+    """Return a whole page of blocks and figures, and of what the viewer shows, which may add to the page's numbers."""
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
-    described = figures_in(kind, facts, variables or {}) if figures is None else figures
-    plots = drawn((each() for each in described.values()), numbers, header)
-    verb = VERBS.get(kind) or (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
-    header |= viewer(kind, facts, variables or {}, numbers)
+    plots = drawn((each() for each in figures.values()), numbers, header)
+    header |= view(numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
-    warned, noted = remarks_of(facts)
-    blocks = [Section("Warnings", (warned,)), Section("Notes", (noted,)), *blocks_of(kind, facts), *_origin(origin)]
-    body = drawn_blocks(blocks, viewer_place, plots)
-    state = badge(facts.get("state", facts["outcome"]))
-    title = facts.get("title") or _title(origin) or f"gbeam {verb}"
-    return _page(title, state, _subject(verb, origin), body, header, numbers)
+    body = drawn_blocks([*blocks, *_origin(origin)], viewer_place, plots)
+    return _page(title, badge(state), _subject(verb, origin), body, header, numbers)
+
+
+def description_page(words: str, origin: Mapping[str, Any], figures: Mapping[str, Describe]) -> str:
+    """Return the page of what a scenario means, in the words of `gbeam check`, with the figures of its records."""
+    title, _, meaning = words.partition("\n")
+    blocks = Section("Meaning", (Verbatim(meaning),)), Section("Records", (FIGURES,))
+    return assembled(title, "done", "check", blocks, origin, figures)
 
 
 def viewer(
