@@ -316,7 +316,11 @@ def _shaped() -> gb.ShapedCommand:
         (_fit(), ["± 0.032", "2.5 to 3.5", "on its bound", "0.4321", "0.1250", "2 of 3 searches"], 2),
         (_optimum(), ["Least tip: 0.5000 m, was 1.000", "2.345", "0 to 9", "NOT KEPT", "limits exceeded"], 2),
         (_sensitivity(), ["tip = 2.000 m", "6.0 %", "difference kink", "-0.009000", "1.2 %", "Not varied: c: no"], 0),
-        (_shaped(), ["Rate to 0.25 rad/s in 2.000 s", "largest command, rad/s²", "for frequencies wrong by up to 10 %"], 3),
+        (
+            _shaped(),
+            ["Rate to 0.25 rad/s in 2.000 s", "largest command, rad/s²", "for frequencies wrong by up to 10 %"],
+            3,
+        ),
     ],
     ids=["fit", "optimum", "sensitivity", "shape"],
 )
