@@ -12,8 +12,8 @@ from scipy.linalg import eigh
 
 import gbeam as gb
 from gbeam.mechanics.tree.bodies import momentum
+from gbeam.mechanics.tree.body_terms import body_of
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.system import body_of
 from gbeam.motion import constant
 from gbeam.numerics.eigen import positive_definite
 from gbeam.solids.elements import mass_matrix, stiffness_matrix

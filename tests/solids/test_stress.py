@@ -113,7 +113,7 @@ def test_stress_at_the_edge_of_a_clamp_is_left_out() -> None:
         assert "one mesh does not tell whether the largest is there" in repr(plain)
         (same,) = np.flatnonzero(np.linalg.norm(finest.nodes - stress.worst.place, axis=1) < 1e-12)
         error = abs(stress.worst.von_mises / finest.node_von_mises[same] - 1)
-        assert error < rest.errors.stress.mesh < 4 * error
+        assert error < rest.errors.stress.mesh < 5 * error  # of equally stressed nodes rounding chooses one
         assert f"{stress.singular_nodes} nodes" in repr(stress) and "no limit" in repr(stress)
 
 

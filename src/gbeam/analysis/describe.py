@@ -14,7 +14,8 @@ from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND, Joint
-from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.mechanics.tree.rigid_body import RigidBody
+from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.arm import level_of
 from gbeam.motion.protocol import kind_of, notes_on

@@ -9,7 +9,8 @@ import numpy as np
 from gbeam.arrays.types import Complex, Floats
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
-from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.mechanics.tree.rigid_body import RigidBody
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.samples import attitude

@@ -22,8 +22,8 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.tree.body_terms import terms_of
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.system import terms_of
 from gbeam.motion.protocol import Motion
 from gbeam.results.parts import Base, Loads
 from gbeam.structure.section import extreme_stresses, worst_fibres

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from gbeam.arrays.types import Flags, Floats
-from gbeam.mechanics.tree.system import RigidBody
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.solids.cards import Cards, refused
 from gbeam.solids.links import Links, coupling
 from gbeam.solids.placed import Placed

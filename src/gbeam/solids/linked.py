@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
 from gbeam.mechanics.reduction import Reduced
-from gbeam.mechanics.tree.system import RigidBody
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.links import ON_A_LINE, coupling
 

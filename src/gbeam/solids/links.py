@@ -15,7 +15,7 @@ from gbeam.arrays.types import Floats, Indices
 from gbeam.constants import Direction
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice, positive
-from gbeam.mechanics.tree.system import RigidBody
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.structure.attachments import checked_name
 
 

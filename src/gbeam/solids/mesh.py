@@ -18,7 +18,7 @@ from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.mechanics.tree.joints import kind_of_value
-from gbeam.mechanics.tree.system import RigidBody
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.solids.bending import bending
 from gbeam.solids.elements import coupled, geometric_stiffness, mass_matrix, stiffness_matrix
 from gbeam.solids.geometry import Mesh

@@ -11,7 +11,7 @@ import numpy as np
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.guards.checks import positive
 from gbeam.mechanics.plausibility import implausible_material
-from gbeam.mechanics.tree.system import Place, RigidBody
+from gbeam.mechanics.tree.rigid_body import Place, RigidBody
 from gbeam.solids.cad import mesh_of
 from gbeam.solids.card_links import with_cards
 from gbeam.solids.cards import Cards

@@ -14,7 +14,7 @@ import numpy as np
 
 from gbeam.analysis.case import Case
 from gbeam.errors import InputError
-from gbeam.mechanics.tree.system import stations_of
+from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.printable import advise, closest
 from gbeam.questions import HUB, question_of
 from gbeam.results.result import Floats

@@ -22,7 +22,8 @@ from gbeam.guards.kinds import KINDS, Kinds, below, kind_of_argument, only
 from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.mechanics.tree.rigid_body import RigidBody
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import notes_on
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance

@@ -24,9 +24,10 @@ from gbeam.guards.checks import choice
 from gbeam.integrate.driver import through
 from gbeam.integrate.equations import accelerations, slopes
 from gbeam.integrate.tangent import tangent
+from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.one_body import HINGE, on_hub
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
 from gbeam.numerics.eigen import RIGID, Linear, symmetric, symmetric_modes

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of
-from gbeam.mechanics.tree.system import ROOT
+from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.parts import Base, Extremes, Loads, VectorPeaks

@@ -20,7 +20,8 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import PAIRS, rest_modes
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.body_terms import stations_of
+from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import RIGID, symmetric
 
 ALIKE = 1e-3  # of the displacement by a mode: two modes that differ by less count as equal

@@ -19,9 +19,10 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
-from gbeam.mechanics.tree.system import ROOT, System
+from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Vibrations
 from gbeam.progress import Progress, tell

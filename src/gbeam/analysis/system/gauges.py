@@ -13,10 +13,11 @@ from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.tree.bodies import Acting
+from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signal_names import CARRIED
 from gbeam.mechanics.tree.signals import carried_of, measurements
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.system import System
 
 
 class Strained(NamedTuple):

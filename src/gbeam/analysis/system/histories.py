@@ -12,11 +12,12 @@ from gbeam.arrays.types import Floats
 from gbeam.mechanics.section_forces import Hung, section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
+from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.mechanics.tree.equations import Inputs, State
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.system import System
 from gbeam.results.parts import Base, Loads
 
 _OF_BASE = "a_WO_B", "w_WB_B", "alpha_WB_B"

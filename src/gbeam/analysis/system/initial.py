@@ -16,7 +16,7 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.system import stations_of
+from gbeam.mechanics.tree.body_terms import stations_of
 
 _ITERATIONS = 60
 STATE_WORDS: dict[State, str] = {

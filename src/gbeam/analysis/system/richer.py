@@ -14,7 +14,8 @@ from gbeam.analysis.accuracy.estimate import NO_MESH, unjudged
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory, theory_of
-from gbeam.mechanics.tree.system import System, stations_of
+from gbeam.mechanics.tree.body_terms import stations_of
+from gbeam.mechanics.tree.system import System
 from gbeam.results.parts import Base
 
 Directions = tuple[bool, bool, bool]  # flags of x, y and z

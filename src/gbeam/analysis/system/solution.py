@@ -30,8 +30,9 @@ from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.mechanics.tree.signal_names import deforming
-from gbeam.mechanics.tree.system import RigidBody, System
+from gbeam.mechanics.tree.system import System
 from gbeam.results.parts import Base
 
 SCAN = 200  # samples at which to look for directions without shapes that are moved

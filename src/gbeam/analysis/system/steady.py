@@ -21,8 +21,9 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import momentum
 from gbeam.mechanics.tree.frames import Frame, turned_back
 from gbeam.mechanics.tree.joints import SLIDES
+from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.mechanics.tree.signal_names import deforming, local_names
-from gbeam.mechanics.tree.system import ROOT, System
+from gbeam.mechanics.tree.system import System
 from gbeam.numerics.balance import balanced, carried, following
 from gbeam.numerics.eigen import (
     RIGID,

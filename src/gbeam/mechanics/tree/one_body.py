@@ -10,7 +10,8 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import Joint
-from gbeam.mechanics.tree.system import CLAMP, Place, RigidBody, System
+from gbeam.mechanics.tree.rigid_body import Place, RigidBody
+from gbeam.mechanics.tree.system import CLAMP, System
 from gbeam.motion.protocol import Motion
 
 HUB, HINGE, RIM = "hub", "hinge", "rim"  # names of a free hub, its joint, and its point that holds the structure

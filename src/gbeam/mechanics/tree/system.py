@@ -8,135 +8,29 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, is_jax, is_traced, namespace
+from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, namespace
 from gbeam.arrays.tree import Value, assign, follows
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, choice, positive, vector
-from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.fields.taylor import Expanded
+from gbeam.guards.checks import choice, vector
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.bodies import (
-    Body,
-    FieldBody,
-    LinearBody,
-    Points,
-    PolynomialPoints,
-    Rigid,
-    StrainedPoints,
-    carried,
-    polynomial_points,
-)
+from gbeam.mechanics.tree.body_terms import body_of, refuse_turnless, stations_of
 from gbeam.mechanics.tree.control import Feedback
 from gbeam.mechanics.tree.course import Course
 from gbeam.mechanics.tree.equations import Force, Inputs, Link, State, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
+from gbeam.mechanics.tree.rigid_body import ROOT, RigidBody
 from gbeam.mechanics.tree.signals import drives_of, measurable
-from gbeam.mechanics.tree.steps import about
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.printable import advise
 
-ROOT = "root"
 CLAMP = "clamp"  # joint of a system of one body
 Prescribed = tuple[str, tuple[int, ...], tuple[str, ...]]
-
-
-@typed
-@dataclass(frozen=True, eq=False)
-class Place(Value):
-    """A point of a rigid body, with axes.
-
-    Parameters
-    ----------
-    at : (3,)
-        From the body's root, its axes, m.
-    turn : (3,)
-        Rotation vector of the point's axes in those of the root, rad.
-
-    Examples
-    --------
-    >>> gb.Place(at=(0.5, 0, 0), turn=(0, 0, 1.5)).turn
-    (0, 0, 1.5)
-    """
-
-    at: Numbers = (0.0, 0.0, 0.0)
-    turn: Numbers = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        vector("at", self.at), vector("turn", self.turn)
-
-
-@typed
-@dataclass(frozen=True, eq=False)
-class RigidBody(Value):
-    """A rigid body of a system.
-
-    Parameters
-    ----------
-    mass : float
-        kg.
-    inertia : (3,) or (3, 3)
-        Principal moments, or the tensor, about the centre of mass, axes of the root, kg m².
-    centre : (3,)
-        Centre of mass from the root, m.
-    points : mapping of str to Place or (3,)
-        Named places from the root, on which other bodies hang, forces act and output is given.
-
-    Raises
-    ------
-    InputError
-        If a value is impossible, or the inertia is not that of a rigid body.
-
-    Examples
-    --------
-    >>> bus = gb.RigidBody(50.0, (8.0, 10.0, 12.0), points={"left": (0.5, 0, 0)})
-    >>> bus.mass
-    50.0
-    """
-
-    mass: float
-    inertia: Any = (0.0, 0.0, 0.0)
-    centre: Numbers = (0.0, 0.0, 0.0)
-    points: Mapping[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        positive("mass", self.mass, "kg", zero=True)
-        vector("centre", self.centre)
-        moments = np.zeros(3) if is_jax(self.tensor) else np.linalg.eigvalsh(self.tensor)
-        if moments[0] < -1e-12 * moments[-1] or moments[-1] > moments[:2].sum() * (1 + 1e-9) + 1e-300:
-            fix = "no principal moment is negative, or exceeds the sum of the other two"
-            raise InputError("inertia", f"has the principal moments {moments} kg m²", fix)
-        for name in self.points:
-            if not name.isidentifier() or name == ROOT:
-                raise InputError(f"points.{name}", "is no name of a point", "give letters, digits and underscores")
-        object.__setattr__(
-            self,
-            "points",
-            {name: each if isinstance(each, Place) else Place(each) for name, each in self.points.items()},
-        )
-
-    @property
-    def tensor(self) -> Array:
-        """Inertia (3, 3) about the centre of mass, kg m²."""
-        tensor = array("inertia", self.inertia)
-        tensor = namespace(tensor).diag(tensor) if tensor.shape == (3,) else tensor
-        if tensor.shape != (3, 3) or not (is_jax(tensor) or (np.abs(tensor - tensor.T) <= 0).all()):
-            raise InputError("inertia", f"is {self.inertia!r}", "give three principal moments or a symmetric 3 × 3")
-        return tensor
-
-    @property
-    def body(self) -> Rigid:
-        """Its terms in the equations."""
-        places = [as_array(each.at) for each in self.points.values()]
-        turns = [about(each.turn) for each in self.points.values()]
-        xp = namespace(*places, *turns)
-        places, turns = xp.reshape(xp.asarray(places), (-1, 3)), xp.reshape(xp.asarray(turns), (-1, 3, 3))
-        return Rigid(self.mass, as_array(self.centre), self.tensor, places, turns)
 
 
 @typed
@@ -592,56 +486,3 @@ class System(Value):
             loads,
             namespace(*wrenches).stack(wrenches, axis=-2) if wrenches else None,
         )
-
-
-def stations_of(structure: Structure) -> dict[str, int]:
-    """Indices, by name, of a structure's named stations; of the tip alone where JAX traces their positions."""
-    if structure.source is None or is_traced(structure.stations):
-        names = structure.points or ("tip",)
-        return {name: len(structure.stations) - len(names) + k for k, name in enumerate(names)}
-    named = structure.source.beam.named_points
-    return {name: int(np.argmin(np.abs(structure.stations - at))) for name, at in named.items()}
-
-
-def refuse_turnless(where: str, body: Structure, on: int) -> None:
-    """Raise InputError, with the place `where`, if the rotation of a structure's point `on` (index) is not known."""
-    if body.field is not None:
-        return
-    if body.turns is None or not np.isfinite(body.turns[list(stations_of(body).values())[on]]).all():
-        fix = "hang it on the root, or on an interface of a solid, or on a node that has rotations"
-        raise InputError(where, "is a point of particles, which do not say how it turns", fix)
-
-
-def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hinged: bool = False) -> Body:
-    """Terms of a body in the equations, `free` if its root moves by unknowns, `hinged` if by one hinge on the ground
-    alone; InputError unless it can be in a tree.
-    """
-    if isinstance(body, RigidBody):
-        return body.body
-    if free and not (body.hub_force or hinged):
-        fix = "choose FOAM with no axial shapes, which are the same equations with it"
-        raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
-    return terms_of(body, free=free)
-
-
-def terms_of(body: Structure, *, free: bool = False) -> Body:
-    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid, and
-    takes from those of SFOAM what its printed equations lack.
-    """
-    equations, stations = body.equations, np.array(list(stations_of(body).values()))
-    points: Points
-    if isinstance(body.field, Expanded):
-        points = polynomial_points(body.field.sections(body.first_station + stations))
-    elif body.field is not None:
-        points = StrainedPoints(body.field[body.first_station + stations])
-    else:
-        places = body.station_places[stations]
-        none = np.zeros((*places.first.shape, body.size))
-        second, turn = none if places.second is None else places.second, 0 * places.first
-        if body.turns is not None:
-            turn = np.nan_to_num(body.turns[stations])
-        points = PolynomialPoints(places.r0, places.first, second, turn, none)
-    if isinstance(equations, Coefficients):
-        mean = carried(equations) if free and body.field is None else None
-        return LinearBody(equations, points, mean, body.hub_force or not free)
-    return FieldBody(equations, points)

@@ -90,7 +90,7 @@ class Reduced(Table):
 
 def points_of(table: Any) -> dict[str, Any]:
     """Points of a body by name: tables as places with axes, groups and places unchanged."""
-    from gbeam.mechanics.tree.system import Place
+    from gbeam.mechanics.tree.rigid_body import Place
 
     return {
         name: Place(each.at, each.turn) if isinstance(each, PlaceOfBody) else each

@@ -16,7 +16,7 @@ from gbeam.scenario.schema.fields import Exponent, Mass, Offset, Place3, Table, 
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.mechanics.tree.system import RigidBody as Rigid
+    from gbeam.mechanics.tree.rigid_body import RigidBody as Rigid
     from gbeam.solids.rigid import RigidSpecimen
 
 _ITEM = "corners", "bolts", "bolt_axis", "spread_limit"  # of an item under test, on whose points nothing hangs
@@ -59,7 +59,7 @@ def _body(parts: Collector, where: str, table: RigidBody) -> Rigid | Structure |
     """Rigid body of a system, a specimen where corners or bolts are asked for; None if it is refused."""
     if any(getattr(table, key) for key in _ITEM):
         return _specimen(parts, where, table)
-    from gbeam.mechanics.tree.system import RigidBody as Rigid
+    from gbeam.mechanics.tree.rigid_body import RigidBody as Rigid
 
     def body() -> Rigid:
         return Rigid(table.mass, _moments(table), table.centre, points_of(table))

@@ -34,7 +34,7 @@ from gbeam.scenario.schema.fields import (
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.mechanics.tree.system import RigidBody
+    from gbeam.mechanics.tree.rigid_body import RigidBody
     from gbeam.solids.mesh import SolidMesh
     from gbeam.solids.model import SolidModel
 
@@ -270,7 +270,7 @@ def _of_coarser() -> Iterator[None]:
 
 def _carried(name: str, table: Carried) -> RigidBody:
     """A body on a rigid link."""
-    from gbeam.mechanics.tree.system import RigidBody
+    from gbeam.mechanics.tree.rigid_body import RigidBody
 
     with placing_within(f"carried.{name}"):
         return RigidBody(table.mass, table.inertia, table.centre)

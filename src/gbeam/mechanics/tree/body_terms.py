@@ -1,0 +1,75 @@
+"""Terms of bodies in the equations of a tree."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gbeam.arrays.namespace import is_traced
+from gbeam.errors import InputError
+from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.fields.taylor import Expanded
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.bodies import (
+    Body,
+    FieldBody,
+    LinearBody,
+    Points,
+    PolynomialPoints,
+    StrainedPoints,
+    carried,
+    polynomial_points,
+)
+from gbeam.mechanics.tree.rigid_body import RigidBody
+
+
+def stations_of(structure: Structure) -> dict[str, int]:
+    """Indices, by name, of a structure's named stations; of the tip alone where JAX traces their positions."""
+    if structure.source is None or is_traced(structure.stations):
+        names = structure.points or ("tip",)
+        return {name: len(structure.stations) - len(names) + k for k, name in enumerate(names)}
+    named = structure.source.beam.named_points
+    return {name: int(np.argmin(np.abs(structure.stations - at))) for name, at in named.items()}
+
+
+def refuse_turnless(where: str, body: Structure, on: int) -> None:
+    """Raise InputError, with the place `where`, if the rotation of a structure's point `on` (index) is not known."""
+    if body.field is not None:
+        return
+    if body.turns is None or not np.isfinite(body.turns[list(stations_of(body).values())[on]]).all():
+        fix = "hang it on the root, or on an interface of a solid, or on a node that has rotations"
+        raise InputError(where, "is a point of particles, which do not say how it turns", fix)
+
+
+def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hinged: bool = False) -> Body:
+    """Terms of a body in the equations, `free` if its root moves by unknowns, `hinged` if by one hinge on the ground
+    alone; InputError unless it can be in a tree.
+    """
+    if isinstance(body, RigidBody):
+        return body.body
+    if free and not (body.hub_force or hinged):
+        fix = "choose FOAM with no axial shapes, which are the same equations with it"
+        raise InputError(f"{where}.model", f"is {body.kind}, whose base does not feel the beam", fix)
+    return terms_of(body, free=free)
+
+
+def terms_of(body: Structure, *, free: bool = False) -> Body:
+    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid, and
+    takes from those of SFOAM what its printed equations lack.
+    """
+    equations, stations = body.equations, np.array(list(stations_of(body).values()))
+    points: Points
+    if isinstance(body.field, Expanded):
+        points = polynomial_points(body.field.sections(body.first_station + stations))
+    elif body.field is not None:
+        points = StrainedPoints(body.field[body.first_station + stations])
+    else:
+        places = body.station_places[stations]
+        none = np.zeros((*places.first.shape, body.size))
+        second, turn = none if places.second is None else places.second, 0 * places.first
+        if body.turns is not None:
+            turn = np.nan_to_num(body.turns[stations])
+        points = PolynomialPoints(places.r0, places.first, second, turn, none)
+    if isinstance(equations, Coefficients):
+        mean = carried(equations) if free and body.field is None else None
+        return LinearBody(equations, points, mean, body.hub_force or not free)
+    return FieldBody(equations, points)

@@ -1,0 +1,115 @@
+"""Rigid bodies and their points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array, as_array, is_jax, namespace
+from gbeam.arrays.tree import Value
+from gbeam.arrays.types import Numbers
+from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
+from gbeam.guards.checks import array, positive, vector
+from gbeam.mechanics.tree.bodies import (
+    Rigid,
+)
+from gbeam.mechanics.tree.steps import about
+
+ROOT = "root"
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class Place(Value):
+    """A point of a rigid body, with axes.
+
+    Parameters
+    ----------
+    at : (3,)
+        From the body's root, its axes, m.
+    turn : (3,)
+        Rotation vector of the point's axes in those of the root, rad.
+
+    Examples
+    --------
+    >>> gb.Place(at=(0.5, 0, 0), turn=(0, 0, 1.5)).turn
+    (0, 0, 1.5)
+    """
+
+    at: Numbers = (0.0, 0.0, 0.0)
+    turn: Numbers = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        vector("at", self.at), vector("turn", self.turn)
+
+
+@typed
+@dataclass(frozen=True, eq=False)
+class RigidBody(Value):
+    """A rigid body of a system.
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    inertia : (3,) or (3, 3)
+        Principal moments, or the tensor, about the centre of mass, axes of the root, kg m².
+    centre : (3,)
+        Centre of mass from the root, m.
+    points : mapping of str to Place or (3,)
+        Named places from the root, on which other bodies hang, forces act and output is given.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or the inertia is not that of a rigid body.
+
+    Examples
+    --------
+    >>> bus = gb.RigidBody(50.0, (8.0, 10.0, 12.0), points={"left": (0.5, 0, 0)})
+    >>> bus.mass
+    50.0
+    """
+
+    mass: float
+    inertia: Any = (0.0, 0.0, 0.0)
+    centre: Numbers = (0.0, 0.0, 0.0)
+    points: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        positive("mass", self.mass, "kg", zero=True)
+        vector("centre", self.centre)
+        moments = np.zeros(3) if is_jax(self.tensor) else np.linalg.eigvalsh(self.tensor)
+        if moments[0] < -1e-12 * moments[-1] or moments[-1] > moments[:2].sum() * (1 + 1e-9) + 1e-300:
+            fix = "no principal moment is negative, or exceeds the sum of the other two"
+            raise InputError("inertia", f"has the principal moments {moments} kg m²", fix)
+        for name in self.points:
+            if not name.isidentifier() or name == ROOT:
+                raise InputError(f"points.{name}", "is no name of a point", "give letters, digits and underscores")
+        object.__setattr__(
+            self,
+            "points",
+            {name: each if isinstance(each, Place) else Place(each) for name, each in self.points.items()},
+        )
+
+    @property
+    def tensor(self) -> Array:
+        """Inertia (3, 3) about the centre of mass, kg m²."""
+        tensor = array("inertia", self.inertia)
+        tensor = namespace(tensor).diag(tensor) if tensor.shape == (3,) else tensor
+        if tensor.shape != (3, 3) or not (is_jax(tensor) or (np.abs(tensor - tensor.T) <= 0).all()):
+            raise InputError("inertia", f"is {self.inertia!r}", "give three principal moments or a symmetric 3 × 3")
+        return tensor
+
+    @property
+    def body(self) -> Rigid:
+        """Its terms in the equations."""
+        places = [as_array(each.at) for each in self.points.values()]
+        turns = [about(each.turn) for each in self.points.values()]
+        xp = namespace(*places, *turns)
+        places, turns = xp.reshape(xp.asarray(places), (-1, 3)), xp.reshape(xp.asarray(turns), (-1, 3, 3))
+        return Rigid(self.mass, as_array(self.centre), self.tensor, places, turns)
