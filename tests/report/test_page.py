@@ -57,6 +57,14 @@ def test_page_says_what_the_run_says(study: Study) -> None:
     assert "Largest error of the load while it is followed: 0.0612 g" in page
 
 
+def test_page_of_several_imitations_begins_with_their_verdicts(study: Study) -> None:
+    (first,) = study.comparisons
+    page = html.unescape(report_of(replace(study, comparisons=(first, replace(first, centrifuge="other")))))
+    table = page[page.index(">Verdicts<") : page.index(">Verdict: spin<")]
+    assert table.count(first.verdict) == 2 and "other" in table and ">Verdict: other<" in page
+    assert ">Verdicts<" not in report_of(study)
+
+
 def test_page_says_when_the_result_was_written(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert report_of(study).count("2025-06-15 15:06 UTC") == 2  # at the head, and with where it comes from
     study.save(tmp_path / "result.nc")

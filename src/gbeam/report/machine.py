@@ -213,11 +213,11 @@ def comparison(facts: Facts) -> Blocks:
     yield Section("Histories", (FIGURES,))
 
 
-def verdict(judged: Facts, names: tuple[str, str]) -> Blocks:
+def verdict(judged: Facts, names: tuple[str, str], title: str = "Verdict") -> Blocks:
     """Section for a page, of the verdict on an imitation and its tables; `names` are those of flight and machine."""
     tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
     yield Section(
-        "Verdict", (Sentence(judged["verdict"], "verdict"), Items(tuple(judged["findings"])), *tables), detail=True
+        title, (Sentence(judged["verdict"], "verdict"), Items(tuple(judged["findings"])), *tables), detail=True
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 
 import numpy as np
 
@@ -277,8 +278,29 @@ def verdicts(facts: Facts) -> Blocks:
     wrong = [(name, each) for name, each in facts["motions"].items() if each["outcome"] != "done"]
     lines = tuple(Sentence(f"motion {name} {each['outcome']}: {each['message']}", "bad") for name, each in wrong)
     yield Section("Outcome", lines, detail=True)
+    several = len(facts["comparisons"]) > 1
+    if several:
+        yield Section("Verdicts", (_of_records(facts),), detail=True)
     for compared in facts["comparisons"]:
-        yield from verdict(compared, (level_words(compared["flight"], compared.get("scale")), compared["centrifuge"]))
+        names = level_words(compared["flight"], compared.get("scale")), compared["centrifuge"]
+        yield from verdict(compared, names, f"Verdict: {names[1]}" if several else "Verdict")
+
+
+def _of_records(facts: Facts) -> Block:
+    """Table of the verdicts on several imitations, with the file of the flight's record if it has one."""
+    files = {each["motion"]: Path(each["file"]).name for each in facts.get("provenance", {}).get("records", ())}
+
+    def verdict_of(compared: Facts) -> Cell:
+        kept = all(each["passed"] for each in compared["criteria"])
+        return Cell(compared["verdict"], ("good" if compared["criteria"] else "") if kept else "bad")
+
+    cells: Columns = {
+        "flight": lambda each: level_words(each["flight"], each.get("scale")),
+        "record": lambda each: files.get(each["flight"], ""),
+        "machine": "centrifuge",
+        "verdict": verdict_of,
+    }
+    return table(facts["comparisons"], cells, optional=("record",))
 
 
 def compared_in(facts: Facts) -> set[str]:
