@@ -43,6 +43,7 @@ from gbeam.results.system import ENERGIES, Invariants, Loop
 
 Coordinates = Mapping[str, tuple[Floats, str, Floats]]  # of joints: history, unit and effort by name
 COLOURS = 6
+FEW = 2  # turns: of more a hub shows turns, of fewer degrees
 DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
 
 
@@ -267,7 +268,9 @@ def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
 
 def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
     """Describe the turning of a hub or an arm about z."""
-    shown = [(f"{field}, {declared(HubResult, field)[1]}", getattr(motion, field)) for field in ("angle", "rate")]
+    turns = np.abs(motion.angle).max(initial=0.0) / (2 * math.pi)
+    unit, angle = ("turns", motion.angle / (2 * math.pi)) if turns > FEW else ("deg", np.degrees(motion.angle))
+    shown = [(f"angle, {unit}", angle), ("rate, rpm", 30 / math.pi * motion.rate)]
     if motion.drive_torque is not None:
         scale, unit = scale_of("N m", motion.drive_torque)
         shown.append((f"drive torque, {unit}", scale * motion.drive_torque))
