@@ -69,6 +69,6 @@ def test_results_say_which_standard_and_clauses_they_rest_on(tmp_path):
     assert note.startswith("test by MIL-STD-810H, method 513.8, acceleration, procedure I: structural test (preset mil")
     assert "dwell by 4.5.2, step 1, at second hand, directions by 4.5.2, step 4, at second hand" in note
     assert "not checked against the standard: level (table 513.8-I" in note
-    own = {"level": '"9 g"', "dwell": '"90 s"', "directions": '{ fore = "+x" }'}
-    (note,) = gb.describe(read(tmp_path, "mil-std-810h-513-structural", **own)).notes
+    keys = {"level": '"9 g"', "dwell": '"90 s"', "directions": '{ fore = "+x" }'}
+    (note,) = gb.describe(read(tmp_path, "mil-std-810h-513-structural", **keys)).notes
     assert "4.5.2" not in note and "MIL-STD-810H" in note

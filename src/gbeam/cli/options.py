@@ -137,8 +137,8 @@ def with_options(*verbs: str) -> Callable[[_Function], _Function]:
         texts = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
         kind = str | type(each.default) if each.kind else each.type  # a quantity is given as text
         members.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(texts))], each.default))
-    made = make_dataclass("Options", members, frozen=True, namespace={"__module__": __name__})
-    record = Parameter(name="*", show=bool(members))(made)
+    options = make_dataclass("Options", members, frozen=True, namespace={"__module__": __name__})
+    record = Parameter(name="*", show=bool(members))(options)
 
     def declare(function: _Function) -> _Function:
         function.__annotations__["options"] = record
