@@ -12,7 +12,7 @@ import pytest
 
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
-from gbeam.integrate import windows
+from gbeam.integrate import derivatives, verdict
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, accelerations, slopes
 from gbeam.integrate.schemes import gauss, generalized_alpha, newmark
@@ -96,10 +96,16 @@ def test_windows_find_what_the_compiled_steps_find(make: Any) -> None:
 @pytest.mark.parametrize("make", [newmark, gauss])
 def test_no_digit_that_counts_depends_on_the_windows(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     expected = integrate(SWING, make(), *START, **KNOWN)
-    for sizes in ({"FIRST": 1, "MOST": 1}, {"FIRST": 7, "MOST": 13}, {"STALE": 0.1}, {"LATE": 2, "MOVED": 0.5}):
+    other = (
+        {"window.FIRST": 1, "window.MOST": 1},
+        {"window.FIRST": 7, "window.MOST": 13},
+        {"derivatives.STALE": 0.1},
+        {"verdict.LATE": 2, "verdict.MOVED": 0.5},
+    )
+    for sizes in other:
         with monkeypatch.context() as patch:
             for name, value in sizes.items():
-                patch.setattr(windows, name, value)
+                patch.setattr(f"gbeam.integrate.{name}", value)
             built = integrate(SWING, make(), *START, **KNOWN)
         np.testing.assert_allclose(built.q, expected.q, atol=1e-8)
 
@@ -148,12 +154,15 @@ def test_a_correction_by_new_derivatives_does_not_tell_how_it_shrinks() -> None:
 
     def passes(size: float, fresh: bool) -> bool:
         one, no = np.ones(1), np.zeros(1, dtype=bool)
-        return bool(windows._converged(size * one, 1e-3 * one, one, 0 * one, fresh=no | fresh, quick=no)[0])
+        return bool(verdict.converged(size * one, 1e-3 * one, one, 0 * one, fresh=no | fresh, quick=no)[0])
 
     assert passes(1e-11, False) and not passes(1e-11, True) and passes(1e-13, True)
 
 
-WIDE = [{"NEAR": 16, "APART": 64, "FAR": 64, "LATE": 15}, {"NEAR": 16, "APART": 16, "LATE": 10}]
+WIDE = [
+    {"derivatives.NEAR": 16, "derivatives.APART": 64, "derivatives.FAR": 64, "verdict.LATE": 15},
+    {"derivatives.NEAR": 16, "derivatives.APART": 16, "verdict.LATE": 10},
+]
 
 
 @pytest.mark.parametrize("spacing", WIDE)
@@ -167,7 +176,7 @@ def test_no_step_passes_that_leaves_forces(
         return np.stack([40 * np.sin(9 * t), 30 * np.cos(7 * t)], axis=-1)
 
     for name, value in spacing.items():
-        monkeypatch.setattr(windows, name, value)
+        monkeypatch.setattr(f"gbeam.integrate.{name}", value)
     run = integrate(NonlinearEquations(Swing(), drive), newmark(), *START, step=step, count=60)
     known = np.abs(run.q).max(axis=1) < 1e5  # of an angle that is larger rounding leaves no direction
     left = Swing()(run.q, run.qd, run.qdd, drive(run.time))[known]
@@ -178,14 +187,14 @@ def test_no_step_passes_that_leaves_forces(
 def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
     factored: list[int] = []
     states: list[int] = []
-    solved = windows.solved
+    solved = derivatives.solved
 
     def counted(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
         if not np.iscomplexobj(q):
             states.append(len(q))
         return Swing()(q, qd, qdd, force)
 
-    monkeypatch.setattr(windows, "solved", lambda left, right: factored.append(len(left)) or solved(left, right))
+    monkeypatch.setattr(derivatives, "solved", lambda left, right: factored.append(len(left)) or solved(left, right))
     run = integrate(NonlinearEquations(counted, load), gauss(), *START, **KNOWN)
     assert run.whole
     assert sum(factored) < 0.4 * sum(states) / 2  # two stages a step

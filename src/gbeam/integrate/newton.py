@@ -21,6 +21,7 @@ from gbeam.arrays.namespace import Array
 from gbeam.integrate.equations import Drive, exact
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
+from gbeam.integrate.verdict import shrinkage
 
 CHUNK = 200  # steps per compiled call at most, and per look at whether to stop
 _AT_ONCE = 20  # chunks whose inputs are computed at once
@@ -150,7 +151,7 @@ def _size(correction: Array, x: Array) -> Array:
 
 def _left(last: Array, before: Array) -> Array:
     """Error left after the last of two corrections, which shrink by a constant factor."""
-    return last * jnp.where(before > 0, jnp.minimum(last / jnp.maximum(before, 1e-300), 1.0), 0.0)
+    return last * jnp.where(before > 0, shrinkage(last, before), 0.0)
 
 
 def _guess(t: Tableau, carry: Carry) -> Array:

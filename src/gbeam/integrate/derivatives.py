@@ -1,0 +1,203 @@
+"""Derivatives of a window of steps: K, C and M at their stages, when they are found anew, and what steps map by them.
+
+Those at its first state serve a whole window until corrections shrink slowly; then they are found at some of the steps
+that have moved since they were, and interpolated between these, until corrections shrink fast for long.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array
+from gbeam.arrays.tree import each_leaf
+from gbeam.arrays.types import Flags
+from gbeam.integrate.equations import slopes, solved
+from gbeam.integrate.sampled import Held, Sampling
+from gbeam.integrate.schemes import Tableau
+
+NEAR, APART, FAR = 4, 8, 24  # stages between derivatives: at least, at first, and at most
+NEAREST = 6  # derivatives, between which others are found
+STALE, STALE_ALONE = 1.0, 0.3  # sizes of corrections, shares of the accelerations, after which derivatives are old
+
+
+class Stages(NamedTuple):
+    """Stages of t steps, s each: times (t s,), q, q̇, q̈ (3, t s, n), and inputs (t s, ...)."""
+
+    times: Array
+    states: Array
+    inputs: Any
+
+
+class Derivatives:
+    """Derivatives at the stages of a window's steps: `slope` holds K, C and M (1 or t, s, 3, n, n), found at stages
+    `spacing` from one another, `reached` (3, n, n) those where the window began; `age` (t,) is the sum of corrections,
+    as shares of the accelerations, since a step's were found. `maps` of steps are J⁻¹ (t, s n, s n), J⁻¹ L
+    (t, s n, m n) and S = g − d J⁻¹ L, from δz to δz₊ (t, m n, m n); one of each where all steps are alike.
+    """
+
+    slope: Any
+    reached: Array
+    maps: Any
+    age: Array
+
+    def __init__(self, residual: Any, sampling: Sampling | None) -> None:
+        self.residual, self.sampling, self.spacing = residual, sampling, FAR + 1
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin with no step."""
+        self.slope, self.maps, self.age = None, None, np.zeros(0)
+
+    @property
+    def even(self) -> bool:
+        """True if the derivatives at its first state serve a whole window."""
+        return self.spacing > FAR
+
+    @property
+    def single(self) -> bool:
+        """True if all stages have the same derivatives."""
+        return self.slope is not None and len(self.slope) == 1
+
+    @property
+    def fresh(self) -> Flags:
+        """Flags (t,) of steps that have not been corrected by their derivatives yet."""
+        flags: Flags = self.age == 0
+        return flags
+
+    @property
+    def trusted(self) -> Flags:
+        """Flags (t,) of steps whose derivatives are not interpolated: their own, or those where the window began."""
+        alone = len(self.age) == 1
+        return (alone & self.fresh) | (self.single and (self.slope == self.reached).all())
+
+    def extend(self, added: int) -> None:
+        """Append steps with the derivatives of the last one, or let those of one stage serve all."""
+        count = len(self.age)
+        if not count and self.even:
+            self.slope = None
+        elif self.slope is not None and len(self.slope) == count > 1 and not self.even:
+            of_last = np.broadcast_to(self.slope[-1:, -1:], (added, *self.slope.shape[1:]))
+            self.slope = np.concatenate([self.slope, of_last])
+        elif self.slope is not None:
+            self.slope, self.maps = self.slope[-1:, -1:], None
+        self.age = np.append(self.age, np.zeros(added))
+
+    def cut(self, count: int) -> None:
+        """Take out all but the first `count` steps."""
+        self._keep(slice(count))
+
+    def leave(self, count: int) -> None:
+        """Let the first `count` steps leave."""
+        self._keep(slice(count, None))
+
+    def _keep(self, kept: slice) -> None:
+        """Reduce to a slice of the steps; if it is empty, the last derivatives serve the steps that follow."""
+        count, self.age = len(self.age), self.age[kept]
+        if len(self.slope) == count > 1:
+            self.slope = self.slope[kept] if len(self.age) else self.slope[-1:, -1:]
+        self.maps = self._maps_of(kept)
+
+    def correct(self, moved: Array, slow: Flags, *, fast: bool) -> None:
+        """Let derivatives grow old by corrections (t,), shares of the accelerations: at once where these shrink slowly,
+        and then find them closer to one another; farther where all shrink fast.
+        """
+        self.age = np.where(slow, np.inf, self.age + moved)
+        if slow.any():
+            self.spacing = APART if self.even else max(self.spacing // 2, NEAR)
+        elif fast:
+            self.spacing += 1
+
+    def renew(self, stages: Stages) -> None:
+        """Find K, C and M anew from the first step on whose derivatives are old, at some stages, and interpolate; where
+        there are none yet, find them at the first stage alone.
+        """
+        count = len(self.age)
+        per_step, n = len(stages.times) // count, stages.states.shape[-1]
+
+        def function(*state: Any) -> Array:
+            return slopes(self.residual, *state).swapaxes(0, 1)
+
+        if self.slope is None:
+            self.slope = self._between(function, stages, None)[:, None]
+            self.reached = self.slope[0, 0]
+        alone = count == 1
+        oldest = STALE_ALONE if alone else STALE
+        stale = ~(self.age < np.inf if self.even and not alone else self.age <= oldest)
+        if not stale.any():
+            return
+        first = int(np.argmax(stale))
+        renewed = self._between(function, stages, first).reshape(-1, per_step, 3, n, n)
+        self.slope = np.concatenate([np.broadcast_to(self.slope, (count, *renewed.shape[1:]))[:first], renewed])
+        self.age[first:], self.maps = 0.0, self._maps_of(slice(first))
+
+    def factor(self, stages: Stages, tableau: Tableau, held: Held | None) -> None:
+        """Complete `maps` by those of steps that have none or new derivatives; `held` commands learn what they move."""
+        (*_, per_step, m), count, n = tableau.w_q.shape, len(self.age), stages.states.shape[-1]
+        done = 0 if self.maps is None else len(self.maps[0])
+        if done in (1, count):
+            return
+        t = tableau if len(tableau.d) == 1 else each_leaf(lambda leaf: leaf[done:], tableau)
+        jacobian, by_state = t.jacobians(*np.moveaxis(self.slope if self.single else self.slope[done:], 2, 0))
+        size = per_step * n
+        unit = np.broadcast_to(np.eye(size), jacobian.shape)
+        inverse, answer = np.split(solved(jacobian, np.concatenate([unit, by_state], axis=-1)), [size], axis=-1)
+        step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
+        if held is not None:
+            held.push(inverse, t, self._between(held.sampling.onto, stages, 0))
+        by_stages = t.d @ answer.reshape(-1, per_step, n * m * n)
+        maps = inverse, answer, step - by_stages.reshape(-1, m * n, m * n)
+        self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
+
+    def forces(self, states: Array) -> Array:
+        """Sizes (t, s n) of the forces that cancel at stages, |K| |q| + |C| |q̇| + |M| |q̈|, derived where it began."""
+        sizes: Array = np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)
+        return sizes.sum(axis=0).T.reshape(len(self.age), -1)
+
+    def accelerations(self, forces: Array) -> Array:
+        """Largest accelerations (t,) that forces (t, s n) may make."""
+        return np.abs(products(np.abs(self.maps[0]), forces)).max(axis=1)
+
+    def _between(self, function: Any, stages: Stages, first: int | None) -> Array:
+        """Values (t s, ...) of a function of states and inputs at all stages from step `first` on, interpolated between
+        some; at the first stage of the window alone where `first` is None.
+        """
+        steps = len(self.age)
+        per_step = len(stages.times) // steps
+        begin, count = (0, 1) if first is None else (per_step * first, per_step * (steps - first))
+        size = 1 + math.ceil((count - 1) / (1 if steps == 1 else self.spacing))
+        chosen = begin + np.linspace(0, count - 1, size).round().astype(int)
+        if first is not None:  # of the first step all, so that it converges as by Newton's method
+            chosen = np.union1d(chosen, begin + np.arange(per_step))
+        values = function(*stages.states[:, chosen], each_leaf(lambda leaf: leaf[chosen], stages.inputs))
+        if len(chosen) == 1:
+            return values
+        return interpolated(stages.times[chosen], values, stages.times[begin : begin + count])
+
+    def _maps_of(self, kept: slice) -> Any:
+        """Maps of a slice of the steps, to be kept; None where they are found anew: one for all, or by controllers."""
+        if self.maps is None or self.sampling is not None:
+            return None
+        maps = tuple(each[kept] for each in self.maps)
+        return maps if len(maps[0]) > 1 else None
+
+
+def products(matrices: Array, vectors: Array) -> Array:
+    """Products (t, a) of matrices (1 or t, a, b) and vectors (t, b)."""
+    return vectors @ matrices[0].T if len(matrices) == 1 else (matrices @ vectors[..., None])[..., 0]
+
+
+def interpolated(at: Array, values: Array, points: Array) -> Array:
+    """Values (p, ...) at times `points` (p,), by polynomials through the nearest of values (k, ...) at times (k,)."""
+    size = min(NEAREST, len(at))
+    first: Array = np.clip(np.searchsorted(at, points) - size // 2, 0, len(at) - size)
+    index = first[:, None] + np.arange(size)
+    near, diagonal = at[index], np.eye(size, dtype=bool)
+    numerator = np.where(diagonal, 1.0, points[:, None, None] - near[:, None, :])
+    denominator = np.where(diagonal, 1.0, near[:, :, None] - near[:, None, :])
+    weight = (numerator / denominator).prod(axis=-1)
+    weights = np.zeros((len(points), len(at)))
+    np.put_along_axis(weights, index, weight, axis=1)
+    return (weights @ values.reshape(len(at), -1)).reshape(len(points), *values.shape[1:])

@@ -1,0 +1,174 @@
+"""Verdict on corrections by Newton's method: which steps have converged, which shrink slowly, which are lost."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.types import Flags
+
+LATE, ALONE = 6, 25  # corrections of a step until it is near, and of a single one, or the first, until it converges
+MOVED = 0.3  # size of a correction, as a share of the accelerations, of a step that is far
+QUICK = 2  # corrections until the last step is near, up to which more steps follow it the next time
+SLOW, FAST = 0.5, 0.01  # of the last correction: where one is larger, derivatives are closer, where smaller farther
+QUICKEST, STALLED = 0.01, 0.9  # factors of corrections: none is thought to be smaller, and where they do not shrink
+TOLERANCE, ROUNDING = 1e-12, 1e-6  # of the largest acceleration: error left by the last correction, and where it stalls
+STUCK = 4  # corrections of a step from which on, where they do not shrink, its inputs' rounding is asked for, too
+TINY = float(np.finfo(float).tiny)
+CANCELLED = 100 * float(np.finfo(float).eps)  # of the forces at a coordinate, each a sum of many: their rounding
+BALANCED = 1e-9  # of the forces at a step: what is left of them where a correction may be the last
+SUMMED = 1e-10  # of the largest acceleration: rounding, which adds up over steps, where corrections cease to be quick
+SETTLED = 1e-9  # of the largest acceleration: error left by a correction after which samples are taken no more
+GROWN = 10.0  # times the rounding of steps that have converged, which is known, unlike that of iterates that diverge
+EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish: to be told from none
+
+
+class Judgement(NamedTuple):
+    """Flags (t,) of steps that have converged, that shrink slowly, and that are lost: they stay far, or diverge."""
+
+    converged: Flags
+    slow: Flags
+    lost: Flags
+
+
+class Verdict:
+    """Corrections of a window's steps, and what they say. Rows of `corrections` (5, t) are the size of a step's last
+    one, the same as a share of its accelerations, their number, the least factor by which one shrank by the same
+    derivatives, and the size of one that is rounding; `before` (t,) are the sizes of those before, `reach` (t,) that of
+    the accelerations. No rounding counts beyond `bound`.
+    """
+
+    before: Array
+    reach: Array
+    arrived: bool
+
+    def __init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin with no step."""
+        self.corrections, self.bound = np.zeros((5, 0)), np.inf
+
+    def extend(self, added: int) -> None:
+        """Append steps without corrections."""
+        none = np.repeat([[np.inf], [np.inf], [0.0], [np.inf], [0.0]], added, axis=1)
+        self.corrections = np.concatenate([self.corrections, none], axis=1)
+
+    def _keep(self, kept: slice) -> None:
+        """Reduce to a slice of the steps."""
+        self.corrections = self.corrections[:, kept]
+
+    def cut(self, count: int) -> None:
+        """Take out all but the first `count` steps."""
+        self._keep(slice(count))
+
+    def leave(self, count: int) -> None:
+        """Let the first `count` steps leave: their rounding bounds that of others."""
+        self.bound = GROWN * float(self.corrections[4, :count].max())
+        self._keep(slice(count, None))
+
+    @property
+    def near(self) -> bool:
+        """True if the last step is near its solution."""
+        return bool(self.corrections[1, -1] <= MOVED)
+
+    @property
+    def shares(self) -> Array:
+        """Sizes (t,) of the last corrections as shares of the accelerations."""
+        return self.corrections[1]
+
+    @property
+    def begun(self) -> bool:
+        """True if a step has been corrected."""
+        return bool(self.corrections[2].any())
+
+    @property
+    def stuck(self) -> Flags:
+        """Flags (t,) of steps that many corrections have not made to shrink."""
+        size, _, count, *_ = self.corrections
+        flags: Flags = (count >= STUCK) & ~(size <= SLOW * self.before)
+        return flags
+
+    @property
+    def fast(self) -> bool:
+        """True if the last correction of every step was much smaller than the one before."""
+        return bool((self.corrections[0] < FAST * self.before).all())
+
+    @property
+    def settled(self) -> bool:
+        """True if commands of controllers, which follow the states, change no more."""
+        return bool((self.corrections[0] * QUICKEST <= SETTLED * self.reach).all())
+
+    def record(self, size: Array, x: Array) -> None:
+        """Record the sizes (t,) of corrections, which have led to accelerations x (t, s, n); `arrived` says whether
+        few of them have brought the last step near.
+        """
+        self.before, was_near = self.corrections[0].copy(), self.near
+        self.reach = reach(x)
+        self.corrections[0], self.corrections[1] = size, size / self.reach
+        self.corrections[2] += 1
+        self.arrived = not was_near and self.near and bool(self.corrections[2, -1] <= QUICK)
+
+    def feel(self, accelerations: Array) -> None:
+        """Take the accelerations (t,) that the forces which cancel at steps would make, for the rounding that they
+        leave, and that of a window's first for a bound.
+        """
+        self.corrections[4] = CANCELLED * accelerations
+        if self.bound == np.inf:
+            self.bound = GROWN * float(self.corrections[4].max())
+
+    def judge(self, loads: Any, balanced: Flags, *, fresh: Flags, trusted: Flags) -> Judgement:
+        """Judge the corrections recorded last, beside accelerations (t,) that the `loads` would make. Derivatives are
+        `fresh` that no correction has been made by before. By those that are not `trusted`, interpolated from states
+        far away, which may be far too large, a correction may be small wherever a step is: its forces must be
+        `balanced`, too.
+        """
+        size, share, count, least, rounding = self.corrections
+        alone, noise = len(size) == 1, np.minimum(rounding, self.bound) + CANCELLED * loads
+        # By derivatives of another state corrections may shrink slowly without being rounding.
+        good = converged(size, self.before, self.reach, noise, fresh=fresh, quick=least <= FAST)
+        doubtful = good & ~trusted & ~balanced
+        good &= ~doubtful
+        least[:] = np.fmin(least, size / np.where(fresh | np.isinf(self.before), np.nan, self.before))
+        slow = (~good & (count > 1) & ~(size <= SLOW * self.before)) | (alone & doubtful)
+        lost = ~np.isfinite(size) | (~(share <= MOVED) & (count >= (ALONE if alone else LATE)))
+        lost[0] |= count[0] >= ALONE
+        return Judgement(good, slow, lost)
+
+
+def balanced(remaining: Array, forces: Array, loads: Array) -> Flags:
+    """Flags (t,) of steps whose `remaining` forces are small beside those that cancel there, and beside the rounding of
+    the loads, (t, n) each.
+    """
+    left, whole, loaded = (np.abs(each).max(axis=1) for each in (remaining, forces, loads))
+    flags: Flags = left <= BALANCED * whole + CANCELLED * loaded
+    return flags
+
+
+def reach(x: Array) -> Array:
+    """Size (t,) of the accelerations x (t, s, n) of steps, to which errors are related: beside what came before."""
+    largest = np.abs(x).max(axis=(1, 2))
+    return largest + EARLIER * np.maximum.accumulate(largest) + TINY
+
+
+def shrinkage(size: Any, before: Any) -> Any:
+    """Factor, 1 at most, by which corrections shrink, from the sizes of the last two; 0 after the first one, where the
+    size before is infinite.
+    """
+    xp = namespace(size, before)
+    return xp.minimum(size / xp.maximum(before, 1e-300), 1.0)
+
+
+def converged(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Flags:
+    """Flags (t,) of steps whose last correction, `size`, leaves no more error than a tolerance and rounding, `noise`.
+    Corrections shrink by a constant factor, size / before; by `fresh` derivatives it is unknown and taken as 1. After
+    the first correction any error may be left. What is left is rounding, too, where small corrections stall: by fresh
+    derivatives, or after `quick` ones, for the rounding of earlier steps adds to a step's own.
+    """
+    again, factor = np.isfinite(before), shrinkage(size, before)
+    left = np.where(again, size * np.where(fresh, 1.0, np.maximum(factor, QUICKEST)), np.inf)
+    stalled = (fresh & again & (factor > STALLED)) | (quick & (factor > SLOW) & (size <= SUMMED * reach))
+    flags: Flags = (left <= TOLERANCE * reach + noise) | (stalled & (size <= ROUNDING * reach))
+    return flags

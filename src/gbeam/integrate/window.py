@@ -1,0 +1,198 @@
+"""A window of steps taken together: their states, accelerations and inputs, corrected in place by Newton's method.
+
+One correction of all unknowns is a recurrence over the steps: with the residual r of a step's stages, its Jacobian J
+with respect to their accelerations x and L with respect to the state z before it
+
+    δx = −J⁻¹ (r + L δz),    δz₊ = g δz + d δx + (g z + d x − z₊).
+"""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array
+from gbeam.arrays.tree import each_leaf
+from gbeam.integrate.derivatives import Stages, products
+from gbeam.integrate.linear import recurrence
+from gbeam.integrate.sampled import Held, Sampling
+from gbeam.integrate.schemes import Scheme, Tableau
+from gbeam.integrate.steps import Steps
+from gbeam.integrate.verdict import CANCELLED, ROUNDING
+
+FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
+AHEAD = 400  # steps whose drives are evaluated at once
+FEW = 64  # steps under way, up to which more follow: of many, a call of the residual costs little beside its sums
+HALVINGS = 8  # of a correction of a single step
+
+
+class Window:
+    """The steps under way, from number `first` on: states z (t + 1, m, n) and accelerations x (t, s, n) of stages.
+    `residuals` (t, s n) are those of the last iterate, `start` (n,) the accelerations that the first steps begin with,
+    `growth` the number of steps that follow next, `limit` that of a window that has begun anew.
+    """
+
+    z: Array
+    x: Array
+    start: Array
+    residuals: Array
+    tableau: Tableau
+    inputs: Any
+
+    def __init__(self, residual: Any, drive: Any, scheme: Scheme, steps: Steps, sampling: Sampling | None) -> None:
+        self.residual, self.drive, self.scheme, self.steps, self.sampling = residual, drive, scheme, steps, sampling
+        self.first, self.growth, self.limit = 0, FIRST, LONGEST
+        self.ahead, self.driven, self.held = range(0), cast(Any, None), cast(Any, None)
+        self.done, self.lengths = list[tuple[Array, ...]](), np.zeros(0)
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    def begin(self, z: Array, x: Array) -> None:
+        """Begin with no step, from a state z (m, n) and accelerations (n,)."""
+        self.z, self.x, self.start = z[None], np.zeros((0, len(self.scheme.offsets), len(x))), x
+
+    def room(self, end: int, *, single: bool) -> int:
+        """Number of steps before `end` to append, if the last one is near: more where all have `single` derivatives."""
+        count = len(self)
+        if count and (self.sampling is not None or count > FEW or self.limit == 1):
+            return 0
+        return max(min(self.growth, end - self.first - count, (LONGEST if single else MOST) - count), 0)
+
+    def extend(self, added: int) -> None:
+        """Append steps that are like the last one."""
+        last = self.x[-1:, -1:] if len(self) else self.start
+        self.z = np.concatenate([self.z, np.repeat(self.z[-1:], added, axis=0)])
+        self.x = np.concatenate([self.x, np.broadcast_to(last, (added, *self.x.shape[1:]))])
+        self._place()
+
+    def grow(self) -> None:
+        """Let more steps follow the next time, half as many again."""
+        self.growth = min(self.growth + self.growth // 2 + 1, LONGEST)
+
+    def _keep(self, kept: slice) -> None:
+        """Reduce the window to a slice of its steps, the first or the last."""
+        states = slice(kept.start, kept.stop if kept.stop is None else kept.stop + 1)
+        self.z, self.x = self.z[states], self.x[kept]
+        if len(self):
+            self._place()
+
+    def leave(self, count: int) -> None:
+        """Move the first `count` steps, which have converged, out of the window to `done`."""
+        z, x, t = self.z[:count], self.x[:count], self.tableau
+        end_z, end_x = (weights if len(weights) == 1 else weights[:count] for weights in (t.end_z, t.end_x))
+        ends = end_z @ z + end_x @ x
+        self.done.append((ends[:, 0], ends[:, 1], *([x[:, -1]] if self.scheme.ends else [])))
+        self.start, self.first, self.limit = x[-1, -1], self.first + count, LONGEST
+        self._keep(slice(count, None))
+
+    def ended(self) -> tuple[Array, ...]:
+        """q, q̇ and, where the scheme has them, q̈ (t, n) at the ends of the steps that have left since the last call."""
+        ends = tuple(map(np.concatenate, zip(*self.done, strict=True)))
+        self.done = []
+        return ends
+
+    def cut(self, count: int) -> None:
+        """Take out all but the first `count` steps, and let half as many follow the next time."""
+        self.growth = max(min(self.growth, len(self)) // 2, 1)
+        self._keep(slice(count))
+
+    def shrink(self) -> bool:
+        """Begin anew with fewer steps, a single one at last; return False where it has failed, too."""
+        if len(self) == self.limit == 1:
+            return False
+        self.growth = self.limit = max(min(len(self), self.limit) // 4, 1)
+        self.begin(self.z[0], self.start)
+        return True
+
+    def stages(self) -> Stages:
+        """The stages of all steps, as the last iterate has them."""
+        both = self.weights @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
+        states = np.concatenate([both, self.x[:, None]], axis=1).swapaxes(0, 1).reshape(3, -1, self.x.shape[-1])
+        return Stages(self.times, states, self.inputs)
+
+    def correct(self, stages: Stages, maps: tuple[Array, Array, Array]) -> Array:
+        """Correct states and accelerations of all steps by Newton's method, a single step's in full only where that
+        makes the next correction smaller; return the largest correction of each step's accelerations, (t,).
+        """
+        (inverse, answer, step), t, count = maps, self.tableau, len(self)
+        self.residuals = self.residual(*stages.states, self.inputs).reshape(count, -1)
+        by_residual = products(inverse, self.residuals)
+        defect = t.g @ self.z[:-1] + t.d @ (self.x - by_residual.reshape(self.x.shape)) - self.z[1:]
+        moved = self._moved(step, defect.reshape(count, -1))
+        change = (by_residual + products(answer, moved[:-1])).reshape(self.x.shape)
+        commands = self._commands
+        if commands is not None:
+            change = change + commands.changed(self.x.shape)
+            self.inputs = commands.driven(self.free, self.x.shape[1])
+        by_state = moved.reshape(self.z.shape)
+        self.z += by_state
+        self.x -= change
+        if count == 1:
+            self._shorten(inverse, by_state, change)
+        return np.asarray(np.abs(change).max(axis=(1, 2)))
+
+    def loads(self, states: Array) -> Array:
+        """Sizes (t, s n) of the forces if every component of an input changed by the largest: a weight counts even
+        where it acts across all that a joint lets move.
+        """
+        shifted = each_leaf(lambda leaf: leaf + CANCELLED * np.abs(leaf).max(initial=0.0), self.inputs)
+        change = self.residual(*states, shifted) - self.residual(*states, self.inputs)
+        return np.asarray(np.abs(change).reshape(len(self), -1) / CANCELLED)
+
+    @property
+    def _commands(self) -> Held | None:
+        """Commands to be corrected: none where they have settled."""
+        return None if self.held is None or self.held.settled else self.held
+
+    def _place(self) -> None:
+        """Set tableau, times and inputs of the steps under way; drives are evaluated for `AHEAD` steps at once."""
+        stages, last = len(self.scheme.offsets), self.first + len(self)
+        if last > self.ahead.stop:
+            self.ahead = range(self.first, min(max(last, self.first + AHEAD), len(self.steps)))
+            ahead = self.steps[self.ahead.start : self.ahead.stop]
+            self.all_times = np.stack([ahead.times(offset) for offset in self.scheme.offsets], axis=1).ravel()
+            self.driven = self.drive(self.all_times)
+        length, begin = self.steps.length[self.first : last], self.first - self.ahead.start
+        lengths = length[:1] if (length == length[0]).all() else length
+        if not np.array_equal(lengths, self.lengths):
+            t: Tableau = self.scheme.tableau(lengths)
+            rows = [np.concatenate(pair, axis=-1) for pair in ((t.w_q, t.c_q), (t.w_v, t.c_v))]
+            self.lengths, self.tableau, self.weights = lengths, t, np.stack(rows, axis=1)
+        under_way = slice(stages * begin, stages * (begin + len(length)))
+        self.times = self.all_times[under_way]
+        self.inputs = self.free = each_leaf(lambda leaf: leaf[under_way], self.driven)
+        if self.sampling is not None:
+            self.held = Held(self.sampling, self.first, len(length))
+            self.held.begin(self.z[:-1])
+            self.inputs = self.held.driven(self.free, stages)
+
+    def _moved(self, step: Array, defect: Array) -> Array:
+        """Changes δz (t + 1, m n) of states, δz₊ = S δz + defect, by `step` S (1 or t, m n, m n), `defect` (t, m n)."""
+        count, commands = len(defect), self._commands
+        if len(step) > 1 and commands is None:
+            return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), np.zeros(defect.shape[1]))
+        moved = np.zeros((count + 1, defect.shape[1]))
+        if commands is None:  # sums of powers of one map, each twice as long as the last
+            moved[1:], power, reach = defect, step[0].T, 1
+            while reach < count:
+                moved[1 + reach :] += moved[1:-reach] @ power
+                power, reach = power @ power, 2 * reach
+            return moved
+        commands.measure(self.z[:-1])
+        by_step = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
+        for k, (of_step, gap, before, after) in enumerate(by_step):
+            after[:] = of_step.dot(before) + gap + commands.sampled(k, before)
+        return moved
+
+    def _shorten(self, inverse: Array, by_state: Array, change: Array) -> None:
+        """Halve a single step's correction until the next would be smaller: friction or a stop bends the residual."""
+        share, whole = 1.0, np.linalg.norm(change)
+        for _ in range(HALVINGS):
+            following = inverse @ self.residual(*self.stages().states, self.inputs).reshape(1, -1, 1)
+            if np.linalg.norm(following) <= (1 - share / 2) * whole or whole <= ROUNDING * np.linalg.norm(self.x):
+                return
+            share /= 2
+            self.z -= share * by_state
+            self.x += share * change
