@@ -21,9 +21,12 @@ from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.verdict import CANCELLED, ROUNDING
 
-FIRST, MOST, LONGEST = 100, 200, 1000  # steps in a window: at first, at most, and where derivatives hold all along
-AHEAD = 400  # steps whose drives are evaluated at once
-FEW = 64  # steps under way, up to which more follow: of many, a call of the residual costs little beside its sums
+# Speed: factors by which corrections of 14 runs become more if a number is half or twice as large (mean, and most).
+FIRST = 100  # steps in a window at first; speed: 1.12, 0.88 (most 2.0)
+MOST = 200  # steps in a window at most; speed: 1.03, 1.03 (most 1.8)
+LONGEST = 1000  # steps in a window where one state's derivatives serve all; speed: 1.00, 1.00
+AHEAD = 400  # steps whose drives are evaluated at once; it changes no correction and no answer
+FEW = 64  # steps under way, up to which more follow: of many, a call costs little beside its sums; speed: 1.07, 0.95
 HALVINGS = 8  # of a correction of a single step
 
 
