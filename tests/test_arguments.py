@@ -126,7 +126,7 @@ class Samples:
                 {
                     "radius": 0.5, "rate": 1.0, "inertia": 2.0, "pointing": "outward",
                     "setting_angle": None, "turn": (0.0, 0.0, 1.0), "control_point": (0.1, 0.0, 0.0),
-                    "gravity": (0.0, 0.0, -9.8), "stiffness": 0.0, "damping": 0.0,
+                    "gravity": (0.0, 0.0, -9.8), "stiffness": 0.0, "damping": 0.0, "standard": "a test",
                 },
             ),
             "Initial": (("undeformed",), {"tip_velocity": {"z": 0.1}, "velocity": {"tip": {"y": 0.1}}}),
@@ -327,6 +327,7 @@ class Samples:
                 {
                     "radius": 3.3, "control_point": (0.1, 0.0, 0.0), "load": (1.0, 0.0, 0.0), "up": (0.0, 0.0, 1.0),
                     "level": 90.0, "onset": None, "ramp": 20.0, "dwell": 60.0, "down": 10.0, "gravity": True,
+                    "standard": "a test",
                 },
             ),
             "smoothed": ((gb.constant(1.0), 0.1), {}),
