@@ -30,7 +30,7 @@ def stages(stiffness: Any, per_step: int = 1) -> Stages:
     return Stages(np.arange(len(values)) / per_step, np.zeros((3, len(values), 1)), values)
 
 
-def found(spring: Spring, spacing: int, stiffness: Any) -> np.ndarray:
+def stiffnesses(spring: Spring, spacing: int, stiffness: Any) -> np.ndarray:
     """Stiffness that derivatives so far apart have at all stages, each found as if they were old."""
     built = Derivatives(spring, None)
     built.extend(len(stiffness))
@@ -111,7 +111,7 @@ def interpolates_quintics() -> None:
 def follows_a_swing() -> None:
     """A pendulum that swings by one radian has its stiffness within 2 % at 40 stages a cycle."""
     swing = np.cos(np.sin(2 * np.pi * np.arange(200) / 40))
-    np.testing.assert_allclose(found(Spring(), derivatives.NEAR, swing), swing, atol=0.02)
+    np.testing.assert_allclose(stiffnesses(Spring(), derivatives.NEAR, swing), swing, atol=0.02)
 
 
 @pytest.mark.parametrize(
