@@ -267,7 +267,7 @@ class Joint(Value):
         Parameters
         ----------
         rate : str
-            One of :attr:`rate_names`.
+            One of ``rate_names``.
         """
         if rate in SPIN:
             return tuple(self.coordinates.index(each) for each in _BALL)
@@ -279,7 +279,7 @@ class Joint(Value):
         Parameters
         ----------
         rate : str
-            One of :attr:`rate_names`.
+            One of ``rate_names``.
         """
         return self.numbers(rate)[1 + SPIN.index(rate) if rate in SPIN else 0]
 
