@@ -18,6 +18,7 @@ import gbeam as gb
 from gbeam.guards.packing import write_packed
 from gbeam.io import kept
 from gbeam.solids import mesh as solids
+from gbeam.solids import reading
 
 from ..solids.bodies import block
 from .test_specimens import BODY, FLIGHT
@@ -57,7 +58,7 @@ def test_a_second_reading_assembles_nothing(
     """And reads no mesh: what is kept goes by the content of its file."""
     first = read(tmp_path)
     with monkeypatch.context() as without:
-        without.setattr(solids, "mesh_of", None)
+        without.setattr(reading, "mesh_of", None)
         second = read(tmp_path)
     assert len(assembled) == 1 and first == second and len(files(tmp_path)) == 1
     assert second.recovery is not None and second.recovery.envelope.shape == first.recovery.envelope.shape
