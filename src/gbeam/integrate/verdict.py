@@ -13,9 +13,8 @@ from gbeam.arrays.types import Flags
 # answers stay within 6e-12, of two chaotic runs within 5e-10.
 LATE = 6  # corrections of a step until it is near; speed: 1.13, 0.98 (most 1.6)
 ALONE = 25  # corrections of a single step, or of the first one, until it converges; speed: 1.41 (most 4.7), 0.92
-MOVED = (
-    0.3  # size of a correction, as a share of the accelerations, of a step that is far; speed: 1.02, 0.92 (most 1.6)
-)
+# Speed of the next: 1.02, 0.92 (most 1.6)
+MOVED = 0.3  # size of a correction, as a share of the accelerations, of a step that is far
 QUICK = 2  # corrections until the last step is near, up to which more steps follow; speed: 1.21 (most 1.8), 0.99
 SLOW = 0.5  # of the last correction: where one is larger, derivatives are closer; speed: 0.80, 1.24 (most 5.9)
 FAST = 0.01  # of the last correction: where all are smaller, derivatives are farther apart; speed: 1.00, 1.00
@@ -23,18 +22,15 @@ QUICKEST = 0.01  # least factor by which corrections are thought to shrink; spee
 STALLED = 0.9  # factor of corrections that do not shrink
 TOLERANCE = 1e-12  # of the acceleration: error left by the last correction; speed: 1.02, 0.94 (most 1.5)
 ROUNDING = 1e-6  # of the acceleration: largest correction that may stall; speed: 1.00, 1.00
-SUMMED = (
-    1e-10  # of the acceleration: rounding, adding up over steps, where corrections stall; speed: 1.08 (most 2.8), 0.99
-)
-STUCK = (
-    4  # corrections from which on, where they do not shrink, the loads' rounding counts; speed: 1.00, 1.01 (most 1.2)
-)
+# Speed of the next: 1.08 (most 2.8), 0.99
+SUMMED = 1e-10  # of the acceleration: rounding, adding up over steps, where corrections stall
+# Speed of the next: 1.00, 1.01 (most 1.2)
+STUCK = 4  # corrections from which on, where they do not shrink, the loads' rounding counts
 TINY = float(np.finfo(float).tiny)  # which keeps the share of no acceleration a number
 CANCELLED = 100 * float(np.finfo(float).eps)  # of forces that cancel: their rounding; speed: 1.00, 0.98 (most 1.1)
 BALANCED = 1e-9  # of the forces at a step: what is left of them where a correction may be the last; speed: 1.00, 1.00
-SETTLED = (
-    1e-9  # of the acceleration: error left by a correction after which samples are taken no more; speed: 1.00, 1.00
-)
+# Speed of the next: 1.00, 1.00
+SETTLED = 1e-9  # of the acceleration: error left by a correction after which samples are taken no more
 GROWN = 10.0  # times the rounding of steps that have converged: the most that another one's may be; speed: 1.00, 1.00
 EARLIER = 0.01  # of the largest acceleration before a step, whose own may all vanish; speed: 1.00, 1.03 (most 1.5)
 
