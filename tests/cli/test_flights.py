@@ -241,3 +241,4 @@ def test_the_page_of_check_has_its_words_and_the_records(scenario: Path, gbeam: 
     assert answer.status == 0 and "check.html" in answer.out
     first = next(line.strip() for line in answer.out.splitlines() if line.startswith("  record"))
     assert html.escape(first, quote=False) in page and "as flown in base axes" in page
+    assert '<span class="badge good">valid</span>' in page

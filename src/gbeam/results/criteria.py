@@ -31,7 +31,8 @@ STRESS, DISPLACEMENT = "a stress", "a displacement"  # that not every specimen h
 PASS, NOT_ACCEPTED, NOT_DECIDED = "PASS", "NOT ACCEPTED", "NOT DECIDED"  # the verdicts
 EXCEEDED = f"{NOT_ACCEPTED}, machine limits exceeded"  # state of a run or a plan that keeps the limits of acceptance
 BROKEN = "limits exceeded"  # outcome of a plan, a placement or a search
-GOOD = ("done", PASS)  # states of which nothing is to be said
+VALID = "valid"  # state of a scenario that is checked
+GOOD = ("done", VALID, PASS)  # states of which nothing is to be said
 
 
 class Judged:

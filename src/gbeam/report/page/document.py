@@ -22,6 +22,7 @@ from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped
 from gbeam.report.page.records import figures_in
 from gbeam.report.page.scene import scene, shapes
 from gbeam.report.words import as_json
+from gbeam.results.criteria import VALID
 from gbeam.results.result import Result
 
 VERBS = {  # of kinds that have a page of their own
@@ -90,7 +91,7 @@ def description_page(words: str, origin: Mapping[str, Any], figures: Mapping[str
     """Return the page of what a scenario means, in the words of `gbeam check`, with the figures of its records."""
     title, _, meaning = words.partition("\n")
     blocks = Section("Meaning", (Verbatim(meaning),)), Section("Records", (FIGURES,))
-    return assembled(title, "done", "check", blocks, origin, figures)
+    return assembled(title, VALID, "check", blocks, origin, figures)
 
 
 def viewer(
