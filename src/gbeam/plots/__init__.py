@@ -85,7 +85,7 @@ def _in_png(opened: BinaryIO) -> str:
     """Source that the text before the pixels of a PNG file states; empty where there is none."""
     try:
         with PngImageFile(opened) as image:
-            return str(image.info.get("Source", "")).rstrip("\0")  # version 0.2 ended it with a zero
+            return str(image.info.get("Source", ""))
     except (OSError, SyntaxError, ValueError):  # no PNG file, or none that is whole
         return ""
 
