@@ -205,9 +205,11 @@ def _specimen_tables(rigid: Facts, row_of: str) -> Blocks:
 
 
 def errors(motions: Facts) -> Blocks:
-    """Table of the estimated errors in every motion by their causes, and sentences on what is not estimated."""
+    """Table of the estimated errors in every motion by their causes, and sentences on what is not estimated. A state of
+    rest takes no steps.
+    """
     rows = [
-        {"name": name, "of": quantity, **each["errors"][quantity]}
+        {"name": name, "of": quantity, **each["errors"][quantity]} | ({} if "steps" in each else {"step": None})
         for name, each in motions.items()
         for quantity in _judged(each)
         if each["errors"][quantity]["total"] is not None
