@@ -61,7 +61,6 @@ def response(duration: str, **more: str) -> str:
     return "\n".join(["[response]", *lines, ""])
 
 
-# Every kind of motion, and a mass; its lines are counted by the tests of error messages.
 BOX_ON_ARM = """
 [bodies.box]
 kind = "rigid"
@@ -75,6 +74,7 @@ control_point = [0, 0, 0]
 ramp = "20 s"
 up = ["+z", "+x"]
 """
+# Every kind of motion, and a mass; its lines are counted by the tests of error messages.
 EVERY_MOTION = (
     'title = "test"\n'
     + SPECIMEN

@@ -44,10 +44,11 @@ def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     drawn = {path: str(each) for path, each in source.distributions.items()}
     description = replace(description, distributions=drawn)
     facts, words = signed(facts_of(description), loaded.case.provenance), report.text(description)
+    on_page = words if output.report else ""
     show(words, facts, output.json)
     if folder is not None:
         with Watch("drawing the records") as watch:
-            files = publish(folder, lambda hidden: _write(hidden, description, facts, words * output.report, watch))
+            files = publish(folder, lambda hidden: _write(hidden, description, facts, on_page, watch))
         if not output.json:
             list_files(folder, sorted(files))
     return 0

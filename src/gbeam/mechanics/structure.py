@@ -415,9 +415,21 @@ class Structure:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""
         return self.output.positions(q) - self.station_places.r0
 
+    def station_displacement(self, q: Array, chosen: Any) -> Array:
+        """Displacement of some stations relative to the base axes, (..., k, 3) m.
+
+        Parameters
+        ----------
+        q : (..., n)
+            Coordinates.
+        chosen : slice or (k,) int
+            Indices of the stations.
+        """
+        return self.output[chosen].positions(q) - self.station_places.r0[chosen]
+
     def tip(self, q: Array) -> Array:
         """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""
-        return (self.output[-1:].positions(q) - self.station_places.r0[-1:])[..., 0, :]
+        return self.station_displacement(q, slice(-1, None))[..., 0, :]
 
 
 def linear_structure(

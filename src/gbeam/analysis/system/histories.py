@@ -91,8 +91,7 @@ def histories(
 
 def deflections(body: Structure, q: Array) -> Array:
     """Displacements (t, p, 3) m of a body's named points relative to its root, by its own coordinates (t, n)."""
-    named = np.array([*stations_of(body).values()])
-    return body.output[named].positions(q) - body.station_places.r0[named]
+    return body.station_displacement(q, np.array([*stations_of(body).values()]))
 
 
 def deflection(system: System, point: str, q: Array) -> Array | None:

@@ -239,7 +239,7 @@ class Joint(Value):
         length = np.linalg.norm(axes, axis=1)
         if not (np.isfinite(length).all() and (length > 0).all()):
             raise InputError("axes", f"is {self.axes!r}", "give directions of finite length above zero")
-        object.__setattr__(self, "axes", tuple(map(tuple, axes)))
+        assign(self, axes=tuple(map(tuple, axes)))
         for name in ("at", "turn"):
             vector(name, getattr(self, name))
         if self.kind == "fixed":

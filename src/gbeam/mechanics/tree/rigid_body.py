@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, is_jax, namespace
-from gbeam.arrays.tree import Value
+from gbeam.arrays.tree import Value, assign
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
@@ -90,11 +90,8 @@ class RigidBody(Value):
         for name in self.points:
             if not name.isidentifier() or name == ROOT:
                 raise InputError(f"points.{name}", "is no name of a point", "give letters, digits and underscores")
-        object.__setattr__(
-            self,
-            "points",
-            {name: each if isinstance(each, Place) else Place(each) for name, each in self.points.items()},
-        )
+        points = {name: each if isinstance(each, Place) else Place(each) for name, each in self.points.items()}
+        assign(self, points=points)
 
     @property
     def tensor(self) -> Array:

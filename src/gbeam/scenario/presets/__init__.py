@@ -42,9 +42,10 @@ class Preset:
         """
         sources = {key: clause.partition(":")[0] for key, clause in self.source.items() if key in taken}
         parts = [f"{self.standard}, {self.title[:1].lower()}{self.title[1:]} (preset {name})"]
-        parts += [f"{', '.join(f'{key} by {clause}' for key, clause in sources.items())}"] if sources else []
-        unread = [f"{key} ({clause})" for key, clause in self.asked.items()]
-        return "; ".join([*parts, f"from the scenario, and not checked against the standard: {', '.join(unread)}"])
+        taken_from = ", ".join(f"{key} by {clause}" for key, clause in sources.items())
+        unread = ", ".join(f"{key} ({clause})" for key, clause in self.asked.items())
+        parts += [taken_from, f"from the scenario, and not checked against the standard: {unread}"]
+        return "; ".join(filter(None, parts))
 
     def advice(self, key: str) -> str:
         """Words on where the standard has what a scenario leaves out at a key; empty of what it does not fix."""
