@@ -32,7 +32,7 @@ BODY = PointMass(5.0, 0.3, inertia=(0.02, 0.03, 0.04), offset=(0.05, -0.1, 0.08)
 SPRINGS = Root(translation_x=1e5, translation_z=1e4, rotation_y=1e3, rotation_z=2e3)
 LOADS = (
     Load(3.0, force=(1.0, 2.0, 3.0), moment=(0.3, 0.2, 0.1), follower=True),
-    Load(None, force=(0.1, 0.2, 0.3), moment=(0.03, 0.02, 0.01)),
+    Load(distributed=(0.1, 0.2, 0.3), distributed_moment=(0.03, 0.02, 0.01)),
 )
 # Turned at the root, bent and twisted, with a corner midway.
 BOW = Line.of_pieces(

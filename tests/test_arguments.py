@@ -131,7 +131,8 @@ class Samples:
             ),
             "Initial": (("undeformed",), {"tip_velocity": {"z": 0.1}, "velocity": {"tip": {"y": 0.1}}}),
             "Line": ((0.3, straight), {"breaks": [0.1], "corners": [0.2], "turns": [[0.0, 0.0, 0.1]]}),
-            "Load": ((0.1,), {"force": (0.0, 0.0, 1.0), "moment": (0.0, 1.0, 0.0), "follower": False}),
+            "Load": ((0.1,), {"force": (0.0, 0.0, 1.0), "moment": (0.0, 1.0, 0.0), "distributed": None,
+                              "distributed_moment": None, "follower": False}),
             "Joint": (
                 ("revolute", "bar"),
                 {
@@ -417,7 +418,7 @@ def test_every_public_function_refuses_objects_of_the_wrong_type(
         (lambda g: gb.Beam(0.3, "rectangle", g.beam.material), "section is 'rectangle'; give a Section"),
         (lambda g: replace(g.beam, masses=[gb.PointMass(0.1, 1), 0.2]), "masses[1] is 0.2; give a PointMass"),
         (lambda g: replace(g.beam, masses=gb.PointMass(0.1, 1)), "masses is of type PointMass; give a list of PointMa"),
-        (lambda g: gb.Section.rectangle("wide", 0.004), "width is 'wide'; give numbers"),
+        (lambda g: gb.Section.rectangle("wide", 0.004), "width is 'wide'; give a number in m"),
         (lambda g: gb.static(g.structure, g.still, time="noon"), "time is 'noon'; give a number"),
         (lambda g: gb.campbell(g.structure, g.hub, count=2.5), "count is 2.5; give a whole number"),
         (lambda g: gb.read_scenario(3), "path is 3; give a text or a path"),

@@ -113,7 +113,7 @@ INSTEAD: dict[str, dict[str, Any]] = {  # of what stands in the calls of above
         "stops": {"displacement": (-0.1, 0.1), "angle": (-1.0, 1.0)},
         **{key: {"displacement": 2.0, "angle": 3.0} for key in OF_COORDINATES if key not in ("stops", "rate")},
     },
-    "Load": {"force": (0.0, 0.0, 2.0), "moment": (0.0, 1.0, 0.0)},
+    "Load": {"distributed": (0.0, 0.0, 2.0), "distributed_moment": (0.0, 1.0, 0.0)},
     "optimise": {"bounds": {"beam.length": (0.1, 0.5)}, "options": {"to": 3.0}},
     "shape_command": {"structure": SLIDE, "hub": "s.displacement", "rate": 0.1, "duration": 1.0, "limit": 3.0},
     "Hub": {"radius": 0.5, "inertia": 2.0, "torque": 1.0},
@@ -338,8 +338,9 @@ def documented(thing: Any) -> dict[str, str]:
     names: list[str] = []
     for line in section[1].splitlines() if section else ():
         if line and not line.startswith(" "):
-            head, _, _ = line.partition(" : ")
+            head, _, kind = line.partition(" : ")
             names = [each.strip() for each in head.split(",")]
+            words |= {each: f"{words.get(each, '')} {kind}" for each in names}
         else:
             words |= {each: f"{words.get(each, '')} {line.strip()}" for each in names}
     return words
@@ -358,8 +359,8 @@ def law(**keywords: Any) -> Any:
     [
         (lambda: gb.Load("0.1 m", force=(0, 0, "5 kN")).force[2], 5e3),
         (lambda: gb.Load("0.1 m", moment=(0, "5 kN m", 0)).moment[1], 5e3),
-        (lambda: gb.Load(force=(0, 0, "5 N/mm")).force[2], 5e3),
-        (lambda: gb.Load(moment=(0, 5 * UNITS.N, 0)).moment[1], 5.0),
+        (lambda: gb.Load(distributed=(0, 0, "5 N/mm")).distributed[2], 5e3),
+        (lambda: gb.Load(distributed_moment=(0, 5 * UNITS.N, 0)).distributed_moment[1], 5.0),
         (lambda: gb.Joint("revolute", "bar", axes=[(0, 1, 0)], stops=("-90 deg", 1.0), stop_stiffness=9.0).stops[0],
          -np.pi / 2),
         (lambda: sliding(stiffness={"displacement": "2 N/mm", "angle": 3.0}).stiffness["displacement"], 2e3),
@@ -393,18 +394,18 @@ class Metres(float):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: gb.constant(20 * UNITS.mm), f'value is 20 millimeter; {BARE}: .to("m").magnitude'),
-        (lambda: gb.constant(60 * UNITS.Hz), f'value is 60 hertz; {BARE}: .to("1 / s").magnitude; '
+        (lambda: gb.constant(20 * UNITS.mm), f'level is 20 millimeter; {BARE}: .to("m").magnitude'),
+        (lambda: gb.constant(60 * UNITS.Hz), f'level is 60 hertz; {BARE}: .to("1 / s").magnitude; '
          "1 Hz is 6.2832 rad/s as an angular rate"),
         (lambda: gb.PointMass(0.1, 0.1, offset=(0, Metres(1), 0)), f"offset[1] is 1.0; {BARE}"),
-        (lambda: gb.constant("20 mm"), "value is '20 mm'; give numbers in SI"),
+        (lambda: gb.constant("20 mm"), "level is '20 mm'; give numbers in SI"),
         (lambda: gb.Material(2700, "70"), 'youngs_modulus "70" has no unit; '
          'add a unit, such as "70 GPa", or write the bare number 70 for Pa'),
         (lambda: gb.Hub(radius=0.5, rate="60 mm"), 'rate "60 mm" is a length; '
          'expected an angular rate, such as "3 rad/s"'),
         (lambda: gb.Hub(radius=0.5, rate=60 * UNITS.mm), 'rate "60.0 mm" is a length; '
          'expected an angular rate, such as "3 rad/s"'),
-        (lambda: gb.Load(force=(0, 0, "5 N")), 'force[2] "5 N" is a force; '
+        (lambda: gb.Load(distributed=(0, 0, "5 N")), 'distributed[2] "5 N" is a force; '
          'expected a force per length, such as "20 N/m"'),
         (lambda: sliding(stiffness={"displacement": "2 N m/rad"}), 'stiffness.displacement "2 N m/rad" is a rotational '
          'stiffness; expected a stiffness, such as "1e6 N/m"'),

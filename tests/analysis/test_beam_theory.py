@@ -246,7 +246,7 @@ def test_the_slender_one_of_the_two_is_the_exact_models_linearisation(shapes: st
             root=gb.Root(rotation_y=50.0, rotation_z=100.0),
             loads=[
                 gb.Load(0.25, force=(1.0, 2.0, 3.0), moment=(0.1, 0.2, 0.3), follower=True),
-                gb.Load(force=(0.0, 1.0, 2.0)),
+                gb.Load(distributed=(0.0, 1.0, 2.0)),
             ],
         ),
         "exact",

@@ -244,7 +244,7 @@ def test_result_carries_what_plots_need() -> None:
 
 def test_a_start_that_no_beam_would_keep_is_warned_of() -> None:
     """Compressed at ten times the load at which the column buckles (Greenhill), the straight beam is in equilibrium."""
-    none = Load(force=(0.0, 0.0, 0.0))  # of the sizes of structure/test_loads.py
+    none = Load(distributed=(0.0, 0.0, 0.0))  # of the sizes of structure/test_loads.py
     column = Beam(10.0, Section.rectangle(0.02, 0.004), Material(2700.0, 70e9), damping_ratio=0.0, loads=[none])
     m, stiffness = 2700 * 0.02 * 0.004, 70e9 * 0.02 * 0.004**3 / 12
     critical = 7.8373 * stiffness / (m * 10.0**3)

@@ -33,7 +33,7 @@ BEAM = Beam(
     root=Root(rotation_y=200.0),
     loads=[
         Load(1.5, force=(0.3, 0.1, -0.2), moment=(0.0, 0.05, 0.02), follower=True),
-        Load(None, force=(0.0, 0.1, 0.3)),
+        Load(distributed=(0.0, 0.1, 0.3)),
     ],
     points=[Point("camera", 0.7), Point("end", 2.0)],
 )

@@ -188,7 +188,7 @@ def test_response_carries_accelerations_and_gravity_hangs_on_the_root() -> None:
 
 
 def test_loads_on_the_beam_are_carried_to_the_root() -> None:
-    loads = [Load(L, force=(0, 0, 5.0)), Load(None, force=(0, 2.0, 0)), Load(0.1, moment=(0, 0.3, 0))]
+    loads = [Load(L, force=(0, 0, 5.0)), Load(distributed=(0, 2.0, 0)), Load(0.1, moment=(0, 0.3, 0))]
     beam = Beam(L, Section.rectangle(0.02, 0.004), MATERIAL, loads=loads)
     structure = assemble(beam, Model("FOAM", 0, 2, 3), [0.2])
     q = np.zeros(5)

@@ -66,8 +66,8 @@ CASES = {
         'title = "test"', "foo = 1", "foo", "unknown key", "the keys here are title, beam, model", "foo",
     ),
     "missing in a table": (
-        'length = "300 mm"\n', "", "beam", "length is missing",
-        'add length = "20 mm": length from root', "beam",
+        'control_point = "150 mm"\n', "", SPIN, "control_point is missing",
+        'add control_point = "20 mm": point of the specimen', "spin",
     ),
     "missing in an inline table": (
         ', thickness = "4 mm"', "", "beam.section", "thickness is missing", "along z", "section",

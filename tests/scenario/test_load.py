@@ -48,7 +48,6 @@ def test_all_errors_at_once_in_order(text: str, errors: Errors) -> None:
     diagnostics = errors(wrong.replace('"3.3 m"', '"3.3"'))
     assert [(error.line, error.path) for error in diagnostics] == [
         (3, "beam.length"),
-        (10, "model.modes"),
         (10, "model.modes.axal"),
         (17, "motion.spin.arm"),
         (26, "response.duration"),

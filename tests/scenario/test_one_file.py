@@ -18,31 +18,27 @@ DUMBBELL = '''
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated
 
-from pydantic import Field
-
+from gbeam.guards.arguments import typed
+from gbeam.guards.quantities import Length, Mass
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.scenario.bodies.common import BodyKind
-from gbeam.scenario.schema.fields import Length, Mass, Table
+from gbeam.scenario.schema.declared import table_of
 
 
-class Dumbbell(Table):
+@typed
+def dumbbell(
+    mass: Annotated[Mass, "mass of each"], span: Annotated[Length, "distance of the masses, along y"]
+) -> RigidBody:
     """Two equal masses on a light rod, the root in its middle."""
-
-    kind: Literal["dumbbell"] = Field(description="kind of the body")
-    mass: Mass = Field(description="mass of each")
-    span: Length = Field(description="distance of the masses, along y")
+    about = mass * span**2 / 2
+    return RigidBody(2 * mass, (about, 0.0, about))
 
 
-def _body(parts: Any, where: str, table: Dumbbell) -> Any:
-    from gbeam.mechanics.tree.system import RigidBody
-
-    about = table.mass * table.span**2 / 2
-    return parts.attempt(where, RigidBody, 2 * table.mass, (about, 0.0, about))
-
-
-BODY = BodyKind(Dumbbell, _body)
+BODY = BodyKind(table_of(dumbbell, name="Dumbbell", tag=("kind", "dumbbell")))
 '''
+WIDER = ('along y"]\n', 'along y"],\n    tilt: Annotated[Angle, "turn of the rod about x"] = 0.0,\n')
 PLANAR = """
 
 KINDS["planar"] = Kind(
@@ -117,3 +113,34 @@ def test_their_keys_are_in_the_schema_and_their_units_are_asked_for(widened: Pat
     refused = run(widened, "check", "wrong.toml")
     assert refused.returncode == 2
     assert "bodies.bell.span" in refused.stderr and "joints.table.stiffness.u" in refused.stderr
+
+
+def test_a_parameter_is_declared_in_one_place(widened: Path, tmp_path: Path) -> None:
+    """Added to the signature it is a key of the file, of --set, the form and the reference, and in the docstring."""
+    copy = tmp_path / "source"
+    shutil.copytree(widened, copy)
+    file = copy / "gbeam/scenario/bodies/dumbbell.py"
+    declared = file.read_text(encoding="utf-8").replace(*WIDER).replace("import Length", "import Angle, Length")
+    file.write_text(declared, encoding="utf-8")
+    (copy / "toy.toml").write_text(SCENARIO.replace('span = "300 mm"', 'span = "300 mm"\ntilt = "5 deg"'), "utf-8")
+    assert run(copy, "modes", "toy.toml").returncode == 0
+    refused = run(copy, "modes", "toy.toml", "--set", "bodies.bell.tilt=5 mm")
+    assert refused.returncode == 2 and '"5 mm" is a length = expected an angle' in " ".join(refused.stderr.split())
+    assert run(copy, "modes", "toy.toml", "--set", "bodies.bell.tilt=6 deg").returncode == 0
+    assert "| `tilt` | angle in rad | `0.0` | turn of the rod about x |" in run(copy, "schema", "--markdown").stdout
+    asked = (
+        "from pathlib import Path; from tomllib import loads; from gbeam.app.form import form; "
+        "print(form(loads(Path('toy.toml').read_text())))"
+    )
+    assert "turn of the rod about x" in python(copy, asked)
+    asked = "from gbeam.scenario.bodies.dumbbell import dumbbell; print(dumbbell.__doc__)"
+    assert "tilt : float, rad, optional\n    Turn of the rod about x." in python(copy, asked)
+
+
+def python(folder: Path, code: str) -> str:
+    """What a program prints with the package in a folder."""
+    path = {"PYTHONPATH": str(folder), "OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=path, cwd=folder, capture_output=True, text=True, check=True
+    )
+    return done.stdout

@@ -11,8 +11,8 @@ from gbeam.cli import main
 from gbeam.guards.kinds import KINDS
 from gbeam.scenario.reference import reference
 from gbeam.scenario.schema.fields import Table, fields_of
+from gbeam.scenario.schema.joints import Coordinates
 from gbeam.scenario.schema.scenario import Environments
-from gbeam.scenario.schema.system import Coordinates
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenario.md"
 

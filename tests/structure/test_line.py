@@ -245,12 +245,12 @@ duration = "1 s"
     twisted = line('line = { stations = [0, "500 mm"], twist = ["5 deg", "25 deg"] }', length=True)
     turned = Rotation.from_matrix(twisted.places([0.25])[1][0]).as_rotvec()
     np.testing.assert_allclose(turned, [np.radians(15), 0, 0], atol=1e-9)
+    assert line('line = { stations = [0, "500 mm"], twist = ["5 deg", "25 deg"] }').length == pytest.approx(0.5)
     for written, message in (
         ('line = { pieces = [ { length = "1 m" } ], points = [] }', "pieces is given beside points"),
         ("line = { smooth = true }", "the line is missing"),
         ('line = { stations = [0, "500 mm"] }', "twist is missing beside stations"),
         ('line = { points = [[0, 0, 0], ["1 m", 0, 0]], twist = ["1 deg"] }', "1 values for 2 points"),
-        ('line = { stations = [0, "500 mm"], twist = ["5 deg", "25 deg"] }', "length is missing"),
     ):
         with pytest.raises(gb.GbeamError, match=message):
             line(written)

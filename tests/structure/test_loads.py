@@ -128,9 +128,11 @@ def test_a_spread_load_over_time_is_an_acceleration_of_the_base(model: Model) ->
     pulse = vector(z=trapezoid(0.4, jerk=2.0, start=0.1, hold=0.5))
     counter = vector(z=trapezoid(-0.4, jerk=2.0, start=0.1, hold=0.5))
     settings = ResponseSettings(1.5, step=0.005)
-    none = Load(force=vector(z=constant(0.0)))  # of the same sizes
+    none = Load(distributed=vector(z=constant(0.0)))  # of the same sizes
     moving = simulate(assemble(beam(1.0, 1.0, none), model), Flight(acceleration=pulse), settings)
-    pushed = simulate(assemble(beam(1.0, 1.0, Load(force=counter)), model), Flight(acceleration=vector()), settings)
+    pushed = simulate(
+        assemble(beam(1.0, 1.0, Load(distributed=counter)), model), Flight(acceleration=vector()), settings
+    )
     np.testing.assert_allclose(pushed.tip, moving.tip, atol=1e-9 * np.abs(moving.tip).max())
 
 
@@ -145,7 +147,7 @@ def test_equilibrium_takes_the_loads_at_its_time() -> None:
 
 
 def test_truncated_work_is_the_first_order_of_the_complete_one() -> None:
-    loads = [Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), Load(None, (0.2, 0.3, 0.4), follower=True)]
+    loads = [Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), Load(distributed=(0.2, 0.3, 0.4), follower=True)]
     full = assemble(beam(1.0, 1.0, *loads), Model("CFOAM", 1, 2, 2))
     q = np.random.default_rng(1).normal(size=5)
     value, slope = virtual_work(full, 0 * q), rate(lambda t: virtual_work(full, t * q))

@@ -160,7 +160,7 @@ duration = "1 s"
     assert case.beam.section == gb.Section.of_matrices(stiffness, mass)
     assert gb.describe(case).mass == pytest.approx(2700 * 0.03 * 0.02 * LENGTH)
     for written, wrong, message in (
-        ("mass = [[", "mass = [[1.0], [", r"mass\[0\]: has 1 entry"),
+        ("mass = [[", "mass = [[1.0], [", "mass: has 7 entries"),
         ('shape = "matrices"', 'shape = "general"', "area is missing"),
         ("[model]", "[beam.material]\ndensity = 1000\nyoungs_modulus = 1e9\n[model]", "is given beside a section by"),
     ):

@@ -57,7 +57,7 @@ def test_what_they_build() -> None:
     assert callable(beam.loads[0].force)
     np.testing.assert_allclose(beam.loads[0].force(1.7), [-2.0, 0.0, 5.0])
     np.testing.assert_allclose(beam.loads[1].moment(0.0), [0.0, 3.0, 0.0])  # type: ignore[operator, misc]
-    np.testing.assert_allclose(beam.loads[2].force(0.0), [0.0, 20.0, 0.0])  # type: ignore[operator, misc]
+    np.testing.assert_allclose(beam.loads[2].distributed(0.0), [0.0, 20.0, 0.0])  # type: ignore[operator, misc]
     assert case.model.shapes == "adapted"
     slew, free = case.motions["slew"], case.motions["free"]
     assert isinstance(slew, Hub) and isinstance(free, Hub) and free.free and not slew.free

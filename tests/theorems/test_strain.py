@@ -45,7 +45,7 @@ def stepped(draw: st.DrawFn, *, size: float = 1.0) -> gb.Beam:
     loads = [
         gb.Load(length * draw(numbers(0.1, 1.0)), push * draw(vectors(1.0)), push * length * draw(vectors(1.0))),
         gb.Load(length * draw(numbers(0.1, 1.0)), push * draw(vectors(1.0)), follower=True),
-        gb.Load(None, push / length * draw(vectors(1.0)), push * draw(vectors(1.0))),
+        gb.Load(distributed=push / length * draw(vectors(1.0)), distributed_moment=push * draw(vectors(1.0))),
     ]
     return replace(beam, section=gb.Section.rectangle(width, thickness, stations), loads=loads)
 

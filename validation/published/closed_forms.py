@@ -223,7 +223,7 @@ def columns() -> Iterator[Row]:
     yield Row("column", "following thrust at the tip (Beck)", float(brentq(beck, 19.0, 21.0)), following, "EI/L²", 5e-5,
               "derived: two roots of the frequency equation meet", "the exact beam shortens by 2e-5")  # fmt: skip
     weight = 9 / 4 * brentq(lambda z: jv(-1 / 3, z), 1.5, 2.2) ** 2
-    spread = critical_load(column(Load(None, force=(-1.0, 0.0, 0.0)))).value
+    spread = critical_load(column(Load(distributed=(-1.0, 0.0, 0.0)))).value
     pushed = buckling_acceleration(column()).value
     source = "Greenhill: 9/4 z², J₋₁⸝₃(z) = 0"
     yield Row("column", "dead thrust, spread", weight, spread, "EI/L³", 5e-5, source)

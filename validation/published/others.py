@@ -242,7 +242,7 @@ def following_spread_force() -> Iterator[Row]:
     across = {20.921: 0.63846, 41.396: 0.84946, 57.551: 0.77837, 79.815: 0.56245}
     for which, curve in ((0, along), (1, across)):
         for q, theirs in curve.items():
-            deflection = bent(rod(1.0, 3.5, 4.2e5, Load(None, force=(0, 0, q), follower=True)))[which]
+            deflection = bent(rod(1.0, 3.5, 4.2e5, Load(distributed=(0, 0, q), follower=True)))[which]
             quantity = f"{('shortening', 'deflection')[which]}, {q:g} N/m"
             yield Row(case, quantity, theirs, -deflection if which == 0 else deflection, "m", 0.02, source, "digitised")
 

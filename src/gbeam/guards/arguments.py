@@ -7,11 +7,12 @@ import os
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from inspect import Parameter, signature
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints, is_typeddict
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints, is_typeddict
 
 from gbeam.arrays.namespace import has_unit, holds_jax, looks_at_traced
 from gbeam.errors import GbeamError, InputError
-from gbeam.guards.kinds import kind_of_argument
+from gbeam.guards.kinds import kind_of_argument, kinds
+from gbeam.guards.parameters import parameters_of, resolved_hints, with_parameters
 from gbeam.guards.units import BEGINNING, in_si
 from gbeam.printable import shortened
 from gbeam.progress import Bar
@@ -72,9 +73,16 @@ def typed(function: F) -> F:
     with a unit and pint's quantities become SI where the argument has a kind of quantity (`gbeam.guards.kinds`);
     elsewhere numbers with a unit are refused. Other texts for numbers, and fractions for whole numbers, are refused
     only if the call fails: its own checks of values say more about them. ``progress=True`` becomes a Bar.
+
+    Numbers whose quantity is declared in the signature have its sign and range, and parameters that are declared with
+    words are told in the docstring (`gbeam.guards.parameters`).
     """
+    declared = parameters_of(function)
+    function.__doc__ = with_parameters(function.__doc__ or "", declared)
+    quantities = {name: each.quantity.kind for name, each in declared.items() if each.quantity is not None}
+    kinds(**quantities)(function)
     if isinstance(function, type):
-        function.__init__ = typed(function.__init__)  # type: ignore[misc]
+        function.__init__ = _typed(function.__init__)  # type: ignore[misc]
         return typed_methods(function)
     return _typed(function)
 
@@ -105,6 +113,7 @@ def _typed(function: F, method: bool = False) -> F:
     def named(args: tuple[Any, ...]) -> list[tuple[str, Any]]:
         return [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
 
+    declared = {name: each for name, each in parameters_of(function).items() if each.quantity is not None}
     generates = str(signature(function).return_annotation).startswith("Iterator")  # and shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
@@ -130,6 +139,9 @@ def _typed(function: F, method: bool = False) -> F:
             keywords = {name: read(name, value) for name, value in keywords.items()}
             pairs = (*named(args), *keywords.items())
         check(pairs, True)
+        for name, value in pairs:
+            if name in declared:
+                declared[name].check(value)
         try:
             return function(*args, **keywords)
         except (AttributeError, LookupError, TypeError, ValueError) as error:
@@ -178,21 +190,17 @@ def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
     """Types of the arguments by name; names imported for type checkers only are Any, or numbers of a method."""
     from numpy.typing import ArrayLike
 
-    unknown: dict[str, Any] = {}
-    while True:
-        try:
-            hints = get_type_hints(function, localns=unknown, include_extras=True)
-        except NameError as error:
-            unknown[str(error.name)] = Any
-            continue
-        numbers = {name for name in hints if hints[name] is Any and method and kind_of_argument(method, name, {})}
-        return hints | dict.fromkeys(numbers, ArrayLike)
+    hints = resolved_hints(function)
+    numbers = {name for name in hints if hints[name] is Any and method and kind_of_argument(method, name, {})}
+    return hints | dict.fromkeys(numbers, ArrayLike)
 
 
 def _alternatives(hint: Any) -> tuple[Any, ...]:
     """Types of a union; ArrayLike, which is a union too, stays one type."""
     from numpy.typing import ArrayLike
 
+    if get_origin(hint) is Annotated:
+        return _alternatives(hint.__origin__)
     parts = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     of_arrays = set(get_args(ArrayLike)) & set(parts)
     return (*(each for each in parts if each not in of_arrays), ArrayLike) if len(of_arrays) > 1 else parts
@@ -208,6 +216,8 @@ def _single(kind: Any, texts: bool) -> Test:
     """Return a test of values for a type that is no union."""
     from numpy.typing import ArrayLike
 
+    if get_origin(kind) is Annotated:
+        return _test(kind.__origin__, texts)
     origin, parts = get_origin(kind) or kind, get_args(kind)
     if kind is ArrayLike:
         return lambda value: _are_numbers(value, texts)
@@ -311,7 +321,9 @@ def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
 
 def _described(hint: Any) -> str:
     kinds = [each for each in _alternatives(hint) if each is not type(None)]
-    return " or ".join(dict.fromkeys(_word(each) for each in kinds))
+    words = dict.fromkeys(_word(each) for each in kinds)
+    listed = any(word.endswith(" numbers") for word in words)
+    return " or ".join(word for word in words if word != "numbers" or not listed)
 
 
 def _word(kind: Any) -> str:

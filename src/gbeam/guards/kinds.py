@@ -16,6 +16,7 @@ class Kind:
     phrase: str  # with its article, "a length"
     unit: str  # SI, of bare numbers
     example: str  # a quantity as one would write it
+    rate: str = ""  # kind of its rate of change, of what profiles are given
 
 
 KINDS: dict[str, Kind] = {
@@ -26,22 +27,22 @@ KINDS: dict[str, Kind] = {
     "density": Kind("a density", "kg/m^3", "2700 kg/m^3"),
     "moment of inertia": Kind("a moment of inertia", "kg m^2", "200 kg m^2"),
     "pressure": Kind("a pressure", "Pa", "70 GPa"),
-    "force": Kind("a force", "N", "5 N"),
+    "force": Kind("a force", "N", "5 N", "force rate"),
     "force rate": Kind("a rate of force", "N/s", "10 N/s"),
-    "force per length": Kind("a force per length", "N/m", "20 N/m"),
+    "force per length": Kind("a force per length", "N/m", "20 N/m", "force per length rate"),
     "force per length rate": Kind("a rate of force per length", "N/m/s", "20 N/m/s"),
     "stiffness": Kind("a stiffness", "N/m", "1e6 N/m"),
     "rotational stiffness": Kind("a rotational stiffness", "N m/rad", "5000 N m/rad"),
     "damping": Kind("a damping", "N s/m", "50 N s/m"),
     "rotational damping": Kind("a rotational damping", "N m s/rad", "2 N m s/rad"),
-    "torque": Kind("a torque", "N m", "200 N m"),
+    "torque": Kind("a torque", "N m", "200 N m", "torque rate"),
     "torque rate": Kind("a rate of torque", "N m/s", "10 N m/s"),
     "time": Kind("a time", "s", "16 s"),
-    "speed": Kind("a speed", "m/s", "3 m/s"),
-    "acceleration": Kind("an acceleration", "m/s^2", "6 g"),
+    "speed": Kind("a speed", "m/s", "3 m/s", "acceleration"),
+    "acceleration": Kind("an acceleration", "m/s^2", "6 g", "jerk"),
     "jerk": Kind("a jerk", "m/s^3", "4 g/s"),
     "angle": Kind("an angle", "rad", "30 deg"),
-    "angular rate": Kind("an angular rate", "rad/s", "3 rad/s"),
+    "angular rate": Kind("an angular rate", "rad/s", "3 rad/s", "angular acceleration"),
     "angular acceleration": Kind("an angular acceleration", "rad/s^2", "1 rad/s^2"),
     "angular jerk": Kind("an angular jerk", "rad/s^3", "10 rad/s^3"),
     "power": Kind("a power", "W", "50 kW"),

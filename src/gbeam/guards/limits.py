@@ -29,6 +29,7 @@ PROBLEMS = 50  # explained at once
 
 # Sizes that a scenario asks for.
 SHAPES = 40  # in one direction: assembling takes a second
+MODES = 1000  # of a reduced model
 ENTRIES = 1000  # masses, loads, stations of a section or of the output
 NODES = 5000  # of integration along the beam: 12 and four for every shape, between two stations of the section
 KNOTS = 500_000  # of a centrifuge's target: about 4 kB each while it is planned

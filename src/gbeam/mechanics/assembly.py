@@ -316,7 +316,7 @@ def _history(beam: Beam) -> LoadHistory | None:
 
     if not beam.loads:
         return None
-    return LoadHistory(tuple((profile(load.force), profile(load.moment)) for load in beam.loads))
+    return LoadHistory(tuple(tuple(map(profile, load.acting)) for load in beam.loads))
 
 
 def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:

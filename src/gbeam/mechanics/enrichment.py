@@ -178,7 +178,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
             first += 1
         loads += [
             weight @ part[points, axis]
-            for part, component in ((slopes, load.force), (angles, load.moment))
+            for part, component in zip((slopes, angles), load.acting, strict=True)
             if component is not None
             for axis in range(3)
         ]
@@ -217,7 +217,7 @@ def _loads(beam: Beam, space: Space, along: int) -> Array:
         moved, turned = (value, slope) if load.at is None else space.sensitivity(np.array([load.at]))
         weight = space.rule.weight if load.at is None else np.ones(1)
         columns += [
-            weight @ part for part, component in ((moved, load.force), (turned, load.moment)) if component is not None
+            weight @ part for part, component in zip((moved, turned), load.acting, strict=True) if component is not None
         ]
     return np.stack([uniform, growing, *columns], axis=1)
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 from gbeam.constants import BY_STRAINS, ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.limits import SHAPES
+from gbeam.guards.quantities import Count
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
 
 StrainName = Literal["twist", "shear_y", "shear_z"]
+COUNT = Count(0, SHAPES)
 STRAINS: tuple[StrainName, ...] = get_args(StrainName)
 
 
@@ -47,23 +50,6 @@ KINDS: dict[str, Kind] = {name: replace(row, strains=name in BY_STRAINS) for nam
 class Model:
     """Kind of model, and the numbers of its coordinates.
 
-    Parameters
-    ----------
-    kind : str
-        TLAM, FOAM, SFOAM (as printed: no axial coordinates, Q_θ dropped), CFOAM, fourth-order (the exact places'
-        polynomial of that order) or exact. FOAM with ``axial=0`` is the Lagrangian form of SFOAM.
-    axial, y, z : int
-        Numbers of axial shapes and of bending shapes along y and along z; for exact and fourth-order: shapes of the
-        stretch and of the curvatures.
-    shapes : str
-        clamped-free: those of the bare uniform beam (for exact and fourth-order, polynomials). adapted: the modes at
-        rest of the beam with its tapers, bodies and root springs.
-    twist, shear_y, shear_z : int
-        Numbers of shapes of the twist and of the shear strains; a strain without shapes is rigid. With them, and on a
-        curved line, the other kinds are the Taylor polynomials of the exact places, to the order of their own.
-    automatic : bool
-        Whether the numbers are gbeam's own, which a study raises until what they leave out is small.
-
     Raises
     ------
     InputError
@@ -76,15 +62,32 @@ class Model:
     (1, 0, 3, 2, 0, 0)
     """
 
-    kind: ModelKind
-    axial: int = 0
-    y: int = 0
-    z: int = 0
-    shapes: Shapes = "clamped-free"
-    automatic: bool = False
-    twist: int = 0
-    shear_y: int = 0
-    shear_z: int = 0
+    kind: Annotated[
+        ModelKind,
+        "TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM without axial "
+        "coordinates, Q_θ dropped as printed. CFOAM: FOAM's field, complete energy. fourth-order: exact's places to "
+        "that order, complete. exact: any rotation",
+    ]
+    axial: Annotated[int, COUNT, "axial shapes; for `exact` and `fourth-order` of the stretch"] = 0
+    y: Annotated[int, COUNT, "bending shapes along y; for `exact` and `fourth-order` of the curvature"] = 0
+    z: Annotated[int, COUNT, "bending shapes along z; for `exact` and `fourth-order` of the curvature"] = 0
+    shapes: Annotated[
+        Shapes,
+        "clamped-free: shapes of the bare uniform beam (for `exact` and `fourth-order`, polynomials); the default for "
+        "these two and where `modes` are given. adapted: the modes at rest of this beam with its tapers, masses and "
+        "root springs, of which fewer are needed; the default where `modes` are left out",
+    ] = "clamped-free"
+    automatic: Annotated[
+        bool, "whether the numbers are gbeam's own, which a study raises until what they leave out is small"
+    ] = False
+    twist: Annotated[
+        int,
+        COUNT,
+        "shapes of the twist, whose inertia is beam.rotary_inertia; with it, with shear, and on a curved line the "
+        "other kinds are the Taylor polynomials of the exact places, to the order of their own",
+    ] = 0
+    shear_y: Annotated[int, COUNT, "shapes of the shear strain along y; a strain without shapes is rigid"] = 0
+    shear_z: Annotated[int, COUNT, "shapes of the shear strain along z"] = 0
 
     @classmethod
     def of(cls, kind: ModelKind, shapes: Shapes | None = None) -> Model:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 
 from gbeam.arrays.namespace import holds_jax, namespace
 from gbeam.arrays.tree import assign, record
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive
+from gbeam.guards.quantities import Components, Quantity
 from gbeam.motion.profiles.combine import Turned, as_profile, merged_extent, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, smoothed
@@ -27,19 +27,6 @@ _ROUNDING = 1e-6
 @record
 class Flight:
     """A base in flight: in translation (ω = α = 0), or turning at given body rates.
-
-    Parameters
-    ----------
-    x, y, z : Profile or float, optional
-        Components of the root's acceleration, or specific force, in base axes, m/s²; one left out is zero.
-    acceleration : Profile, optional
-        The same as one vector profile, such as a record, in place of x, y and z.
-    rates : Profile, optional
-        Vector profile: angular velocity in base axes, rad/s, without corners; α is its derivative, since the rate of a
-        vector ω is the same seen from its own axes.
-    scale : float
-        Level factor of a test: the acceleration is so many times the given one, gravity in a specific force included.
-        Rates are flown as they are given, and a result says so.
 
     Raises
     ------
@@ -60,13 +47,39 @@ class Flight:
 
     def __init__(
         self,
-        x: Profile | Any | None = None,
-        y: Profile | Any | None = None,
-        z: Profile | Any | None = None,
+        x: Annotated[
+            Profile | float | None,
+            Quantity("acceleration"),
+            "component along x of the root's acceleration, or of specific force",
+        ] = None,
+        y: Annotated[
+            Profile | float | None, Quantity("acceleration"), "component along y; one left out is zero"
+        ] = None,
+        z: Annotated[Profile | float | None, Quantity("acceleration"), "component along z"] = None,
         *,
-        acceleration: Profile | Any | None = None,
-        rates: Profile | Any | None = None,
-        scale: Any = 1.0,
+        acceleration: Annotated[
+            Numbers | Profile | None,
+            Quantity("acceleration"),
+            Components(
+                "An acceleration by components in base axes; those left out are zero.",
+                x="profile of the component along the beam",
+                y="profile of the component along the width",
+                z="profile of the component through the thickness",
+            ),
+            "the components as one vector profile: { x, y, z }, those left out zero; or record",
+        ] = None,
+        rates: Annotated[
+            Numbers | Profile | None,
+            Quantity("angular rate"),
+            "angular velocity in base axes, a vector profile without corners; α is its derivative, since the "
+            "rate of a vector ω is the same seen from its own axes",
+        ] = None,
+        scale: Annotated[
+            Any,
+            Quantity("ratio", "positive"),
+            "level factor of a test, such as 1.25: accelerations are flown so many times as large, gravity in a "
+            "specific force included, and limits hold for these; body rates are flown as they are given",
+        ] = 1.0,
     ) -> None:
         components = [name for name, value in (("x", x), ("y", y), ("z", z)) if value is not None]
         if acceleration is None and not components:
@@ -80,7 +93,7 @@ class Flight:
             self,
             unscaled=load,
             rates=None if rates is None else as_profile("rates", rates, 3),
-            scale=positive("scale", scale, "times the given acceleration"),
+            scale=scale if holds_jax(scale) else float(scale),
         )
 
     @property

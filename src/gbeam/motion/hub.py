@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Self, get_args
+from typing import Annotated, Any, ClassVar, Self, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from gbeam.constants import Pointing
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive, possible, vector
+from gbeam.guards.quantities import AccelerationVector, PositionVector, Quantity, RotationVector
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.rigid import rotation_of, turn_of
@@ -99,34 +100,6 @@ class Hub:
     Without a rate and without an inertia it stands still, and serves where only its radius matters: a Campbell
     diagram, a critical speed.
 
-    Parameters
-    ----------
-    radius : float
-        From the axis to the root, or to the control point where one is given, m; may be zero.
-    rate : Profile or float, optional
-        Ω(t) about z, rad/s; the angle is zero at time zero.
-    inertia : float, optional
-        Moment of inertia of the hub about its axis, kg m². Beside a rate it gives the drive's torque.
-    torque : Profile or float, optional
-        About z on a free hub, N m; zero if left out. ``hub.torque`` is None where the hub is not free.
-    pointing : str
-        ``outward`` or ``inward``: from the root away from the hub's axis, or towards it and beyond.
-    setting_angle : float, optional
-        Turn of the section's y and z axes about the beam, from the beam's y axis in the plane of rotation, rad; zero
-        unless given. A beam much stiffer in that plane than out of it is then warned of.
-    turn : (3,), optional
-        Rotation vector of the root's axes in the hub's, rad, in place of `pointing` and `setting_angle`: any mounting.
-    control_point : (3,), optional
-        Point that lies at the radius, from the root in its axes, m; the root itself if left out. The level there is
-        part of the results.
-    gravity : sequence of three floats, optional
-        Acceleration of free fall, m/s², in hub axes at hub angle zero; it stays where it is as the hub turns.
-    stiffness, damping : float
-        Torsional spring, at ease at the initial angle zero, and damper between a free hub and the ground, N m/rad,
-        N m s/rad.
-    standard : str
-        Test of a standard that this is, in words: results have it among their notes.
-
     Raises
     ------
     InputError
@@ -158,25 +131,60 @@ class Hub:
     def __init__(
         self,
         *,
-        radius: Any,
-        rate: Profile | Any | None = None,
-        inertia: Any | None = None,
-        torque: Profile | Any | None = None,
-        pointing: Pointing = "outward",
-        setting_angle: Any | None = None,
-        turn: ArrayLike | None = None,
-        control_point: ArrayLike | None = None,
-        gravity: ArrayLike | None = None,
-        stiffness: Any = 0.0,
-        damping: Any = 0.0,
-        standard: str = "",
+        radius: Annotated[
+            Any,
+            Quantity("length", "zero or more", "radius"),
+            "from the hub's axis to the root, or to the control point where one is given; may be zero",
+        ],
+        rate: Annotated[
+            Profile | float | None,
+            Quantity("angular rate"),
+            "the hub's rate about its axis z, over time, its angle zero at time zero; or inertia and torque",
+        ] = None,
+        inertia: Annotated[
+            Any | None,
+            Quantity("moment of inertia", "positive"),
+            "moment of inertia of the hub about its axis; beside a rate it gives the torque of the drive",
+        ] = None,
+        torque: Annotated[
+            Profile | float | None, Quantity("torque"), "torque about z on a free hub, over time; needs inertia"
+        ] = None,
+        pointing: Annotated[Pointing, "from the root away from the hub's axis, or towards it and beyond"] = "outward",
+        setting_angle: Annotated[
+            Any | None,
+            Quantity("angle"),
+            "turn of the section about the beam; at 0, or left out, its y axis lies in the plane of rotation. A beam "
+            "much stiffer in that plane than out of it is then warned of",
+        ] = None,
+        turn: Annotated[
+            RotationVector | None,
+            "rotation vector of the root's axes in the hub's, in place of pointing and setting_angle: any mounting",
+        ] = None,
+        control_point: Annotated[
+            PositionVector | None,
+            "point that lies at the radius, from the root in its axes; the root itself where left out. The level there "
+            "is part of the results",
+        ] = None,
+        gravity: Annotated[
+            AccelerationVector | None,
+            'acceleration of free fall [x, y, z] in hub axes at hub angle zero, such as [0, 0, "-1 g"]: x to the root, '
+            "z the hub's axis; it keeps its direction as the hub turns",
+        ] = None,
+        stiffness: Annotated[
+            Any,
+            Quantity("rotational stiffness", "zero or more"),
+            "torsional spring from a free hub to the ground, at ease at the hub's initial angle",
+        ] = 0.0,
+        damping: Annotated[
+            Any, Quantity("rotational damping", "zero or more"), "torsional damper from a free hub to the ground"
+        ] = 0.0,
+        standard: Annotated[str, "test of a standard that this is, in words: results have it among their notes"] = "",
     ) -> None:
         if torque is not None and rate is not None:
             raise InputError("torque", "is given beside rate", "keep rate or torque, not both")
         if torque is not None and inertia is None:
             raise InputError("inertia", "is missing", 'a hub under a torque needs it: inertia = "200 kg m^2"')
-        stiffness = as_array(positive("stiffness", stiffness, "N m/rad", zero=True))
-        damping = as_array(positive("damping", damping, "N m s/rad", zero=True))
+        stiffness, damping = as_array(stiffness), as_array(damping)
         free = rate is None and inertia is not None
         for name, value in (("stiffness", stiffness), ("damping", damping)):
             if not free and (is_traced(value) or value != 0):
@@ -193,7 +201,7 @@ class Hub:
             self,
             mount=mount,
             rate=None if free else as_profile("rate", 0.0 if rate is None else rate),
-            inertia=None if inertia is None else as_array(positive("inertia", inertia, "kg m²")),
+            inertia=None if inertia is None else as_array(inertia),
             torque=as_profile("torque", 0.0 if torque is None else torque) if free else None,
             stiffness=stiffness,
             damping=damping,

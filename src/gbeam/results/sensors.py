@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
+from gbeam.guards.quantities import Factor, Quantity, RotationVector, Shape
 from gbeam.numerics.samples import displacement
 from gbeam.results.declared import INSIDE, labels, part, quantity
 from gbeam.results.parts import VectorPeaks
@@ -25,18 +25,6 @@ RESOLVED = 4.0  # samples to a period of the sensor
 class Sensor(Value):
     """An accelerometer of three axes: a mass on a spring along each, of which the deflection is read.
 
-    Parameters
-    ----------
-    turn : (3,)
-        Rotation vector of its axes in the base axes, rad.
-    frequency : float, optional
-        Natural frequency of the spring, or the cut-off of a filter of second order, Hz; without one it reads the
-        acceleration itself.
-    damping_ratio : float
-        Of the spring; 0.7 gives the widest flat range.
-    sensitivity : (3, 3), optional
-        Reading of each axis for a unit along each: one on the diagonal, and beside it what leaks from the others.
-
     Raises
     ------
     InputError
@@ -48,18 +36,26 @@ class Sensor(Value):
     0.7
     """
 
-    turn: Numbers = (0.0, 0.0, 0.0)
-    frequency: float | None = None
-    damping_ratio: float = 0.7
-    sensitivity: Any = None
+    turn: Annotated[
+        RotationVector,
+        "rotation vector of its axes in the base axes, of a system in those of its point: [x, y, z]",
+    ] = (0.0, 0.0, 0.0)
+    frequency: Annotated[
+        Annotated[float, Quantity("frequency", "positive")] | None,
+        "natural frequency of the spring, or the cut-off of a filter of second order; without one it reads the "
+        "acceleration itself",
+    ] = None
+    damping_ratio: Annotated[Factor, "of the spring; 0.7 gives the widest flat range"] = 0.7
+    sensitivity: Annotated[
+        Annotated[Any, Quantity("ratio"), Shape((3, 3))] | None,
+        "rows with the reading of each axis for a unit along each: one on the diagonal, and beside it what leaks from "
+        "the others",
+    ] = None
 
     def __post_init__(self) -> None:
         turn = np.asarray(array("turn", self.turn), dtype=float)
-        if turn.shape != (3,) or not np.isfinite(turn).all():
+        if turn.shape != (3,):
             raise InputError("turn", f"is {self.turn!r}", "give three components in rad")
-        if self.frequency is not None:
-            positive("frequency", self.frequency, "Hz")
-        positive("damping_ratio", self.damping_ratio, "(a share)")
         if self.sensitivity is not None:
             matrix = np.asarray(array("sensitivity", self.sensitivity), dtype=float)
             if matrix.shape != (3, 3) or not np.isfinite(matrix).all():

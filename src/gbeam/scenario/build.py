@@ -11,9 +11,9 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.results.criteria import RULES, Acceptance
 from gbeam.scenario import schema
-from gbeam.scenario.build_beam import beam_of, model_of
 from gbeam.scenario.collector import Collector
 from gbeam.scenario.load import load, loads, placed, provenance, text_of
+from gbeam.scenario.schema.declared import object_of
 
 if TYPE_CHECKING:
     from gbeam.analysis.case import Case
@@ -108,9 +108,11 @@ def _of_beam(parts: Collector, scenario: schema.Scenario) -> System | None:
     from gbeam.analysis.one_body import structure_of
     from gbeam.mechanics.tree.system import System
 
-    beam = beam_of(parts, "beam", scenario.beam)
-    model = model_of(parts, "model", scenario.model, beam)
-    if beam is None or model is None:
+    beam, model_for = object_of(parts, "beam", scenario.beam), object_of(parts, "model", scenario.model)
+    if beam is None or model_for is None:
+        return None
+    model = parts.attempt("model", model_for, beam)
+    if model is None:
         return None
     return System.of(structure_of(beam, model, scenario.response.stations or ()), BEAM)
 
@@ -168,13 +170,9 @@ def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, Ac
     return limited
 
 
-def _sensors(parts: Collector, tables: Mapping[str, schema.Sensor]) -> dict[str, Any]:
+def _sensors(parts: Collector, tables: Mapping[str, Any]) -> dict[str, Any]:
     """Accelerometers by the names of their points."""
-    if not tables:
-        return {}
-    from gbeam.results.sensors import Sensor
-
-    return {each: parts.attempt(f"sensors.{each}", Sensor, **dict(table)) for each, table in tables.items()}
+    return {name: object_of(parts, f"sensors.{name}", table) for name, table in tables.items()}
 
 
 def _span_of(response: ResponseSettings, spans: Spans) -> Callable[[str], tuple[float, float]]:

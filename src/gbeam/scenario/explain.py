@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin
 from pydantic import Discriminator, Tag
 
 from gbeam.guards.kinds import KINDS
+from gbeam.guards.quantities import Quantity
 from gbeam.guards.units import spoken
 from gbeam.printable import advise
 from gbeam.scenario.schema import kind_of_scenario
-from gbeam.scenario.schema.fields import TAGS, Quantity, Table, fields_of, inside, parts_of
+from gbeam.scenario.schema.fields import TAGS, Table, fields_of, inside, parts_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
 from gbeam.scenario.values import Path
@@ -43,6 +44,8 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
     what, context = error["type"], error.get("ctx", {})
     field = _field(source, path)
     value = source.raw(path)
+    if what == "value_error":  # of a quantity
+        return context["error"].problem, context["error"].hint, "value", path
     if what == "scenario":
         return context["message"], context["hint"], context["mark"], path
     if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length

@@ -19,7 +19,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import EMBEDDED, PROBLEMS
 from gbeam.scenario.schema import Environments, Flight, Scenario, kind_of_scenario
 from gbeam.scenario.schema.fields import files
-from gbeam.scenario.schema.profile import Record
+from gbeam.scenario.schema.record import Record
 from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.overrides import override
 from gbeam.scenario.text.source import Mark, Source, parse, read_text

@@ -271,6 +271,8 @@ def json_schema(*, distributions: bool = True) -> str:
         _allow_distributions(schema)
         schema["$defs"]["Distribution"] = _distribution_schema()
     text = json.dumps(schema, indent=2, ensure_ascii=False)
-    for name, table in schema["$defs"].items():  # pydantic numbers the profiles: name them by their quantity
-        text = text.replace(name, table["title"].replace(" ", "-")) if "__" in name else text
+    for name, table in schema["$defs"].items():  # of profiles, whose titles have spaces
+        text = text.replace(f'"{name}"', f'"{table["title"].replace(" ", "-")}"').replace(
+            f'/{name}"', f'/{table["title"].replace(" ", "-")}"'
+        )
     return text

@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats, Indices, Numbers
+from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
+from gbeam.guards.limits import MODES
+from gbeam.guards.quantities import MODAL_DAMPING, Count, Mass, ModalDamping, PositionVector, Quantity
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
@@ -124,29 +126,24 @@ class ImportedModel(Value):
     @typed
     def read(
         cls,
-        *paths: str | os.PathLike[str],
-        mass: str = "",
-        stiffness: str = "",
-        nodes: ArrayLike | None = None,
-        length_unit: str = "m",
-        mass_unit: str = "kg",
+        *paths: Annotated[str | os.PathLike[str], "one file or several that complete one another"],
+        mass: Annotated[str, "name of the mass matrix in the files, where it is not the usual one"] = "",
+        stiffness: Annotated[str, "name of the stiffness matrix, likewise"] = "",
+        nodes: Annotated[
+            ArrayLike | None,
+            "places of the nodes (k, 3), in the unit of length, where no file has them: then three or six rows are of "
+            "each",
+        ] = None,
+        length_unit: Annotated[str, "unit of length of the program, such as mm; of time it is s"] = "m",
+        mass_unit: Annotated[str, "unit of mass of the program, such as Mg"] = "kg",
     ) -> ImportedModel:
         """Read the matrices of a model in the files of other programs.
 
-        Parameters
-        ----------
-        *paths : path
-            One or several that complete one another: NumPy's .npz and .npy, Matrix Market's .mtx and MATLAB's .mat,
-            with M and K, with ``nodes``, and with P, the origins of the interface frames, as Simscape's Reduced Order
-            Flexible Solid takes them; matrices of Abaqus and CalculiX (.mtx, and .sti and .mas with .dof), with nodes
-            of an .inp; by the extra ``nastran`` .op4, .op2 and direct matrix input (.pch), with nodes of bulk data
-            (.bdf, .dat, .nas, .blk) or of an external superelement (.asm with .pch).
-        mass, stiffness : str
-            Names of the matrices in the files, where they are not the usual ones.
-        nodes : (k, 3), optional
-            Places of the nodes, in the unit of length, where no file has them: then three or six rows are of each.
-        length_unit, mass_unit : str
-            Of the program, such as ``mm`` and ``Mg``, tonnes; of time it is the second.
+        They are NumPy's .npz and .npy, Matrix Market's .mtx and MATLAB's .mat, with M and K, with ``nodes``, and with
+        P, the origins of the interface frames, as Simscape's Reduced Order Flexible Solid takes them; matrices of
+        Abaqus and CalculiX (.mtx, and .sti and .mas with .dof), with nodes of an .inp; by the extra ``nastran`` .op4,
+        .op2 and direct matrix input (.pch), with nodes of bulk data (.bdf, .dat, .nas, .blk) or of an external
+        superelement (.asm with .pch).
 
         Raises
         ------
@@ -183,42 +180,37 @@ class ImportedModel(Value):
     def reduced(
         self,
         *,
-        modes: int,
-        damping_ratio: Any,
-        clamp: Sequence[int] | Indices = (),
-        points: Mapping[str, int] | None = None,
-        interfaces: Sequence[str] = (),
-        geometric: Mapping[InertialLoad, Any] | None = None,
-        total_mass: float | None = None,
-        centre: Numbers | None = None,
-        inertia: ArrayLike | None = None,
-        kind: str = "matrices",
+        modes: Annotated[int, Count(1, MODES), "number of modes; up to twelve static shapes come on top"] = 10,
+        damping_ratio: Annotated[ModalDamping, MODAL_DAMPING],
+        clamp: Annotated[
+            Sequence[int] | Indices,
+            "numbers of nodes that follow the base; none where the matrices are of the others alone",
+        ] = (),
+        points: Annotated[
+            Mapping[str, int] | None,
+            "numbers of nodes of output by name; the ``tip`` is the free one farthest from the root otherwise",
+        ] = None,
+        interfaces: Annotated[
+            Sequence[str],
+            "names of points, with displacements and rotations, on which other bodies hang: the static answers to "
+            "forces and moments there come on top, so that the reduction is one by Craig and Bampton",
+        ] = (),
+        geometric: Annotated[
+            Mapping[InertialLoad, Any] | None,
+            "stiffness that the stress of a static load adds, by the motion of the root whose inertial load it is: "
+            "``a_x``, ``a_y``, ``a_z`` of 1 m/s², ``alpha_x`` and so on of 1 rad/s², ``w_xx``, ``w_yy``, ``w_zz`` of a "
+            "rotation of 1 rad/s, ``w_xy``, ``w_yz``, ``w_zx`` half of what two of them add beside their own",
+        ] = None,
+        total_mass: Annotated[Mass | None, "mass that the matrices must have, within 1 %"] = None,
+        centre: Annotated[PositionVector | None, "centre of mass that they must have: [x, y, z]"] = None,
+        inertia: Annotated[
+            ArrayLike | None,
+            Quantity("moment of inertia"),
+            "inertia about the centre of mass that they must have: [x, y, z], or three rows",
+        ] = None,
+        kind: Annotated[str, "name for results"] = "matrices",
     ) -> Structure:
         """Reduce the model to its lowest modes and its static answers to unit inertial loads.
-
-        Parameters
-        ----------
-        modes : int
-            Number of modes; the static answers come on top, as in a solid's model.
-        damping_ratio : float or sequence
-            Of critical damping, of all coordinates, or one for each mode, of which static shapes have the last one's.
-        clamp : sequence of int
-            Numbers of the nodes that follow the base; none where the matrices are those of the free nodes alone.
-        points : dict of int, optional
-            Numbers of the nodes that are put out, by their names; the ``tip`` is the free one farthest from the root
-            otherwise.
-        interfaces : sequence of str
-            Points with displacements and rotations on which other bodies hang: the static answers to forces and
-            moments there come on top, so that the reduction is one by Craig and Bampton.
-        geometric : dict of (u, u), optional
-            Stiffness that the stress of a static load adds, by the motion of the root whose inertial load it is:
-            ``a_x``, ``a_y``, ``a_z`` of 1 m/s², ``alpha_x`` and so on of 1 rad/s², ``w_xx``, ``w_yy``, ``w_zz`` of a
-            rotation of 1 rad/s, ``w_xy``, ``w_yz``, ``w_zx`` half of what two of them add beside their own.
-        total_mass, centre, inertia : optional
-            Mass, kg, its centre, (3,) m, and the inertia about it, (3, 3) kg m², as the program prints them: what the
-            matrices have must be within 1 %.
-        kind : str
-            For results.
 
         Raises
         ------

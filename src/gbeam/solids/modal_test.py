@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array
+from gbeam.guards.quantities import OneOrSome, Quantity, Rows
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import Geometric, coefficients
 from gbeam.mechanics.fields.taylor import Places
@@ -30,19 +31,6 @@ CURVED = 0.1  # of a shape, which moves out of phase
 class ModalTest(Value):
     """Modes on a base at rest: frequencies, damping and shapes, as a modal test or another program gives them.
 
-    Parameters
-    ----------
-    frequency : (m,) Hz
-    damping_ratio : (m,) of critical damping
-    shapes : (k, 3, m)
-        Displacements of the nodes along the base axes; of complex modes the part in phase is taken.
-    nodes : (k, 3)
-        Places of the nodes from the root, base axes, m.
-    modal_mass : (m,) or float
-        That goes with the shapes, kg: 1 of mass-normalised ones.
-    numbers : (k,) int, optional
-        Numbers of the nodes, 0 to k - 1 if left out.
-
     Raises
     ------
     InputError
@@ -55,12 +43,23 @@ class ModalTest(Value):
     Structure(modes, 1 coordinates, 0.1 kg)
     """
 
-    frequency: ArrayLike
-    damping_ratio: ArrayLike
-    shapes: Any
-    nodes: ArrayLike
-    modal_mass: Any
-    numbers: ArrayLike | None = None
+    frequency: Annotated[ArrayLike, Quantity("frequency"), "natural frequencies, one for each mode"]
+    damping_ratio: Annotated[
+        ArrayLike, Quantity("ratio"), OneOrSome(), "of critical damping, of every mode, or one for each"
+    ]
+    shapes: Annotated[
+        Any,
+        "displacements (k, 3, m) of the nodes in each mode, along the base axes; of complex modes the part in phase is "
+        "taken",
+    ]
+    nodes: Annotated[ArrayLike, Quantity("length"), Rows(3), "places (k, 3) of the nodes from the root, base axes"]
+    modal_mass: Annotated[
+        Any,
+        Quantity("mass"),
+        OneOrSome(),
+        "that goes with the shapes, of every mode, or one for each: 1 kg of mass-normalised ones",
+    ]
+    numbers: Annotated[ArrayLike | None, "numbers (k,) of the nodes, 0 to k - 1 where left out"] = None
 
     def __post_init__(self) -> None:
         frequency, ratio = (np.atleast_1d(np.asarray(array(n, getattr(self, n)), dtype=float)) for n in _RATES)
@@ -90,14 +89,15 @@ class ModalTest(Value):
 
     @classmethod
     @typed
-    def read(cls, path: str | os.PathLike[str], *, modal_mass: ArrayLike | None = None) -> ModalTest:
+    def read(
+        cls,
+        path: Annotated[str | os.PathLike[str], "universal file (.uff, .unv) of the modes and the nodes"],
+        *,
+        modal_mass: Annotated[
+            ArrayLike | None, Quantity("mass"), "of every mode, or one for each, in place of those in the file"
+        ] = None,
+    ) -> ModalTest:
         """Read the modes of a universal file (.uff, .unv), data sets 55 or 2414 beside 15 or 2411, in its units, or SI.
-
-        Parameters
-        ----------
-        path : path
-        modal_mass : (m,) or float, optional
-            In place of those in the file.
 
         Raises
         ------
@@ -123,17 +123,21 @@ class ModalTest(Value):
         return cls(model.modes["frequency"], model.modes["damping_ratio"], shapes, places, mass, numbers[order])
 
     @typed
-    def structure(self, mass: ArrayLike, *, points: Mapping[str, int] | None = None, kind: str = "modes") -> Structure:
+    def structure(
+        self,
+        mass: Annotated[
+            ArrayLike,
+            Quantity("mass"),
+            "share (k,) of the structure's mass at each node: what the base's motion acts on, which modes do not tell",
+        ],
+        *,
+        points: Annotated[
+            Mapping[str, int] | None,
+            "numbers of nodes of output by name; the ``tip`` is the farthest from the root otherwise",
+        ] = None,
+        kind: Annotated[str, "name for results"] = "modes",
+    ) -> Structure:
         """Structure that moves in these modes.
-
-        Parameters
-        ----------
-        mass : (k,)
-            Share of the structure's mass at each node, kg: what the base's motion acts on, which modes do not tell.
-        points : dict of int, optional
-            Numbers of the nodes that are put out, by their names; the ``tip`` is the farthest from the root otherwise.
-        kind : str
-            For results.
 
         Raises
         ------

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, vector
 from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.guards.quantities import Factor, PositionVector, Quantity, Rows, Shape
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
@@ -34,26 +35,6 @@ SAME = 1e-6  # of the time between samples: corners nearer to one are that one
 class RigidSpecimen(Value):
     """A rigid body on a base that moves; see :meth:`box`.
 
-    Parameters
-    ----------
-    mass : float
-        kg.
-    centre : (3,)
-        Centre of mass from the root, base axes, m.
-    inertia : (3, 3)
-        Moments of inertia about the centre of mass, base axes, kg m²: the diagonal, and beside it minus the products.
-    corners : (c, 3)
-        Corners of its envelope, or other points where the load is of interest, from the root, m.
-    bolts : (b, 3), optional
-        Places of the bolts, or of other points that hold it, from the root, m.
-    bolt_axis : (3,), optional
-        Direction of the bolts, away from the fixture.
-    spread_limit : float, optional
-        Largest spread of the load over the specimen that the test order accepts, of the largest load of the centre.
-    points : dict of (3,), optional
-        Places of output by name, from the root, m, at which accelerations and spectra are given; ``tip`` is the corner
-        farthest from the root where it is not given.
-
     Raises
     ------
     InputError
@@ -68,19 +49,36 @@ class RigidSpecimen(Value):
     array([-100., -120.])
     """
 
-    mass: float
-    centre: Numbers
-    inertia: ArrayLike
-    corners: ArrayLike
-    bolts: ArrayLike | None = None
-    bolt_axis: Numbers | None = None
-    spread_limit: float | None = None
-    points: Mapping[str, Numbers] = field(default_factory=dict)
+    mass: Annotated[Annotated[float, Quantity("mass", "positive")], "mass"]
+    centre: Annotated[PositionVector, "centre of mass from the root, base axes: [x, y, z]"]
+    inertia: Annotated[
+        Annotated[ArrayLike, Quantity("moment of inertia"), Shape((3, 3))],
+        "moments of inertia about the centre of mass, base axes: the diagonal, and beside it minus the products",
+    ]
+    corners: Annotated[
+        Annotated[ArrayLike, Quantity("length"), Rows(3)],
+        "corners of its envelope, or other points whose load is told, from the root: [ [x, y, z], ... ]",
+    ]
+    bolts: Annotated[
+        Annotated[ArrayLike, Quantity("length"), Rows(3)] | None,
+        "places of the bolts that hold it by its root, or of other points that hold it: [ [x, y, z], ... ]",
+    ] = None
+    bolt_axis: Annotated[
+        Annotated[Numbers, Quantity("ratio"), Shape((3,))] | None,
+        "direction of the bolts, away from the fixture: [x, y, z]",
+    ] = None
+    spread_limit: Annotated[
+        Factor | None,
+        "largest difference of the load at a corner to the centre's that the test order accepts, over the largest of "
+        'the centre, such as "10 %"; beyond it the run is not accepted',
+    ] = None
+    points: Annotated[
+        Mapping[str, Numbers],
+        "places of output by name, from the root, at which accelerations and spectra are given; ``tip`` is the corner "
+        "farthest from the root where it is not given",
+    ] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        positive("mass", self.mass, "kg")
-        if self.spread_limit is not None:
-            positive("spread_limit", self.spread_limit, "(a share)")
         shapes = {"centre": (3,), "inertia": (3, 3), "corners": (-1, 3), "bolts": (-1, 3), "bolt_axis": (3,)}
         for name, shape in shapes.items():
             value = getattr(self, name)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats, Numbers
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.quantities import ModalDamping
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, rest_modes
 from gbeam.mechanics.fields.taylor import EPSILON, Places
@@ -26,25 +27,20 @@ ORDERS = (((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)), ((0, 0), (1, 1), (2,
 
 @typed
 def read_sid(
-    path: str | os.PathLike[str],
+    path: Annotated[
+        str | os.PathLike[str],
+        "text of the object ``modal``, in SI: mass, centre, inertia, coupling, gyroscopic and centrifugal terms with "
+        "their geometric stiffness, stiffness, damping, and nodes",
+    ],
     *,
-    damping_ratio: float | Numbers | None = None,
-    points: Mapping[str, int] | None = None,
-    kind: str = "standard input data",
+    damping_ratio: Annotated[ModalDamping | None, "of critical damping, in place of the damping in the file"] = None,
+    points: Annotated[
+        Mapping[str, int] | None,
+        "numbers of nodes of output by name; the ``tip`` is the farthest from the root otherwise",
+    ] = None,
+    kind: Annotated[str, "name for results"] = "standard input data",
 ) -> Structure:
     """Read a flexible body of standard input data (SID).
-
-    Parameters
-    ----------
-    path : path
-        Text of the object ``modal``, in SI: mass, centre, inertia, coupling, gyroscopic and centrifugal terms with
-        their geometric stiffness, stiffness, damping, and nodes.
-    damping_ratio : float or sequence, optional
-        Of critical damping, in place of the damping in the file.
-    points : dict of int, optional
-        Numbers of the nodes that are put out, by their names; the ``tip`` is the farthest from the root otherwise.
-    kind : str
-        For results.
 
     Returns
     -------

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -15,12 +13,11 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive
-from gbeam.guards.kinds import kinds
-
-if TYPE_CHECKING:
-    from gbeam.motion import Profile
-
+from gbeam.guards.checks import array
+from gbeam.guards.limits import NAME
+from gbeam.guards.quantities import Components, Mass, Position, PositionVector, Quantity, RotationalStiffness, Stiffness
+from gbeam.motion.profiles.profile import Profile
+from gbeam.printable import shortened
 
 TIP = "tip"
 _NAME = re.compile(r"[A-Za-z_]\w*")
@@ -32,20 +29,15 @@ def checked_name(name: str) -> None:
     """Raise InputError unless a name is one word, and not that of a quantity."""
     if not _NAME.fullmatch(name) or name in _TAKEN:
         fix = f"give letters, digits and underscores, and none of {', '.join(_TAKEN)}"
-        raise InputError("name", f"is {name!r}", fix)
+        raise InputError("name", f"is {shortened(repr(name))}", fix)
+    if len(name) > NAME:
+        raise InputError("name", f"has {len(name)} characters", f"give {NAME} or fewer")
 
 
 @typed
 @dataclass(frozen=True, eq=False)
 class Point(Value):
     """A named point of output.
-
-    Parameters
-    ----------
-    name : str
-        Letters, digits and underscores.
-    at : float
-        Position from the root, m.
 
     Raises
     ------
@@ -63,31 +55,17 @@ class Point(Value):
     (('camera', 'tip'), (3,))
     """
 
-    name: str
-    at: float
+    name: Annotated[str, "letters, digits and underscores"]
+    at: Annotated[Position, "position from the root, along the beam"]
 
     def __post_init__(self) -> None:
         checked_name(self.name)
-        positive("at", self.at, "m", zero=True)
 
 
 @typed
 @dataclass(frozen=True, eq=False)
 class PointMass(Value):
     """A mass, or a small rigid body, fixed to the beam.
-
-    Parameters
-    ----------
-    at : float
-        Position from the root, m.
-    mass : float
-        kg.
-    inertia : tuple of float
-        Principal moments of inertia about its centre, axes of the section (x, y, z), kg m²; zero for a point.
-    offset : tuple of float
-        Centre of mass from the beam's axis, in axes of the section, m.
-    name : str
-        Of the point of the beam at `at`, where output is then given.
 
     Raises
     ------
@@ -103,24 +81,34 @@ class PointMass(Value):
     [ 24.3 182.6]
     """
 
-    at: float
-    mass: float
-    inertia: Numbers = (0.0, 0.0, 0.0)
-    offset: Numbers = (0.0, 0.0, 0.0)
-    name: str = ""
+    at: Annotated[Position, "position from the root, along the beam"]
+    mass: Annotated[Mass, "mass"]
+    inertia: Annotated[
+        Numbers,
+        Quantity("moment of inertia", "zero or more"),
+        Components(
+            "Principal moments of inertia, in axes of the section.",
+            x="moment about x, along the beam",
+            y="moment about y, along the width",
+            z="moment about z, through the thickness",
+        ),
+        "principal moments of inertia (x, y, z) about its centre, in axes of the section; zero for a point",
+    ] = (0.0, 0.0, 0.0)
+    offset: Annotated[PositionVector, "centre of mass from the beam's axis: [x, y, z] in axes of the section"] = (
+        0.0,
+        0.0,
+        0.0,
+    )
+    name: Annotated[str, "name of the point of output at its place"] = ""
 
     def __post_init__(self) -> None:
         if self.name:
             checked_name(self.name)
-        positive("at", self.at, "m", zero=True)
-        positive("mass", self.mass, "kg", zero=True)
         for name, values in (("inertia", self.inertia), ("offset", self.offset)):
-            if len(values) != 3 or not all(is_jax(v) or math.isfinite(v) for v in values):
-                raise InputError(name, f"is {values!r}", "give three finite values, along x, y and z")
+            if len(values) != 3:
+                raise InputError(name, f"is {values!r}", "give three values, along x, y and z")
         if self._traced:
             return
-        for axis, value in zip("xyz", self.inertia, strict=True):
-            positive(f"inertia.{axis}", value, "kg m²", zero=True)
         if any(self.inertia) and self.mass == 0:
             raise InputError("mass", "is 0 kg with a moment of inertia", "give the body its mass")
         if min(self.second_moments) < -1e-12 * max(self.inertia):
@@ -155,27 +143,10 @@ class PointMass(Value):
         return any(is_jax(value) for value in (self.mass, *self.inertia))
 
 
-def _spread(arguments: Mapping[str, Any]) -> bool:
-    return arguments.get("at") is None
-
-
-@kinds(
-    force=lambda arguments: "force per length" if _spread(arguments) else "force",
-    moment=lambda arguments: "force" if _spread(arguments) else "torque",  # N m/m
-)
 @typed
 @dataclass(frozen=True, eq=False)
 class Load(Value):
-    """A force and a moment at a station, or per length along the whole beam.
-
-    Parameters
-    ----------
-    at : float or None
-        Position from the root, m; None spreads the load evenly over the length.
-    force, moment : sequence of three floats, or vector Profile of time, or None
-        N and N m; N/m and N m/m where spread. Along x, y, z of the base axes, which a dead load keeps.
-    follower : bool
-        Whether the axes are those of the section, with which a following load turns.
+    """A force, a moment or both at a station; or spread evenly over the length.
 
     Raises
     ------
@@ -192,22 +163,78 @@ class Load(Value):
     -12.04 mm
     """
 
-    at: float | None = None
-    force: Numbers | Profile | None = None
-    moment: Numbers | Profile | None = None
-    follower: bool = False
+    at: Annotated[Position | None, "position of force and moment from the root, along the beam"] = None
+    force: Annotated[
+        Numbers | Profile | None,
+        Quantity("force"),
+        Components(
+            "A force by components, each a quantity or a profile; those left out are zero.",
+            x="component along the beam",
+            y="component along the width",
+            z="component through the thickness",
+        ),
+        "force at the station: { x, y, z }",
+    ] = None
+    moment: Annotated[
+        Numbers | Profile | None,
+        Quantity("torque"),
+        Components(
+            "A moment by components, each a quantity or a profile; those left out are zero.",
+            x="moment about x, along the beam",
+            y="moment about y: positive bends the tip to -z",
+            z="moment about z: positive bends the tip to +y",
+        ),
+        "moment at the station: { x, y, z }",
+    ] = None
+    distributed: Annotated[
+        Numbers | Profile | None,
+        Quantity("force per length"),
+        Components(
+            "A force per length by components, each a quantity or a profile; those left out are zero.",
+            x="component along the beam",
+            y="component along the width",
+            z="component through the thickness",
+        ),
+        "force per length over the whole beam: { x, y, z }; instead of at, force and moment",
+    ] = None
+    distributed_moment: Annotated[
+        Numbers | Profile | None,
+        Quantity("force"),
+        Components(
+            "A moment per length by components, each a quantity or a profile; those left out are zero.",
+            x="moment about x, along the beam",
+            y="moment about y",
+            z="moment about z",
+        ),
+        "moment per length over the whole beam, in N m/m: { x, y, z }",
+    ] = None
+    follower: Annotated[bool, "true if the components turn with the section; false if they keep to the base axes"] = (
+        False
+    )
 
     def __post_init__(self) -> None:
-        if self.at is not None:
-            positive("at", self.at, "m", zero=True)
-        if self.force is None and self.moment is None:
-            raise InputError("", "has neither force nor moment", "give one of them, or both")
-        for name, value in (("force", self.force), ("moment", self.moment)):
+        at_station = {"force": self.force, "moment": self.moment}
+        spread = {"distributed": self.distributed, "distributed_moment": self.distributed_moment}
+        written = [name for name, value in at_station.items() if value is not None]
+        spreads = [name for name, value in spread.items() if value is not None]
+        if not written and not spreads:
+            fix = 'give force, moment or distributed, such as force = { z = "5 N" }'
+            raise InputError("", "has neither force nor moment", fix)
+        for name in [*(["at"] if self.at is not None else []), *written] if spreads else []:
+            raise InputError(name, f"is given beside {spreads[0]}", "make two loads of them")
+        if written and self.at is None:
+            raise InputError("", "at is missing", 'say where the load acts: at = "300 mm"')
+        for name, value in (at_station | spread).items():
             if value is None or callable(value):
                 continue
             components = array(name, value)
-            if components.shape != (3,) or not (is_jax(components) or np.isfinite(components).all()):
+            if components.shape != (3,):
                 raise InputError(name, f"is {value!r}", "give three finite components, along x, y and z, or a profile")
+
+    @property
+    def acting(self) -> tuple[Any, Any]:
+        """Force N and moment N m at the station, or N/m and N m/m over the length; None where there is none."""
+        return (self.distributed, self.distributed_moment) if self.at is None else (self.force, self.moment)
 
 
 @typed
@@ -216,13 +243,6 @@ class Root(Value):
     """Springs between the base and the root; where there is none, the root is rigid in that direction.
 
     Each spring is one more coordinate of the model, in every kind of model, after the shapes' and in this order.
-
-    Parameters
-    ----------
-    translation_x, translation_y, translation_z : float or None
-        Along the base axes, N/m.
-    rotation_y, rotation_z : float or None
-        About them, N m/rad: y for bending along z, z for bending along y.
 
     Raises
     ------
@@ -239,15 +259,11 @@ class Root(Value):
     20.99 Hz
     """
 
-    translation_x: float | None = None
-    translation_y: float | None = None
-    translation_z: float | None = None
-    rotation_y: float | None = None
-    rotation_z: float | None = None
-
-    def __post_init__(self) -> None:
-        for name, value in self.springs.items():
-            positive(name, value, "N/m" if name.startswith("translation") else "N m/rad")
+    translation_x: Annotated[Stiffness | None, "spring along x, along the beam"] = None
+    translation_y: Annotated[Stiffness | None, "spring along y, along the width"] = None
+    translation_z: Annotated[Stiffness | None, "spring along z, through the thickness"] = None
+    rotation_y: Annotated[RotationalStiffness | None, "spring about y, against bending along z"] = None
+    rotation_z: Annotated[RotationalStiffness | None, "spring about z, against bending along y"] = None
 
     @property
     def springs(self) -> dict[str, float]:

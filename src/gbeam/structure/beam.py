@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,8 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import damping_ratios, positive, possible
+from gbeam.guards.checks import damping_ratios
+from gbeam.guards.quantities import OneOrSome, Quantity
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
@@ -30,29 +31,6 @@ NO_TWIST = "no twist (section.torsion_constant is not given)"
 class Beam(Value):
     """A beam, held at its root by the moving base: straight along x, or along a line.
 
-    Parameters
-    ----------
-    length : float
-        Of its line, m.
-    section : Section
-    material : Material
-        None of a section by matrices, which have its stiffness and mass.
-    masses : sequence of PointMass
-    damping_ratio : float or sequence of float, optional
-        Modal damping ratio: one for all modes, or one per mode of the model, ascending in frequency; of the modes of
-        the beam on a base at rest, with its root springs and bodies, also where the hub is free. What depends on it,
-        :func:`gbeam.simulate` and :func:`gbeam.linearize`, needs it; the rest takes none without it.
-    root : Root
-        Springs that hold the root; clamped where there is none.
-    loads : sequence of Load
-    points : sequence of Point
-        Named points of output; a mass with a name is one at its place. The tip is ``tip``.
-    rotary_inertia : bool
-        Whether the sections resist turning by their own second moments, as they do; the theory of Euler and Bernoulli,
-        and the papers', has each as a point on the axis.
-    line : Line, optional
-        Reference line at rest, with the sections' twist; straight along x without it. Positions are lengths of arc.
-
     Raises
     ------
     InputError
@@ -67,19 +45,42 @@ class Beam(Value):
     0.3
     """
 
-    length: float
-    section: Section
-    material: Material | None = None
-    masses: Sequence[PointMass] = field(default=())
-    damping_ratio: float | Numbers | None = None
-    root: Root = field(default_factory=Root)
-    loads: Sequence[Load] = field(default=())
-    points: Sequence[Point] = field(default=())
-    rotary_inertia: bool = True
-    line: Line | None = None
+    length: Annotated[
+        Annotated[float, Quantity("length", "positive", "length")],
+        "length from root to tip, along the line",
+    ]
+    section: Annotated[Section, "cross-section, by shape or by properties: { area, inertia_y, inertia_z }"]
+    material: Annotated[
+        Material | None,
+        "linear elastic material: { density, youngs_modulus, yield_strength }; none beside matrices, which have its "
+        "stiffness and mass",
+    ] = None
+    masses: Annotated[Sequence[PointMass], "masses fixed to the beam: [ { at, mass } ]"] = ()
+    damping_ratio: Annotated[
+        Annotated[float | Numbers, Quantity("ratio"), OneOrSome()] | None,
+        "modal damping ratio: one for all modes, or a list with one per mode, ascending in frequency; of the modes of "
+        "the beam on a base at rest, with its root springs and bodies, also where the hub is free. run, place, models "
+        "and linearize need it, 0 for none; the rest take none where it is left out",
+    ] = None
+    root: Annotated[Root, "springs that hold the root, which is rigid where left out"] = field(default_factory=Root)
+    loads: Annotated[
+        Sequence[Load], "forces and moments on the beam: [ { at, force, moment, distributed, follower } ]"
+    ] = ()
+    points: Annotated[
+        Sequence[Point], "points of output beside the tip: [ { name, at } ]; a mass with a name is one at its place"
+    ] = ()
+    rotary_inertia: Annotated[
+        bool,
+        "false for sections that do not resist turning by their own second moments, each a point on the axis: the "
+        "theory of Euler and Bernoulli, and the papers'",
+    ] = True
+    line: Annotated[
+        Line | None,
+        "reference line at rest, where it is not straight along x: { points, pieces, twist }; positions are lengths of "
+        "arc",
+    ] = None
 
     def __post_init__(self) -> None:
-        possible("length", "length", positive("length", self.length, "m"))
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "points", tuple(self.points))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
+from gbeam.guards.quantities import Angle, Position
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -27,6 +28,16 @@ _KNOTS, _DEGREE = 33, 7  # of the splines that hold a curve's curvatures between
 _EXACT = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
 NEAR = 1e-9  # of the length
 _BACK = 1e-6  # of the sum of two directions: they are opposite
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of a line that turns evenly: straight, an arc, a helix; without length a corner."""
+
+    length: Annotated[Position, "length of arc; 0, or left out, is a corner"] = 0.0
+    twist: Annotated[Angle, "turn of its end against its beginning about the line itself"] = 0.0
+    turn_y: Annotated[Angle, "turn about the section's y, towards -z"] = 0.0
+    turn_z: Annotated[Angle, "turn about the section's z, towards +y"] = 0.0
 
 
 @typed

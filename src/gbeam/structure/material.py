@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,33 +13,18 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, positive, possible
+from gbeam.guards.quantities import Density, Factor, Modulus, Quantity, Ratio, Shape, Strength
 
 FATIGUE_EXPONENT = 5.0
 ASSUMED_RATIO = 0.3  # Poisson's, of metals
 NEARLY_INCOMPRESSIBLE = 0.495
+Moduli = Annotated[Numbers, Quantity("pressure", "positive", "modulus"), Shape((3,))]
 
 
 @typed
 @dataclass(frozen=True, eq=False)
 class Material(Value):
     """Linear elastic material.
-
-    Parameters
-    ----------
-    density : float
-        Mass per volume, kg/m³.
-    youngs_modulus : float
-        Pa.
-    yield_strength : float, optional
-        Normal stress at which it yields, in tension and in compression, Pa.
-    fatigue_exponent : float
-        m of Wöhler's curve, N Δσᵐ = constant. The default is a convention between those of welded joints, about 3, and
-        of smooth parts, about 10.
-    poissons_ratio : float, optional
-        Of bending plates and in the stated error of the beam theory, where 0.3 is assumed if it is left out.
-    shear_modulus : float, optional
-        Pa, in the stated error of the beam theory; left out, that of an isotropic material, E/(2 (1 + ν)).
 
     Raises
     ------
@@ -53,23 +38,27 @@ class Material(Value):
     2.632e+10 Pa
     """
 
-    density: float
-    youngs_modulus: float
-    yield_strength: float | None = None
-    fatigue_exponent: float = FATIGUE_EXPONENT
-    poissons_ratio: float | None = None
-    shear_modulus: float | None = None
+    density: Annotated[Density, "mass per volume"]
+    youngs_modulus: Annotated[Modulus, "Young's modulus"]
+    yield_strength: Annotated[
+        Strength | None,
+        "normal stress at which it yields, in tension and in compression; with it results give the margin",
+    ] = None
+    fatigue_exponent: Annotated[
+        Factor, "m of Wöhler's curve, N Δσᵐ = constant: about 3 for welds, 10 for smooth parts; 5 where left out"
+    ] = FATIGUE_EXPONENT
+    poissons_ratio: Annotated[
+        Ratio | None, "of plates, and for the stated error, where 0.3 is taken if it is left out"
+    ] = None
+    shear_modulus: Annotated[
+        Modulus | None,
+        "of twist and shear, in exact and in the stated error; that of an isotropic material, E/(2 (1 + ν)), where "
+        "left out",
+    ] = None
 
     def __post_init__(self) -> None:
-        possible("density", "density", positive("density", self.density, "kg/m³"))
-        possible("youngs_modulus", "modulus", positive("youngs_modulus", self.youngs_modulus, "Pa"))
-        if self.yield_strength is not None:
-            positive("yield_strength", self.yield_strength, "Pa")
-        positive("fatigue_exponent", self.fatigue_exponent, "(a number)")
-        if self.shear_modulus is not None:
-            possible("shear_modulus", "modulus", positive("shear_modulus", self.shear_modulus, "Pa"))
         ratio = self.poissons_ratio
-        if ratio is not None and not is_jax(ratio) and not -1 < finite("poissons_ratio", ratio) <= 0.5:
+        if ratio is not None and not is_jax(ratio) and not -1 < ratio <= 0.5:
             fix = "no isotropic material has one outside -1 to 0.5: give one such as 0.3"
             raise InputError("poissons_ratio", f"is {ratio:g}", fix)
 
@@ -112,19 +101,6 @@ def isotropic(material: Material) -> Any:
 class Orthotropic(Value):
     """Linear elastic material with three planes of symmetry, such as a laminate: of solids.
 
-    Parameters
-    ----------
-    density : float
-        Mass per volume, kg/m³.
-    youngs_moduli : (3,)
-        Along its axes 1, 2 and 3, Pa.
-    poissons_ratios : (3,)
-        ν12, ν23 and ν13: contraction along the second axis by a pull along the first.
-    shear_moduli : (3,)
-        G12, G23 and G13, Pa.
-    axes : (2, 3)
-        Directions of its axes 1 and 2, base axes.
-
     Raises
     ------
     InputError
@@ -143,24 +119,23 @@ class Orthotropic(Value):
     3e+09 Pa
     """
 
-    density: float
-    youngs_moduli: Numbers
-    poissons_ratios: Numbers
-    shear_moduli: Numbers
-    axes: ArrayLike
+    density: Annotated[Density, "mass per volume"]
+    youngs_moduli: Annotated[Moduli, "along its axes 1, 2 and 3"]
+    poissons_ratios: Annotated[
+        Annotated[Numbers, Quantity("ratio"), Shape((3,))],
+        "ν12, ν23 and ν13: contraction along the second axis by a pull along the first",
+    ]
+    shear_moduli: Annotated[Moduli, "G12, G23 and G13"]
+    axes: Annotated[
+        Annotated[ArrayLike, Quantity("ratio"), Shape((2, 3))], "directions of its axes 1 and 2, in axes of the mesh"
+    ] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     yield_strength: ClassVar[None] = None
     fatigue_exponent: ClassVar[float] = FATIGUE_EXPONENT
 
     def __post_init__(self) -> None:
-        possible("density", "density", positive("density", self.density, "kg/m³"))
         for name in ("youngs_moduli", "poissons_ratios", "shear_moduli"):
             if len(getattr(self, name)) != 3:
                 raise InputError(name, f"has {len(getattr(self, name))} values", "give three")
-        for name in ("youngs_moduli", "shear_moduli"):
-            for i, each in enumerate(getattr(self, name)):
-                possible(f"{name}[{i}]", "modulus", positive(f"{name}[{i}]", each, "Pa"))
-        for i, each in enumerate(self.poissons_ratios):
-            finite(f"poissons_ratios[{i}]", each)
         axes = np.asarray(self.axes, dtype=float)
         if axes.shape != (2, 3) or not np.all(lengths := np.linalg.norm(axes, axis=1)):
             raise InputError("axes", f"is {self.axes!r}", "give two directions, such as ((1, 0, 0), (0, 1, 0))")

@@ -6,19 +6,20 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Unpack
+from typing import Annotated, Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.namespace import as_array, is_jax, namespace
 from gbeam.arrays.tree import Value, record, static
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.constants import SectionShape
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
 from gbeam.guards.kinds import kind_of_argument, kinds
+from gbeam.guards.quantities import Length, OneOrSome, Quantity, Rows, Shape
 from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, matrices_of, read_matrices, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
@@ -33,6 +34,22 @@ def _listed(name: str, value: Any) -> tuple[Any, ...]:
     return tuple(float(x) for x in np.atleast_1d(values))
 
 
+Lengths = Annotated[ArrayLike, Quantity("length", "positive", "section"), OneOrSome()]
+Areas = Annotated[ArrayLike, Quantity("area", "positive", "area"), OneOrSome()]
+SecondMoments = Annotated[ArrayLike, Quantity("second moment of area", "positive", "second moment"), OneOrSome()]
+ShearCoefficients = Annotated[ArrayLike, Quantity("ratio", "positive", "shear coefficient"), OneOrSome()]
+SectionMatrices = Annotated[ArrayLike, OneOrSome((6, 6))]
+Corners = Annotated[ArrayLike, Quantity("length"), Rows(2)]
+Stations = Annotated[
+    Sequence[float] | Floats,
+    Quantity("length", "zero or more"),
+    "positions from root to tip at which the other values are listed, linear in between; none of a constant section",
+]
+Plate = Annotated[
+    bool,
+    "true if it bends along z as a plate that stays flat across its width, EI_y/(1 - ν²): a strip wide beside its "
+    "length, or bent far; needs material.poissons_ratio",
+]
 KINDS = {
     "area": "area",
     "inertia_y": "second moment",
@@ -180,84 +197,58 @@ class Section(Value):
     @classmethod
     @typed
     def rectangle(
-        cls, width: ArrayLike, thickness: ArrayLike, stations: ArrayLike = (), *, plate: bool = False
+        cls,
+        width: Annotated[Lengths, "width, along y"],
+        thickness: Annotated[Lengths, "thickness, along z, the soft direction"],
+        stations: Stations = (),
+        *,
+        plate: Plate = False,
     ) -> Section:
-        """Rectangle.
-
-        Parameters
-        ----------
-        width, thickness : array_like
-            Along y and along z, the soft direction, m; numbers, or one per station.
-        stations : array_like
-            Positions from the root at which the other values are listed, m; empty for a constant section.
-        plate : bool
-            Whether it bends along z as a plate, EI_y/(1 − ν²).
-        """
+        """Rectangle."""
         return cls.of("rectangle", stations, plate=plate, width=width, thickness=thickness)
 
     @classmethod
     @typed
-    def circle(cls, diameter: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Solid circle.
-
-        Parameters
-        ----------
-        diameter : array_like
-            m; a number, or one per station.
-        stations : array_like
-            Positions from the root at which the other values are listed, m; empty for a constant section.
-        """
+    def circle(cls, diameter: Annotated[Lengths, "diameter"], stations: Stations = ()) -> Section:
+        """Solid circle."""
         return cls.of("circle", stations, diameter=diameter)
 
     @classmethod
     @typed
-    def tube(cls, diameter: ArrayLike, wall: ArrayLike, stations: ArrayLike = ()) -> Section:
-        """Round tube.
-
-        Parameters
-        ----------
-        diameter, wall : array_like
-            Outer diameter and thickness of the wall, m; numbers, or one per station.
-        stations : array_like
-            Positions from the root at which the other values are listed, m; empty for a constant section.
-        """
+    def tube(
+        cls,
+        diameter: Annotated[Lengths, "outer diameter"],
+        wall: Annotated[Lengths, "wall thickness"],
+        stations: Stations = (),
+    ) -> Section:
+        """Round tube."""
         return cls.of("tube", stations, diameter=diameter, wall=wall)
 
     @classmethod
     @typed
     def general(
         cls,
-        area: ArrayLike,
-        inertia_y: ArrayLike,
-        inertia_z: ArrayLike,
-        stations: ArrayLike = (),
-        extreme_fibre_y: ArrayLike | None = None,
-        extreme_fibre_z: ArrayLike | None = None,
+        area: Annotated[Areas, "area"],
+        inertia_y: Annotated[SecondMoments, "∫z² dA, which bends the beam along z"],
+        inertia_z: Annotated[SecondMoments, "∫y² dA, which bends the beam along y"],
+        stations: Stations = (),
+        extreme_fibre_y: Annotated[Lengths | None, "outer fibre along y, for stress"] = None,
+        extreme_fibre_z: Annotated[Lengths | None, "outer fibre along z, for stress"] = None,
         *,
-        torsion_constant: ArrayLike | None = None,
-        shear_coefficient_y: ArrayLike | None = None,
-        shear_coefficient_z: ArrayLike | None = None,
-        plate: bool = False,
+        torsion_constant: Annotated[
+            SecondMoments | None,
+            "J of the torque G J α', for modes.twist and for the stated error of a model without twist",
+        ] = None,
+        shear_coefficient_y: Annotated[
+            ShearCoefficients | None,
+            "k of the shear force k G A γ along y, for modes.shear_y; in the stated error 1/2 where left out",
+        ] = None,
+        shear_coefficient_z: Annotated[
+            ShearCoefficients | None, "k of the shear force along z, for modes.shear_z, likewise"
+        ] = None,
+        plate: Plate = False,
     ) -> Section:
-        """Any section, by its properties: numbers, or one per station each.
-
-        Parameters
-        ----------
-        area : array_like
-            m².
-        inertia_y, inertia_z : array_like
-            Second moments ∫z² dA, which bends the beam along z, and ∫y² dA, along y, m⁴.
-        stations : array_like
-            Positions from the root at which the other values are listed, m; empty for a constant section.
-        extreme_fibre_y, extreme_fibre_z : array_like, optional
-            Of the outermost fibres along y and along z, m; without them there is no stress.
-        torsion_constant : array_like, optional
-            J of Saint-Venant's torque GJ α', m⁴; without it no error from twist is stated.
-        shear_coefficient_y, shear_coefficient_z : array_like, optional
-            Of the shear forces k G A γ along y and z; 1/2 is assumed in the stated error where they are left out.
-        plate : bool
-            Whether it bends along z as a plate, EI_y/(1 − ν²).
-        """
+        """Any section, by its properties."""
         return cls.of(
             "general",
             stations,
@@ -274,7 +265,14 @@ class Section(Value):
 
     @classmethod
     @typed
-    def of_matrices(cls, stiffness: ArrayLike, mass: ArrayLike, stations: ArrayLike = ()) -> Section:
+    def of_matrices(
+        cls,
+        stiffness: Annotated[
+            SectionMatrices, "(6, 6) in N, N m and N m², or one per station; VABS has the same order; or file"
+        ],
+        mass: Annotated[SectionMatrices, "(6, 6) of a rigid slice in kg/m, kg and kg m, or one per station"],
+        stations: Stations = (),
+    ) -> Section:
         """Section by its stiffness and mass matrices, of a beam without a material.
 
         Rows and columns are in the order stretch, shear along y, shear along z, twist, curvature about y, curvature
@@ -282,15 +280,6 @@ class Section(Value):
         BECAS. The axis of the beam is where the matrices are taken: axes of tension, shear and mass may lie beside it.
         A strain for which a model has no shapes moves nothing and follows the others without a force of its own: held
         at zero it would stiffen them by their coupling with it.
-
-        Parameters
-        ----------
-        stiffness : array_like
-            (6, 6), or (stations, 6, 6): N, N m and N m².
-        mass : array_like
-            (6, 6) of a rigid slice, or one per station: kg/m, kg and kg m.
-        stations : array_like
-            Positions from the root at which the matrices are listed, m; empty for a constant section.
 
         Raises
         ------
@@ -304,21 +293,14 @@ class Section(Value):
     @typed
     def read(
         cls,
-        *paths: str | os.PathLike[str],
-        stations: ArrayLike = (),
-        length_unit: str = "m",
-        mass_unit: str = "kg",
+        *paths: Annotated[
+            str | os.PathLike[str], "file of VABS (.K) or BECAS (.out) with both matrices, or one per station"
+        ],
+        stations: Stations = (),
+        length_unit: Annotated[str, "unit of length in the file, such as mm; m where left out. Of time it is s"] = "m",
+        mass_unit: Annotated[str, "unit of mass in the file, such as Mg; kg where left out"] = "kg",
     ) -> Section:
         """Read a section's matrices from a file of VABS (.K) or BECAS (.out).
-
-        Parameters
-        ----------
-        *paths : path
-            One file, or one per station.
-        stations : array_like
-            Positions from the root, m, of several files; empty for a constant section.
-        length_unit, mass_unit : str
-            Of the program, such as mm and Mg; its unit of time is the second.
 
         Raises
         ------
@@ -335,27 +317,17 @@ class Section(Value):
     @typed
     def drawn(
         cls,
-        outline: ArrayLike,
-        material: Material,
+        outline: Annotated[Corners, "corners in order: [ [y, z], ... ]"],
+        material: Annotated[Material, "density, Young's and shear moduli"],
         *,
-        holes: Sequence[ArrayLike] = (),
-        axis: ArrayLike | None = None,
-        element_size: float | None = None,
+        holes: Annotated[Sequence[Corners], "corners of each hole: [ [ [y, z], ... ] ]"] = (),
+        axis: Annotated[
+            Annotated[Numbers, Quantity("length"), Shape((2,))] | None,
+            "where the axis of the beam meets the drawing, [y, z]; the centroid where left out",
+        ] = None,
+        element_size: Annotated[Length | None, "edge of the triangles; about 400 of them where left out"] = None,
     ) -> Section:
         """Compute the matrices of a drawn section of one material by sectionproperties (``gbeam[sections]``).
-
-        Parameters
-        ----------
-        outline : array_like
-            (k, 2) corners [y, z] in order, m.
-        material : Material
-            Density, Young's and shear moduli.
-        holes : sequence of array_like
-            Corners of each hole, m.
-        axis : (2,) array_like, optional
-            Where the axis of the beam meets the drawing, [y, z] m; the centroid unless given.
-        element_size : float, optional
-            Edge of the triangles, m; about 400 of them unless given.
 
         Returns
         -------
@@ -368,8 +340,6 @@ class Section(Value):
         InputError
             If the outline encloses no area or crosses itself, or sectionproperties is not installed.
         """
-        if element_size is not None:
-            positive("element_size", element_size, "m")
         return cls.of_matrices(*matrices_of(outline, holes, material, axis, element_size))
 
     def at(self, x: ArrayLike) -> SectionValues:

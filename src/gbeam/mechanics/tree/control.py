@@ -11,7 +11,7 @@ from functools import partial, reduce
 from inspect import signature
 from pathlib import Path
 from traceback import extract_tb
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -20,13 +20,17 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive, refuse_traced
+from gbeam.guards.checks import array, refuse_traced
 from gbeam.guards.kinds import Kinds, kinds
+from gbeam.guards.quantities import Duration, Factor, Quantity, Ratio, Time
 from gbeam.mechanics.tree.signal_names import kind_of_drive, kind_of_signal
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.printable import on_one_line, shortened
 
 LAW_FAILED = "law failed"  # an outcome
+SI = "in SI units of effort and measurement"
+Rows = Sequence[Sequence[Ratio]]
+Corner = Annotated[float, Quantity("angular rate", "positive")]  # of a law's gain over frequency
 Step = Callable[[float, Floats, Any], tuple[Any, Any]]
 
 
@@ -42,33 +46,15 @@ def _kinds(key: str, kind: Callable[[str], str], arguments: Mapping[str, Any]) -
 class Feedback(Value):
     """A controller in the loop of a system: it samples measurements, and holds its efforts until the next sample.
 
-    Parameters
-    ----------
-    law : callable, matrices or a python-control system
-        A function ``law(t, y)`` of time, s, and measurements (k,), which gives the efforts (m,), or ``law(t, y,
-        state)``, which gives efforts and the state at the next sample, a new value; a sample is taken more than once,
-        so that a function must keep nothing itself. Else a linear law with states of its own: (A, B, C, D), a
-        :class:`StateSpace`, or a StateSpace or TransferFunction of python-control. One in continuous time (matrices
-        are) is sampled by Tustin's rule, one in discrete time has the step `sample`.
-    measure : sequence of str
-        Measurements by name, as the outputs of :func:`gbeam.linearize`: ``joint.angle``, ``joint.angle_rate``,
-        ``body.point.place_x``, ``velocity_x``, ``attitude_x``, ``acceleration_x``, ``spin_x``, and of a section of a
-        beam ``force_x``, ``moment_y``, by which a strain gauge there is known. Accelerations and these are those
-        just before the sample. The attitude is the rotation vector from the ground's axes to the point's, rad, with the
-        same components in both; at half a turn it jumps to that of the shorter way.
-    drive : sequence of str
-        Efforts by name, as its inputs: ``joint.angle``, ``force.force_x``, ``force.moment_z``. They are added to what
-        acts there otherwise.
-    sample : float
-        Time between samples, the first at the start, s.
-    delay : float
-        Time from a sample until its efforts act, s.
-    limit : float or sequence of float, optional
-        Largest size of the efforts, of all or of each, N or N m.
-    reference : float, Profile or sequence of these, optional
-        The law is given what the measurements lack of it, reference − y, one for each measurement.
-    state : optional
-        State at the start of a function that has one; of a linear law zero.
+    Its law is a function ``law(t, y)`` of time, s, and measurements (k,), which gives the efforts (m,), or ``law(t, y,
+    state)``, which gives efforts and the state at the next sample, a new value; a sample is taken more than once, so
+    that a function must keep nothing itself. Else it is a linear law with states of its own: (A, B, C, D), a
+    :class:`StateSpace`, or a StateSpace or TransferFunction of python-control. One in continuous time (matrices are) is
+    sampled by Tustin's rule, one in discrete time has the step `sample`.
+
+    Accelerations, and forces and moments of sections, are those just before the sample. The attitude is the rotation
+    vector from the ground's axes to the point's, with the same components in both; at half a turn it jumps to that of
+    the shorter way.
 
     Raises
     ------
@@ -82,14 +68,24 @@ class Feedback(Value):
     [-2.]
     """
 
-    law: Any
-    measure: Sequence[str]
-    drive: Sequence[str]
-    sample: float
-    delay: float = 0.0
-    limit: Any = None
-    reference: Any = None
-    state: Any = None
+    law: Annotated[Any, "a function, matrices, or a system of python-control, which acts on reference less measurement"]
+    measure: Annotated[
+        Sequence[str],
+        'what is sampled: "joint.angle", "joint.angle_rate", "body.point.place_x", velocity_x, attitude_x (rotation '
+        "vector, rad), acceleration_x, spin_x, of a section of a beam force_x, moment_y, by which a strain gauge there "
+        "is known",
+    ]
+    drive: Annotated[
+        Sequence[str],
+        'efforts: "joint.angle", "force.force_x", "force.moment_z"; they are added to what acts there otherwise',
+    ]
+    sample: Annotated[Duration, "time between samples, the first at the start"]
+    delay: Annotated[Time, "time from a sample until its efforts act"] = 0.0
+    limit: Annotated[Any, "largest size of every effort, of all or of each, N or N m: [20]"] = None
+    reference: Annotated[
+        Any, "aim of every measurement, in SI units, one for all or for each, or profiles; zero unless given: [0.5, 0]"
+    ] = None
+    state: Annotated[Any, "state at the start of a function that has one; of a linear law zero"] = None
     stateful: bool = field(init=False, repr=False, compare=False, default=True)
 
     def __post_init__(self) -> None:
@@ -103,8 +99,6 @@ class Feedback(Value):
             object.__setattr__(self, name, names)
         for name in ("sample", "delay"):
             refuse_traced(name, getattr(self, name), "steps end by its number")
-        positive("sample", self.sample, "s")
-        positive("delay", self.delay, "s", zero=True)
         if self.limit is not None:
             limit = array("limit", self.limit)
             if limit.shape not in ((), (len(self.drive),)) or not (is_traced(limit) or (limit > 0).all()):
@@ -334,18 +328,35 @@ def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "me
 Law = tuple[Floats, Floats, Floats, Floats]
 
 
-def gains(matrix: Sequence[Sequence[float]]) -> Law:
-    """Law without states: efforts K e, K (m, k)."""
-    k = np.asarray(matrix, dtype=float)
+def gains(
+    gains: Annotated[Rows, f"a row for every effort, a gain for every measurement, {SI}"],
+) -> Law:
+    """State feedback: every effort is a sum of gains times errors, without states."""
+    k = np.asarray(gains, dtype=float)
     return np.zeros((0, 0)), np.zeros((0, k.shape[1])), np.zeros((k.shape[0], 0)), k
 
 
-def pid(kp: float, ki: float, kd: float, smoothing: float) -> Law:
-    """Law kp + ki/s + kd s/(1 + s T), T the `smoothing`, s: one state for the integral, one for the derivative."""
+def pid(
+    kp: Annotated[Ratio, f"proportional gain, {SI}"] = 0.0,
+    ki: Annotated[Ratio, f"integral gain, {SI} s"] = 0.0,
+    kd: Annotated[Ratio, f"derivative gain, {SI}/s"] = 0.0,
+    smoothing: Annotated[Duration | None, "time constant of the filter of the derivative: needed with kd"] = None,
+) -> Law:
+    """Proportional, integral and derivative gain of one error, kp + ki/s + kd s/(1 + s T), T the `smoothing`.
+
+    It has one state for the integral and one for the derivative.
+
+    Raises
+    ------
+    InputError
+        If a derivative has no filter.
+    """
+    if kd and smoothing is None:
+        raise InputError("", "smoothing is missing", 'a derivative needs a filter: smoothing = "50 ms"')
     parts = [gains([[kp]])]
     if ki:
         parts.append((np.zeros((1, 1)), np.ones((1, 1)), np.full((1, 1), ki), np.zeros((1, 1))))
-    if kd:
+    if smoothing is not None and kd:
         rate = 1 / smoothing
         parts.append(
             (np.full((1, 1), -rate), np.full((1, 1), rate), np.full((1, 1), -kd * rate), np.full((1, 1), kd * rate))
@@ -353,8 +364,12 @@ def pid(kp: float, ki: float, kd: float, smoothing: float) -> Law:
     return reduce(_beside, parts)
 
 
-def lead_lag(gain: float, zero: float, pole: float) -> Law:
-    """Law gain (1 + s/z)/(1 + s/p), zero and pole in rad/s: a lead where the zero is lower, a lag where the pole is."""
+def lead_lag(
+    gain: Annotated[Ratio, f"gain at rest, {SI}"],
+    zero: Annotated[Corner, "zero, such as 1 Hz"],
+    pole: Annotated[Corner, "pole: above the zero a lead, below it a lag"],
+) -> Law:
+    """Lead or lag: gain (1 + s/zero)/(1 + s/pole) of one error."""
     through = gain * pole / zero
     return (
         np.full((1, 1), -pole),
@@ -364,8 +379,12 @@ def lead_lag(gain: float, zero: float, pole: float) -> Law:
     )
 
 
-def notch(frequency: float, depth: float, damping: float) -> Law:
-    """Law (s² + 2 d ζ ω s + ω²)/(s² + 2 ζ ω s + ω²), ω in rad/s: its gain is the depth d at ω and one far from it."""
+def notch(
+    frequency: Annotated[Corner, "of the notch, such as 4.2 Hz"],
+    depth: Annotated[Ratio, "gain at the frequency, such as 0.1"],
+    damping: Annotated[Factor, "half the width over the frequency"],
+) -> Law:
+    """A notch at a vibration: a gain of one but near its frequency, (s² + 2 d ζ ω s + ω²)/(s² + 2 ζ ω s + ω²)."""
     w, width = frequency, 2 * damping * frequency  # rad/s
     a = np.array([[0.0, 1.0], [-(w**2), -width]])
     return a, np.array([[0.0], [1.0]]), np.array([[0.0, (depth - 1) * width]]), np.ones((1, 1))

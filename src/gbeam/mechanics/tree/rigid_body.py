@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, is_jax, namespace
 from gbeam.arrays.tree import Value, assign
-from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive, vector
+from gbeam.guards.checks import array, vector
+from gbeam.guards.quantities import Mass, PositionVector, Quantity, RotationVector
 from gbeam.mechanics.tree.bodies import (
     Rigid,
 )
@@ -27,21 +27,18 @@ ROOT = "root"
 class Place(Value):
     """A point of a rigid body, with axes.
 
-    Parameters
-    ----------
-    at : (3,)
-        From the body's root, its axes, m.
-    turn : (3,)
-        Rotation vector of the point's axes in those of the root, rad.
-
     Examples
     --------
     >>> gb.Place(at=(0.5, 0, 0), turn=(0, 0, 1.5)).turn
     (0, 0, 1.5)
     """
 
-    at: Numbers = (0.0, 0.0, 0.0)
-    turn: Numbers = (0.0, 0.0, 0.0)
+    at: Annotated[PositionVector, "place from the body's root, in its axes: [x, y, z]"] = (0.0, 0.0, 0.0)
+    turn: Annotated[RotationVector, "rotation vector of the point's axes in those of the root: [x, y, z]"] = (
+        0.0,
+        0.0,
+        0.0,
+    )
 
     def __post_init__(self) -> None:
         vector("at", self.at), vector("turn", self.turn)
@@ -51,17 +48,6 @@ class Place(Value):
 @dataclass(frozen=True, eq=False)
 class RigidBody(Value):
     """A rigid body of a system.
-
-    Parameters
-    ----------
-    mass : float
-        kg.
-    inertia : (3,) or (3, 3)
-        Principal moments, or the tensor, about the centre of mass, axes of the root, kg m².
-    centre : (3,)
-        Centre of mass from the root, m.
-    points : mapping of str to Place or (3,)
-        Named places from the root, on which other bodies hang, forces act and output is given.
 
     Raises
     ------
@@ -75,13 +61,20 @@ class RigidBody(Value):
     50.0
     """
 
-    mass: float
-    inertia: Any = (0.0, 0.0, 0.0)
-    centre: Numbers = (0.0, 0.0, 0.0)
-    points: Mapping[str, Any] = field(default_factory=dict)
+    mass: Annotated[Mass, "mass"]
+    inertia: Annotated[
+        Any,
+        Quantity("moment of inertia"),
+        "about the centre of mass, axes of the root: principal moments [x, y, z], or three rows",
+    ] = (0.0, 0.0, 0.0)
+    centre: Annotated[PositionVector, "centre of mass from the root: [x, y, z]"] = (0.0, 0.0, 0.0)
+    points: Annotated[
+        Mapping[str, Any],
+        "points by name, on which other bodies hang, forces act and output is given: the place [x, y, z] from the "
+        "root, or with axes { at, turn }",
+    ] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        positive("mass", self.mass, "kg", zero=True)
         vector("centre", self.centre)
         moments = np.zeros(3) if is_jax(self.tensor) else np.linalg.eigvalsh(self.tensor)
         if moments[0] < -1e-12 * moments[-1] or moments[-1] > moments[:2].sum() * (1 + 1e-9) + 1e-300:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, vector
+from gbeam.guards.quantities import AccelerationVector, Components, Quantity
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.body_terms import body_of, refuse_turnless, stations_of
 from gbeam.mechanics.tree.control import Feedback
@@ -38,15 +39,6 @@ Prescribed = tuple[str, tuple[int, ...], tuple[str, ...]]
 class PointForce(Value):
     """A force and a moment on a point of a system, such as thrust.
 
-    Parameters
-    ----------
-    on : str
-        The point, ``"bus.nozzle"``.
-    force, moment : Profile or (3,), optional
-        N, N m; zero if left out.
-    follower : bool
-        Whether they turn with the axes of the point; else they keep the axes of the ground.
-
     Attributes
     ----------
     history : (Profile, Profile)
@@ -58,10 +50,32 @@ class PointForce(Value):
     'bus.nozzle'
     """
 
-    on: str
-    force: Any = None
-    moment: Any = None
-    follower: bool = False
+    on: Annotated[str, 'the point: "bus.nozzle"']
+    force: Annotated[
+        Numbers | Profile | None,
+        Quantity("force"),
+        Components(
+            "A force on a point by components, each a quantity or a profile; those left out are zero.",
+            x="component along x",
+            y="component along y",
+            z="component along z",
+        ),
+        "force on the point: { x, y, z }",
+    ] = None
+    moment: Annotated[
+        Numbers | Profile | None,
+        Quantity("torque"),
+        Components(
+            "A moment on a point by components, each a quantity or a profile; those left out are zero.",
+            x="component about x",
+            y="component about y",
+            z="component about z",
+        ),
+        "moment on the point: { x, y, z }",
+    ] = None
+    follower: Annotated[bool, "true if the components turn with the point; false if they keep to the ground's axes"] = (
+        False
+    )
     history: tuple[Profile, Profile] = follows()
 
     def __post_init__(self) -> None:
@@ -73,21 +87,6 @@ class PointForce(Value):
 @dataclass(frozen=True, eq=False)
 class System(Value):
     """Bodies joined to a tree: rigid bodies and flexible structures, on the ground, on a moving base, or free.
-
-    Parameters
-    ----------
-    bodies : mapping of str to RigidBody or Structure
-        Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`; SFOAM only where joints
-        prescribe how its root moves.
-        Their points are the named points of the beam, and ``tip``.
-    joints : mapping of str to Joint
-        One for every body, which holds it by its root.
-    forces : mapping of str to PointForce
-        Forces at points, beside the loads of the beams.
-    gravity : (3,), optional
-        Acceleration of free fall, axes of the ground, m/s².
-    controllers : mapping of str to Feedback
-        Controllers in the loop, whose efforts add to those of the joints and forces.
 
     Attributes
     ----------
@@ -131,11 +130,21 @@ class System(Value):
     ('top.angle', 'elbow.angle')
     """
 
-    bodies: Mapping[str, RigidBody | Structure]
-    joints: Mapping[str, Joint]
-    forces: Mapping[str, PointForce] = field(default_factory=dict)
-    gravity: Numbers | None = None
-    controllers: Mapping[str, Feedback] = field(default_factory=dict)
+    bodies: Annotated[
+        Mapping[str, RigidBody | Structure],
+        "bodies by name. Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`, SFOAM only "
+        "where joints prescribe how its root moves; their points are the named points of the beam, and ``tip``",
+    ]
+    joints: Annotated[Mapping[str, Joint], "one for every body, which holds it by its root"]
+    forces: Annotated[Mapping[str, PointForce], "forces and moments on points, beside the loads of the beams"] = field(
+        default_factory=dict
+    )
+    gravity: Annotated[
+        AccelerationVector | None, 'acceleration of free fall, axes of the ground: [0, 0, "-1 g"]; none on a motion'
+    ] = None
+    controllers: Annotated[
+        Mapping[str, Feedback], "controllers in the loop, whose efforts add to those of the joints and forces"
+    ] = field(default_factory=dict)
     order: tuple[str, ...] = follows()
     points: tuple[str, ...] = follows()
     coordinates: tuple[str, ...] = follows()

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import copy
 from dataclasses import replace
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 
 from gbeam.arrays.namespace import as_array, namespace
 from gbeam.arrays.tree import assign, each_leaf, record, static
-from gbeam.arrays.types import Floats, Numbers
+from gbeam.arrays.types import Floats
 from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import choice, positive, possible, vector
+from gbeam.guards.checks import choice, positive, vector
+from gbeam.guards.quantities import Duration, Factor, Quantity, RotationVector
 from gbeam.motion.centrifuge.course import INVERSES, LESS, Course, Planned, less_eased, prepare
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward
@@ -40,47 +41,6 @@ class Centrifuge:
     The machine spins up from standstill before the flight's first time, follows the flight, and spins down after its
     last; its clock is the flight's. Target and axis motions belong to the flight's times: `over` prepares them, as
     every analysis does for its own times; with `span` they are there at once. What the axes do is known only then.
-
-    Parameters
-    ----------
-    flight : Flight
-        Whose load is tracked.
-    arm : float
-        R, from axis 1 to the control point, m; left out, that of the Machine given as `limits`.
-    control_point : float or (3,)
-        From the root to the point where axes 2 and 3 meet: x_c along the beam, or along x, y and z, m.
-    inverse : str
-        ``planned``, ``flat``, ``exact`` or ``quasi-static`` (docs/theory.md, section 8.2).
-    limits : MachineLimits, Machine or Limits, optional
-        ``planned`` keeps them, the other inverses only report. A Machine, such as one of
-        :data:`gbeam.machines`, also gives its idle level where that is left out.
-    gravity : bool
-        True if the flight's load is specific force, of which gravity is a part on the machine; False if it is
-        acceleration.
-    idle : float, optional
-        Least size of the target's load, m/s²: idle.
-    smoothing : float or None
-        Width of the kernel that rounds the target's corners, s; None or 0, the default, leaves them sharp.
-    mounting : str
-        Under a load across the beam its tip points along the arm's motion (``upright``) or against it (``inverted``):
-        docs/mounting.svg.
-    turn : (3,)
-        Which way round the specimen sits: rotation vector of its axes in those of the module that axis 3 turns, rad.
-        Where it is zero, x lies along axis 3; along x it changes nothing that the specimen feels, and half a turn about
-        z is the other mounting.
-    start : str
-        ``rest``: from standstill to standstill, the arm's tangential acceleration on the way ignored; ``pre-yawed``:
-        likewise, with axis 2 turned across the arm at standstill so that the load has its direction on the way;
-        ``idle``: the motion begins and ends in the state that it has at the flight's first and last time.
-    spin_up, spin_down : float, optional
-        Time from standstill to the flight's first time, and from its last to standstill, s. Left out, the time in
-        which the arm turns once on the way, or as much more as nine tenths of every limit need.
-    clip : bool
-        Whether to carry on with another target where the gimbals cannot reach; to give `idle` does so too.
-    ease : float
-        Of ``planned``: weight of gentle motion of the axes beside the tracking error, times the usual one.
-    span : tuple of float, optional
-        First and last time of the flight to prepare for, s.
 
     Raises
     ------
@@ -113,23 +73,80 @@ class Centrifuge:
 
     def __init__(
         self,
-        flight: Flight,
+        flight: Annotated[Flight, "flight whose load is tracked"],
         *,
-        arm: Any | None = None,
-        control_point: Any,
-        inverse: InverseName = "planned",
-        limits: MachineLimits | Machine | Limits | None = None,
-        gravity: bool,
-        idle: Any | None = None,
-        smoothing: Any | None = 0.0,
-        mounting: Mounting = "upright",
-        turn: Numbers = (0.0, 0.0, 0.0),
-        start: Start = "rest",
-        spin_up: float | None = None,
-        spin_down: float | None = None,
-        clip: bool = False,
-        ease: float = 1.0,
-        span: tuple[float, float] | None = None,
+        arm: Annotated[
+            Any | None,
+            Quantity("length", "positive", "arm"),
+            "radius from the main axis to the control point; or that of the machine given as limits",
+        ] = None,
+        control_point: Annotated[
+            Any,
+            Quantity("length"),
+            "point of the specimen that feels the flight's load, where axes 2 and 3 meet, from the root: along x, or "
+            "[x, y, z]",
+        ],
+        inverse: Annotated[
+            InverseName,
+            "how the axis motions are found (docs/theory.md, section 8.2). planned: the least tracking error within "
+            "the limits, to 1 % of the load or a warning; the others do not know the limits. quasi-static: the arm's "
+            "tangential acceleration is ignored; flat: yaw makes up for it; exact: size and direction of the load both "
+            "right, to 1e-7 of it or a warning",
+        ] = "planned",
+        limits: Annotated[
+            MachineLimits | Machine | Limits | None,
+            "what the machine can do: { axis1, axis2, axis3, inertia, power }. A Machine, such as one of "
+            ":data:`gbeam.machines`, also gives arm and idle where they are left out",
+        ] = None,
+        gravity: Annotated[
+            bool,
+            "true if the target is specific force, of which gravity is a part on the machine; false if it is "
+            "acceleration",
+        ],
+        idle: Annotated[
+            Any | None,
+            Quantity("acceleration", "positive"),
+            "load below which the target is held up to this magnitude",
+        ] = None,
+        smoothing: Annotated[
+            Any | None,
+            Quantity("time", "zero or more"),
+            "width of the kernel that rounds the target's corners; 0 leaves them sharp",
+        ] = 0.0,
+        mounting: Annotated[
+            Mounting,
+            "which of the two ways the specimen sits in the gimbals. Under a load across it, its tip points along the "
+            "arm's motion (upright) or against it (inverted): docs/mounting.svg",
+        ] = "upright",
+        turn: Annotated[
+            RotationVector,
+            "which way round the specimen sits in the gimbals: rotation vector of its axes in those of the module that "
+            "axis 3 turns, whose x lies along axis 3",
+        ] = (0.0, 0.0, 0.0),
+        start: Annotated[
+            Start,
+            "how the machine's motion begins and ends. rest: it spins up from standstill before the flight and down to "
+            "it after the flight, the arm's tangential acceleration ignored; pre-yawed: the same with axis 2 turned "
+            "across the arm at standstill, so that the load has its right direction all the way; idle: it begins and "
+            "ends in the state that it has at the flight's first and last time, which the commands' header gives",
+        ] = "rest",
+        spin_up: Annotated[
+            Duration | None,
+            "time from standstill to the flight's first time, such as 10 s; left out, one within nine tenths of the "
+            "limits in which the arm turns once or more",
+        ] = None,
+        spin_down: Annotated[
+            Duration | None, "time from the flight's last time to standstill; left out, likewise"
+        ] = None,
+        clip: Annotated[
+            bool, "true to carry on with a held target where the gimbals cannot reach; idle implies it"
+        ] = False,
+        ease: Annotated[
+            Factor,
+            "of planned: weight of gentle motion of the axes beside the tracking error, times the usual one; with "
+            "less, quick loads are followed better, and the axes move more",
+        ] = 1.0,
+        span: Annotated[tuple[float, float] | None, "first and last time of the flight to prepare for, s"] = None,
     ) -> None:
         if not isinstance(flight, Flight):
             raise InputError("flight", f"is of type {type(flight).__name__}", "give the Flight whose load is tracked")
@@ -140,13 +157,11 @@ class Centrifuge:
             limits = limits.limits
         if arm is None:
             raise InputError("arm", "is missing", "give the arm's length, or a machine as limits")
-        radius = as_array(positive("arm", arm, "m"))
-        possible("arm", "arm", radius)
+        radius = as_array(arm)
         if gravity and flight.record is not None and flight.record.quantity == "acceleration":
             problem = "is true, and the record of its flight holds acceleration, not specific force"
             fix = "write gravity = false, or add gravity to the record: its direction changes as the aircraft turns"
             raise InputError("gravity", problem, fix)
-        ease = positive("ease", ease, "times the usual")
         if ease != 1 and not INVERSES[inverse].plans:
             raise InputError("ease", f"is given beside inverse = {inverse}, which plans nothing", "leave it out")
         assign(
@@ -158,8 +173,8 @@ class Centrifuge:
             limits=limits if isinstance(limits, Limits) else Limits(limits),
             method=inverse,
             ends=Ends(start, spin_up, spin_down),
-            idle=None if idle is None else positive("idle", idle, "m/s²"),
-            smoothing=None if smoothing is None else positive("smoothing", smoothing, "s", zero=True),
+            idle=None if idle is None else as_array(idle),
+            smoothing=None if smoothing is None else as_array(smoothing),
             clip=bool(clip),
             ease=float(ease),
             course=None,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any, get_args
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, get_args
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from gbeam.constants import STANDARD_GRAVITY, MachineName, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
+from gbeam.guards.quantities import Quantity
 from gbeam.results.machine import LimitUse
 
 QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
@@ -24,34 +25,27 @@ QUANTITIES = {"rate": "rad/s", "acceleration": "rad/s^2", "jerk": "rad/s^3"}
 class AxisLimit:
     """Limits of one axis of a centrifuge.
 
-    Parameters
-    ----------
-    rate, acceleration, jerk : float or None
-        Largest size, rad/s, rad/s² and rad/s³; None where it is not known.
-
     Examples
     --------
     >>> gb.AxisLimit(rate=7.0, acceleration=10.0)
     AxisLimit(rate=7.0, acceleration=10.0, jerk=None)
     """
 
-    rate: float | None = None
-    acceleration: float | None = None
-    jerk: float | None = None
+    rate: Annotated[Annotated[float, Quantity("angular rate", "positive")] | None, "largest rate, of either sign"] = (
+        None
+    )
+    acceleration: Annotated[
+        Annotated[float, Quantity("angular acceleration", "positive")] | None, "largest acceleration, of either sign"
+    ] = None
+    jerk: Annotated[Annotated[float, Quantity("angular jerk", "positive")] | None, "largest jerk, of either sign"] = (
+        None
+    )
 
 
 @typed
 @dataclass(frozen=True)
 class MachineLimits:
-    """Limits of a three-axis centrifuge as a person gives them.
-
-    Parameters
-    ----------
-    axis1, axis2, axis3 : AxisLimit
-    inertia : float or None
-        Of all that turns about axis 1, kg m².
-    power : float or None
-        Largest power that speeds the arm up or brakes it, J ω1 dω1/dt without friction and drag, W; needs `inertia`.
+    """Limits of a three-axis centrifuge as a person gives them; exceeding one ends in exit status 1 unless allowed.
 
     Examples
     --------
@@ -60,16 +54,32 @@ class MachineLimits:
     30000.0
     """
 
-    axis1: AxisLimit = field(default_factory=AxisLimit)
-    axis2: AxisLimit = field(default_factory=AxisLimit)
-    axis3: AxisLimit = field(default_factory=AxisLimit)
-    inertia: float | None = None
-    power: float | None = None
+    axis1: Annotated[AxisLimit, "the arm: { rate, acceleration, jerk }"] = field(default_factory=AxisLimit)
+    axis2: Annotated[AxisLimit, "yaw at the arm's end: { rate, acceleration, jerk }"] = field(default_factory=AxisLimit)
+    axis3: Annotated[AxisLimit, "roll about the beam: { rate, acceleration, jerk }"] = field(default_factory=AxisLimit)
+    inertia: Annotated[
+        Annotated[float, Quantity("moment of inertia", "positive")] | None,
+        "moment of inertia of all that turns about axis 1; gives the arm's power",
+    ] = None
+    power: Annotated[
+        Annotated[float, Quantity("power", "positive")] | None,
+        "largest power that speeds the arm up or brakes it, J ω1 dω1/dt without friction and drag; needs inertia",
+    ] = None
+
+    def completed(self, example: MachineLimits) -> MachineLimits:
+        """Limits in which those that are not known are those of an `example`."""
+        axes = {f"axis{k}": _completed(axis, example.axes[k - 1]) for k, axis in enumerate(self.axes, start=1)}
+        return replace(_completed(self, example), **axes)
 
     @property
     def axes(self) -> tuple[AxisLimit, AxisLimit, AxisLimit]:
         """Limits of the three axes."""
         return self.axis1, self.axis2, self.axis3
+
+
+def _completed(limits: Any, example: Any) -> Any:
+    """Limits with those of an example that are None in them."""
+    return replace(limits, **{name: getattr(example, name) for name, value in vars(limits).items() if value is None})
 
 
 @record
@@ -85,19 +95,14 @@ class Limits:
         if machine.power is not None and machine.inertia is None:
             raise InputError("limits.power", "is given without the inertia", 'add inertia = "2000 kg m^2" of the arm')
 
-        def limit(where: str, value: float | None, unit: str) -> float:
-            return np.inf if value is None else float(positive(f"limits.{where}", value, unit))
+        def limit(value: float | None) -> float:
+            return np.inf if value is None else float(value)
 
-        rows = [
-            [limit(f"axis{i + 1}.{name}", getattr(axis, name), unit) for i, axis in enumerate(machine.axes)]
-            for name, unit in QUANTITIES.items()
-        ]
-        inertia = 0.0 if machine.inertia is None else float(positive("limits.inertia", machine.inertia, "kg m²"))
         assign(
             self,
-            axes=np.asarray(rows),
-            inertia=np.asarray(inertia),
-            power=np.asarray(limit("power", machine.power, "W")),
+            axes=np.asarray([[limit(getattr(axis, name)) for axis in machine.axes] for name in QUANTITIES]),
+            inertia=np.asarray(0.0 if machine.inertia is None else float(machine.inertia)),
+            power=np.asarray(limit(machine.power)),
         )
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
+from gbeam.guards.quantities import OfProfile, Quantity
 from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded, beside, hann_orders
 from gbeam.numerics.series import Series
 
@@ -156,12 +158,8 @@ class SmoothedPiecewiseLinear(Rounded):
 
 
 @typed
-def constant(value: ArrayLike) -> PiecewiseLinear:
+def constant(level: Annotated[ArrayLike, OfProfile(), "value, of a vector (3,)"]) -> PiecewiseLinear:
     """Return a constant profile.
-
-    Parameters
-    ----------
-    value : float or array_like of shape (3,)
 
     Raises
     ------
@@ -173,26 +171,21 @@ def constant(value: ArrayLike) -> PiecewiseLinear:
     >>> print(gb.constant(9.81).derivatives(3.0, 0)[0])
     9.81
     """
-    number = as_array(value)
+    number = as_array(level)
     if not is_traced(number) and not np.isfinite(np.asarray(number)).all():
-        raise InputError("value", f"is {value!r}", "give a finite value")
+        raise InputError("level", f"is {level!r}", "give a finite value")
     return PiecewiseLinear([0.0], number[None])
 
 
 @typed
-def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> PiecewiseLinear:
+def trapezoid(
+    level: Annotated[Any, OfProfile(), "value of the plateau, of either sign"],
+    *,
+    jerk: Annotated[Any, OfProfile(rate=True), "rate of change on the flanks, as a magnitude"],
+    start: Annotated[Any, Quantity("time"), "time at which the rise begins"] = 0.0,
+    hold: Annotated[Any, Quantity("time", "zero or more"), "duration of the plateau; zero for a triangle"],
+) -> PiecewiseLinear:
     """Return a ramp from zero, a plateau and the same ramp down.
-
-    Parameters
-    ----------
-    level : float
-        Height of the plateau (m/s², rad/s, ...), of either sign.
-    jerk : float
-        Slope of the ramps without sign, unit of `level` per second.
-    start : float
-        Start of the ramp up, s.
-    hold : float
-        Length of the plateau, s; zero for a triangle.
 
     Raises
     ------
@@ -205,8 +198,8 @@ def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> Piecewis
     >>> print(pulse.derivatives(3.0, 0)[0])
     78.5
     """
-    height, begin, slope = finite("level", level), finite("start", start), positive("jerk", jerk, "per second")
-    plateau = positive("hold", hold, "s", zero=True)
+    height, slope = finite("level", level), positive("jerk", jerk, "per second")
+    begin, plateau = as_array(start), as_array(hold)
     if not is_traced(height) and height == 0:
         raise InputError("level", "is 0", "give a plateau other than zero, or a constant profile of value 0")
     rise = abs(height) / slope
@@ -222,14 +215,11 @@ def trapezoid(level: Any, *, jerk: Any, start: Any = 0.0, hold: Any) -> Piecewis
 
 
 @typed
-def tabulated(times: ArrayLike, values: ArrayLike) -> PiecewiseLinear:
+def tabulated(
+    times: Annotated[Sequence[float] | Floats, Quantity("time"), "times (k,), strictly increasing"],
+    values: Annotated[Sequence[float] | Floats, OfProfile(), "one value per time, (k,), of a vector (k, 3)"],
+) -> PiecewiseLinear:
     """Return a profile through points, straight between them and constant beyond the ends.
-
-    Parameters
-    ----------
-    times : array_like, shape (k,)
-        s, strictly increasing.
-    values : array_like, shape (k,) or (k, 3)
 
     Raises
     ------

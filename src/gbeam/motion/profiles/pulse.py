@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, finite, positive
+from gbeam.guards.quantities import OfProfile, Quantity
 from gbeam.motion.profiles.profile import STEPS_PER_EVENT, TURN, Profile, hann_orders, sampled
 from gbeam.numerics.bspline import DEGREE, PIECE, Spline
 from gbeam.numerics.series import Series
@@ -41,15 +42,6 @@ class _Pulse(Profile):
 class SmoothStep(_Pulse):
     """Slew from zero to a level: level/T (t − T/2π sin 2πt/T) for 0 < t < T, the level after.  # 2009 (43)
 
-    Parameters
-    ----------
-    level : float
-        Final value (rad/s for a hub's rate).
-    duration : float
-        T, s.
-    start : float
-        Time from which t counts, s.
-
     Raises
     ------
     InputError
@@ -62,16 +54,16 @@ class SmoothStep(_Pulse):
     1.5 3.0
     """
 
-    level: Any
-    duration: Any
-    start: Any = 0.0
+    level: Annotated[Any, OfProfile(), "value at the end"]
+    duration: Annotated[Any, Quantity("time", "positive"), "duration of the rise, T"]
+    start: Annotated[Any, Quantity("time"), "time at which the rise begins"] = 0.0
 
     def __post_init__(self) -> None:
         assign(
             self,
             level=as_array(finite("level", self.level)),
-            duration=as_array(positive("duration", self.duration, "s")),
-            start=as_array(finite("start", self.start)),
+            duration=as_array(self.duration),
+            start=as_array(self.start),
         )
 
     def series(self, t: Any, order: int) -> Series:
@@ -90,15 +82,6 @@ class SmoothStep(_Pulse):
 class Sine(_Pulse):
     """One period of a sine: amplitude sin 2πt/T for 0 <= t <= T, zero before and after.  # 2009 (44)
 
-    Parameters
-    ----------
-    amplitude : float
-        N m for a hub's torque.
-    duration : float
-        T, s.
-    start : float
-        Time from which t counts, s.
-
     Raises
     ------
     InputError
@@ -111,16 +94,16 @@ class Sine(_Pulse):
     50.0
     """
 
-    amplitude: Any
-    duration: Any
-    start: Any = 0.0
+    amplitude: Annotated[Any, OfProfile(), "amplitude"]
+    duration: Annotated[Any, Quantity("time", "positive"), "duration of the one period, T"]
+    start: Annotated[Any, Quantity("time"), "time at which it begins"] = 0.0
 
     def __post_init__(self) -> None:
         assign(
             self,
             amplitude=as_array(finite("amplitude", self.amplitude)),
-            duration=as_array(positive("duration", self.duration, "s")),
-            start=as_array(finite("start", self.start)),
+            duration=as_array(self.duration),
+            start=as_array(self.start),
         )
 
     def series(self, t: Any, order: int) -> Series:

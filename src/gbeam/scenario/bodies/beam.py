@@ -2,37 +2,45 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any
 
 from pydantic import Field
 
+from gbeam.errors import placing_within
+from gbeam.guards.quantities import Position
+from gbeam.mechanics.assembly import assemble
+from gbeam.mechanics.structure import Structure
 from gbeam.scenario.bodies.common import BodyKind
-from gbeam.scenario.collector import Collector
-from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.fields import Position, listed
-from gbeam.scenario.schema.scenario import Model
-
-if TYPE_CHECKING:
-    from gbeam.mechanics.structure import Structure
+from gbeam.scenario.schema.beam import Model, beam_of
+from gbeam.scenario.schema.declared import table_of
+from gbeam.structure.beam import Beam
 
 
-class BeamBody(Beam):
+def _body(
+    *,
+    model: Callable[[Beam], Any],
+    stations: Annotated[
+        Sequence[Position], "positions from the root of sections with loads and stress, beside those of its points"
+    ] = (),
+    **arguments: Any,
+) -> Structure:
     """A beam as a body: the keys of [beam], and its model. Its points are its named ones, tip and root."""
+    beam = beam_of(**arguments)
+    with placing_within("model"):
+        chosen = model(beam)
+    return assemble(beam, chosen, stations)
 
-    kind: Literal["beam"] = Field(description="kind of the body")
-    model: Model = Field(description="the model of its deformation: { kind, modes, shapes }")
-    stations: tuple[Position, ...] = listed(
-        "positions from the root of sections with loads and stress, beside those of its points"
+
+_MODEL = Field(description="the model of its deformation: { kind, modes, shapes }")
+BODY = BodyKind(
+    table_of(
+        _body,
+        Beam,
+        _body,
+        name="BeamBody",
+        tag=("kind", "beam"),
+        optional={"length"},
+        changed={"model": (Model, _MODEL)},
     )
-
-
-def _body(parts: Collector, where: str, table: BeamBody) -> Structure | None:
-    from gbeam.mechanics.assembly import assemble
-    from gbeam.scenario.build_beam import beam_of, model_of
-
-    beam = beam_of(parts, where, table)
-    model = model_of(parts, f"{where}.model", table.model, beam)
-    return None if beam is None or model is None else parts.attempt(where, assemble, beam, model, table.stations)
-
-
-BODY = BodyKind(BeamBody, _body)
+)

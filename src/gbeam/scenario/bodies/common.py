@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, NamedTuple, get_args
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
 
 import numpy as np
-from pydantic import AfterValidator, Discriminator, Field, StrictInt, Tag
+from pydantic import Discriminator, Field, StrictInt, Tag
 
-from gbeam.guards.limits import ENTRIES, NAME
-from gbeam.mechanics.tree.joints import GROUND
-from gbeam.printable import shortened
-from gbeam.scenario.schema.fields import MomentOfInertia, Place3, Quantity, Ratio, Ratios, Table, Turn3, wrong
+from gbeam.guards.limits import ENTRIES
+from gbeam.guards.quantities import MomentOfInertia, Quantity
+from gbeam.mechanics.tree.rigid_body import Place
+from gbeam.scenario.schema.declared import chosen, object_of, table_of
+from gbeam.scenario.schema.fields import Place3, Ratios, Table
 
 
 class BodyKind(NamedTuple):
@@ -23,7 +24,7 @@ class BodyKind(NamedTuple):
     """
 
     table: type[Table]
-    build: Callable[[Any, str, Any], Any]
+    build: Callable[[Any, str, Any], Any] = object_of
     alone: Callable[[Any, str, Any], Any] | None = None
     known_by: str = ""
 
@@ -33,14 +34,6 @@ class BodyKind(NamedTuple):
         return str(get_args(self.table.model_fields["kind"].annotation)[0])
 
 
-def _named(name: str) -> str:
-    if not name.isidentifier() or not name.isascii() or len(name) > NAME or name == GROUND:
-        raise wrong(f"{shortened(repr(name))} is not a name", "give letters, digits and underscores", mark="key")
-    return name
-
-
-Name = Annotated[str, AfterValidator(_named)]
-Direction = tuple[Ratio, Ratio, Ratio]
 _Count = Annotated[StrictInt, Field(ge=1, le=1000)]
 _Row = tuple[
     Annotated[float, Quantity("moment of inertia")],
@@ -60,13 +53,7 @@ Inertia = Annotated[
 ]
 
 
-class PlaceOfBody(Table):
-    """A named point of a rigid body, or of a mesh at the nearest node, with axes."""
-
-    at: Place3 = Field(default=(0.0, 0.0, 0.0), description="place from the body's root, in its axes: [x, y, z]")
-    turn: Turn3 = Field(
-        default=(0.0, 0.0, 0.0), description="rotation vector of the point's axes in those of the root: [x, y, z]"
-    )
+PlaceOfBody = table_of(Place, name="PlaceOfBody")
 
 
 def placed(point: Any) -> str:
@@ -75,7 +62,10 @@ def placed(point: Any) -> str:
     return "list" if isinstance(point, (list, tuple)) else "one"
 
 
-Point = Annotated[Annotated[Place3, Tag("list")] | Annotated[PlaceOfBody, Tag("table")], Discriminator(placed)]
+if TYPE_CHECKING:  # type checkers make no tables
+    Point = Any
+else:
+    Point = chosen("kind", {"list": Place3, "table": PlaceOfBody}, placed)
 NodePoints = Annotated[dict[str, StrictInt], Field(max_length=ENTRIES)]
 
 
@@ -86,16 +76,6 @@ class Reduced(Table):
     damping_ratio: Ratios = Field(
         description="of critical damping, of all, or a list with one for each mode; static shapes have the last one's"
     )
-
-
-def points_of(table: Any) -> dict[str, Any]:
-    """Points of a body by name: tables as places with axes, groups and places unchanged."""
-    from gbeam.mechanics.tree.rigid_body import Place
-
-    return {
-        name: Place(each.at, each.turn) if isinstance(each, PlaceOfBody) else each
-        for name, each in table.points.items()
-    }
 
 
 def inertia_of(moments: Any) -> Any:

@@ -3,113 +3,124 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import ENTRIES
-from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, Name, Point, inertia_of, points_of
+from gbeam.guards.quantities import PositionVector, Quantity, Shape
+from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.rigid_body import RigidBody as Rigid
+from gbeam.scenario.bodies.common import BodyKind, Inertia, Point, inertia_of
 from gbeam.scenario.collector import Collector
-from gbeam.scenario.schema.fields import Exponent, Mass, Offset, Place3, Table, by_name, optional
-
-if TYPE_CHECKING:
-    from gbeam.mechanics.structure import Structure
-    from gbeam.mechanics.tree.rigid_body import RigidBody as Rigid
-    from gbeam.solids.rigid import RigidSpecimen
+from gbeam.scenario.schema.declared import arguments_of, table_of
+from gbeam.scenario.schema.fields import Name, Place3, Table
+from gbeam.solids.rigid import RigidSpecimen
 
 _ITEM = "corners", "bolts", "bolt_axis", "spread_limit"  # of an item under test, on whose points nothing hangs
 _Places = Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)]
 
 
-class RigidBody(Table):
+def _rigid(
+    *,
+    mass: float,
+    inertia: Any = None,
+    centre: Any = (0.0, 0.0, 0.0),
+    size: Annotated[
+        Annotated[Any, Quantity("length"), Shape((3,))] | None,
+        "edges [x, y, z] of the box that it fills, about middle",
+    ] = None,
+    middle: Annotated[
+        PositionVector | None, "middle of the box from the root, [x, y, z]; the centre of mass where left out"
+    ] = None,
+    points: Any = None,
+) -> Rigid:
     """A rigid body."""
-
-    kind: Literal["rigid"] = Field(description="kind of the body")
-    mass: Mass = Field(description="mass")
-    inertia: Inertia = Field(
-        default=(0.0, 0.0, 0.0),
-        description="about the centre of mass, axes of the root: principal moments [x, y, z], or three rows; of a size "
-        "where it is left out that of an even box",
-    )
-    centre: Place3 = Field(default=(0.0, 0.0, 0.0), description="centre of mass from the root: [x, y, z]")
-    size: tuple[Offset, Offset, Offset] | None = optional("edges [x, y, z] of the box that it fills, about middle")
-    middle: Place3 | None = optional("middle of the box from the root, [x, y, z]; the centre of mass where left out")
-    corners: _Places = Field(
-        default=(),
-        description="corners of its envelope where it is no box, whose load is told: [ [x, y, z], ... ]",
-    )
-    bolts: _Places = Field(
-        default=(), description="places of the bolts that hold it by its root, alike: [ [x, y, z], ... ]"
-    )
-    bolt_axis: Direction | None = optional("direction of the bolts, away from the fixture: [x, y, z]")
-
-    spread_limit: Exponent | None = optional(
-        "largest difference of the load at a corner to the centre's that the test order "
-        'accepts, over the largest of the centre, such as "10 %"; beyond it the run is not accepted'
-    )
-    points: dict[Name, Point] = by_name(
-        "points by name, on which other bodies hang, forces act and output is given: the place [x, y, z] from the "
-        "root, or with axes { at, turn }"
-    )
+    return Rigid(mass, _moments(mass, inertia, centre, size, middle), centre, points or {})
 
 
-def _body(parts: Collector, where: str, table: RigidBody) -> Rigid | Structure | None:
+def _specimen(
+    *, size: Any = None, middle: Any = None, points: Any = None, corners: Any = (), **others: Any
+) -> Structure:
+    """Structure of a rigid specimen, its points among its corners."""
+    mass, centre = others.pop("mass"), others.pop("centre", (0.0, 0.0, 0.0))
+    moments = inertia_of(_moments(mass, others.pop("inertia", None), centre, size, middle))
+    places = {name: getattr(each, "at", each) for name, each in (points or {}).items()}
+    listed = [*corners, *places.values()]
+    if size is not None:
+        signs = np.array(list(product((-0.5, 0.5), repeat=3)))
+        listed = [*(_middle(centre, middle) + signs * np.asarray(size)), *listed]
+    if not listed:
+        raise InputError("size", "is missing", "give the box that it fills, or its corners")
+    return RigidSpecimen(mass, centre, moments, listed, points=places, **others).structure
+
+
+def _alone(parts: Collector, where: str, table: Table) -> Structure | None:
+    """Structure of a rigid specimen alone on its base; None if it is refused."""
+    return _made(parts, where, table, _specimen)
+
+
+def _in_system(parts: Collector, where: str, table: Table) -> Rigid | Structure | None:
     """Rigid body of a system, a specimen where corners or bolts are asked for; None if it is refused."""
-    if any(getattr(table, key) for key in _ITEM):
-        return _specimen(parts, where, table)
-    from gbeam.mechanics.tree.rigid_body import RigidBody as Rigid
-
-    def body() -> Rigid:
-        return Rigid(table.mass, _moments(table), table.centre, points_of(table))
-
-    return parts.attempt(where, body)
+    return _made(parts, where, table, _specimen if any(getattr(table, key) for key in _ITEM) else _rigid)
 
 
-def _specimen(parts: Collector, where: str, table: RigidBody) -> Structure | None:
-    """Structure of a rigid specimen, its points among its corners; None if it is refused."""
-    from gbeam.solids.rigid import RigidSpecimen
-
-    def specimen() -> RigidSpecimen:
-        points: dict[str, Any] = {name: getattr(each, "at", each) for name, each in table.points.items()}
-        corners = [*table.corners, *points.values()]
-        if table.size is not None:
-            signs = np.array(list(product((-0.5, 0.5), repeat=3)))
-            corners = [*(_middle(table) + signs * np.asarray(table.size)), *corners]
-        if not corners:
-            raise InputError("size", "is missing", "give the box that it fills, or its corners")
-        bolts = table.bolts or None
-        moments = inertia_of(_moments(table))
-        return RigidSpecimen(
-            table.mass, table.centre, moments, corners,
-            bolts=bolts, bolt_axis=table.bolt_axis, spread_limit=table.spread_limit, points=points,
-        )  # fmt: skip
-
-    built = parts.attempt(where, specimen)
-    return None if built is None else built.structure
+def _made(parts: Collector, where: str, table: Table, make: Any) -> Any:
+    before = len(parts.errors)
+    arguments = arguments_of(parts, where, table, {"kind", *(() if make is _specimen else _ITEM)})
+    return parts.attempt(where, make, **arguments) if len(parts.errors) == before else None
 
 
-def _middle(table: RigidBody) -> Any:
-    return np.asarray(table.centre if table.middle is None else table.middle)
+def _middle(centre: Any, middle: Any) -> Any:
+    return np.asarray(centre if middle is None else middle)
 
 
-def _moments(table: RigidBody) -> Any:
+def _moments(mass: float, inertia: Any, centre: Any, size: Any, middle: Any) -> Any:
     """Inertia as written, or of a box of uniform density where only its size is; InputError if the two do not fit."""
-    if table.size is None:
-        if table.middle is not None:
+    if size is None:
+        if middle is not None:
             raise InputError("middle", "is given without a size", "give the edges of the box: size = [x, y, z]")
-        return table.inertia
-    for i, edge in enumerate(table.size):
+        return (0.0, 0.0, 0.0) if inertia is None else inertia
+    for i, edge in enumerate(size):
         if not edge > 0:
             raise InputError(f"size[{i}]", f"is {edge:g} m", "give a positive length")
-    if "inertia" in table.model_fields_set:
-        return table.inertia
-    if not np.allclose(_middle(table), table.centre):
+    if inertia is not None:
+        return inertia
+    if not np.allclose(_middle(centre, middle), centre):
         fix = "give it: the box is not even, whose middle is not its centre of mass"
         raise InputError("inertia", "is missing", fix)
-    squares = np.square(table.size)
-    return tuple(table.mass / 12 * (squares.sum() - squares))
+    squares = np.square(size)
+    return tuple(mass / 12 * (squares.sum() - squares))
 
 
-BODY = BodyKind(RigidBody, _body, _specimen)
+_INERTIA = (
+    "about the centre of mass, axes of the root: principal moments [x, y, z], or three rows; of a size where it is "
+    "left out that of an even box"
+)
+_CORNERS = "corners of its envelope where it is no box, whose load is told: [ [x, y, z], ... ]"
+_POINTS = (
+    "points by name, on which other bodies hang, forces act and output is given: the place [x, y, z] from the root, or "
+    "with axes { at, turn }"
+)
+BODY = BodyKind(
+    table_of(
+        _rigid,
+        _rigid,
+        RigidSpecimen,
+        Rigid,
+        name="RigidBody",
+        tag=("kind", "rigid"),
+        changed={
+            "inertia": (Inertia, Field(default=(0.0, 0.0, 0.0), description=_INERTIA)),
+            "corners": (_Places, Field(default=(), description=_CORNERS)),
+            "points": (
+                Annotated[dict[Name, Point], Field(max_length=ENTRIES)],
+                Field(default_factory=dict, description=_POINTS),
+            ),
+        },
+    ),
+    _in_system,
+    _alone,
+)

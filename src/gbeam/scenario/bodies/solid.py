@@ -10,20 +10,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from gbeam.errors import InputError, naming, placing_within
-from gbeam.scenario.bodies.common import BodyKind, Direction, Inertia, PlaceOfBody, Reduced, placed, points_of
+from gbeam.guards.quantities import Length, Mass, Quantity
+from gbeam.scenario.bodies.common import BodyKind, Inertia, PlaceOfBody, Reduced, placed
 from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.beam import Material
+from gbeam.scenario.schema.declared import chosen, object_of, table_of
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
-    Density,
     Exponent,
     File,
-    Length,
-    Mass,
     Place3,
-    Pressure,
-    Quantity,
-    Ratio,
     Table,
     Turn3,
     by_name,
@@ -31,6 +27,7 @@ from gbeam.scenario.schema.fields import (
     refuse,
     wrong,
 )
+from gbeam.structure.material import Orthotropic as _Orthotropic
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
@@ -38,22 +35,8 @@ if TYPE_CHECKING:
     from gbeam.solids.mesh import SolidMesh
     from gbeam.solids.model import SolidModel
 
-_Moduli = tuple[Pressure, Pressure, Pressure]
 _Meshed = tuple[str, float | None]  # file, and largest edge of the elements by which a shape is meshed
-
-
-class Orthotropic(Table):
-    """Linear elastic material with three planes of symmetry, such as a laminate."""
-
-    density: Density = Field(description="mass per volume")
-    youngs_moduli: _Moduli = Field(description="along its axes 1, 2 and 3")
-    poissons_ratios: tuple[Ratio, Ratio, Ratio] = Field(
-        description="nu12, nu23 and nu13: contraction along the second axis by a pull along the first"
-    )
-    shear_moduli: _Moduli = Field(description="G12, G23 and G13")
-    axes: tuple[Direction, Direction] = Field(
-        default=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), description="directions of its axes 1 and 2, in axes of the mesh"
-    )
+Orthotropic = table_of(_Orthotropic)
 
 
 def _symmetry(material: Any) -> str:
@@ -62,9 +45,10 @@ def _symmetry(material: Any) -> str:
     return "isotropic" if several.isdisjoint(keys) else "orthotropic"
 
 
-SolidMaterial = Annotated[
-    Annotated[Material, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(_symmetry)
-]
+if TYPE_CHECKING:  # type checkers make no tables
+    SolidMaterial = Any
+else:
+    SolidMaterial = chosen("symmetry", {"isotropic": Material, "orthotropic": Orthotropic}, _symmetry)
 _Groups = Annotated[Annotated[str, Tag("one")] | Annotated[tuple[str, ...], Tag("list")], ONE_OR_LIST]
 _MeshPoint = Annotated[
     Annotated[str, Tag("one")] | Annotated[Place3, Tag("list")] | Annotated[PlaceOfBody, Tag("table")],
@@ -193,15 +177,12 @@ def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
     from gbeam.solids.mesh import SolidMesh
     from gbeam.solids.model import SolidModel
 
-    laws: Any = (
-        {name: _material(parts, f"{where}.materials.{name}", each) for name, each in table.materials.items()}
-        if table.material is None
-        else _material(parts, f"{where}.material", table.material)
-    )
+    key = "materials" if table.material is None else "material"
+    laws = object_of(parts, f"{where}.{key}", getattr(table, key))
     placed_parts = parts.attempt(
         where,
         lambda: {
-            "points": points_of(table),
+            "points": object_of(parts, f"{where}.points", table.points),
             "carried": {name: _carried(name, each) for name, each in table.carried.items()},
         },
     )
@@ -274,13 +255,6 @@ def _carried(name: str, table: Carried) -> RigidBody:
 
     with placing_within(f"carried.{name}"):
         return RigidBody(table.mass, table.inertia, table.centre)
-
-
-def _material(parts: Collector, where: str, table: Any) -> Any:
-    from gbeam.structure import material
-
-    kind = material.Orthotropic if isinstance(table, Orthotropic) else material.Material
-    return parts.attempt(where, kind, **table.model_dump(exclude_none=True))
 
 
 BODY = BodyKind(SolidBody, _body, known_by="mesh")

@@ -5,25 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from gbeam.scenario.schema.profile import OVER_TIME as OVER_TIME  # before the tables whose values change over time
+
+# isort: split
 from gbeam.scenario.schema.arm import Arm as Arm
 from gbeam.scenario.schema.beam import Beam as Beam
-from gbeam.scenario.schema.beam import Drawn as Drawn
-from gbeam.scenario.schema.beam import Line as Line
-from gbeam.scenario.schema.beam import Load as Load
-from gbeam.scenario.schema.beam import PointMass as PointMass
+from gbeam.scenario.schema.beam import Model as Model
 from gbeam.scenario.schema.motion import AxisLimit as AxisLimit
 from gbeam.scenario.schema.motion import Centrifuge as Centrifuge
 from gbeam.scenario.schema.motion import Flight as Flight
 from gbeam.scenario.schema.motion import Hub as Hub
 from gbeam.scenario.schema.motion import Limits as Limits
 from gbeam.scenario.schema.motion import Sensor as Sensor
-from gbeam.scenario.schema.profile import Constant as Constant
-from gbeam.scenario.schema.profile import Listed as Listed
-from gbeam.scenario.schema.profile import Sine as Sine
-from gbeam.scenario.schema.profile import SmoothStep as SmoothStep
-from gbeam.scenario.schema.profile import Trapezoid as Trapezoid
 from gbeam.scenario.schema.scenario import Environments as Environments
-from gbeam.scenario.schema.scenario import Model as Model
 from gbeam.scenario.schema.scenario import Response as Response
 from gbeam.scenario.schema.scenario import Scenario as Scenario
 

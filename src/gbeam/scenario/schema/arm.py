@@ -18,15 +18,12 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Along, PresetName
+from gbeam.guards.quantities import Duration, Jerk, Length, Quantity
 from gbeam.scenario.presets import PRESETS, preset_of
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     ControlPoint,
-    Duration,
-    Jerk,
-    Length,
     Loc,
-    Quantity,
     Table,
     by_name,
     missing_one_of,

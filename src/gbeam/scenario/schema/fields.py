@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import (
@@ -13,33 +12,26 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
     Tag,
     ValidationInfo,
     WithJsonSchema,
     model_validator,
 )
 from pydantic import ValidationError as PydanticError
-from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from gbeam.guards.kinds import KINDS
-from gbeam.guards.limits import ENTRIES, LARGEST, NAME, SMALLEST, existing
-from gbeam.guards.units import UnitError, quantity
+from gbeam.guards.limits import ENTRIES, NAME, existing
+from gbeam.guards.quantities import Angle, Area, Length, Offset, Position, Quantity, Ratio, SecondMoment
+from gbeam.mechanics.tree.joints import GROUND
 from gbeam.printable import closest, shortened
 from gbeam.scenario.values import Path, path_text
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
-    from pydantic.json_schema import JsonSchemaValue
 
 
-Sign = Literal["any", "positive", "zero or more"]
 Loc = tuple[int | str, ...]
 TAGS = ("kind", "shape", "profile")  # keys that say which of several tables one is
-
-# Kinds whose sizes are checked by the objects, which also suggest the unit that was meant: gbeam.guards.checks.
-_OF_OBJECTS = ("length", "area", "second moment of area", "density", "pressure", "time")
 
 
 class Table(BaseModel):
@@ -80,6 +72,16 @@ def motion_name(name: str) -> str:
     if len(name) > NAME:
         raise wrong(f"{shortened(name)!r} has {len(name)} characters", f"give {NAME} or fewer", mark="key")
     return name
+
+
+def _named(name: str) -> str:
+    if not name.isidentifier() or not name.isascii() or len(name) > NAME or name == GROUND:
+        raise wrong(f"{shortened(repr(name))} is not a name", "give letters, digits and underscores", mark="key")
+    return name
+
+
+Name = Annotated[str, AfterValidator(_named)]
+Direction = tuple[Ratio, Ratio, Ratio]
 
 
 def existing_file(file: str, info: ValidationInfo) -> str:
@@ -127,57 +129,17 @@ class Vector(Table):
         return self
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """Annotation of a float that is read from a number in SI or from text with a unit."""
+class ClockTime(Quantity):
+    """Annotation of a time that may be a time of day."""
 
-    kind: str  # a key of KINDS
-    sign: Sign = "any"
-    words: tuple[str, ...] = ()  # accepted instead of a quantity, and kept as they are
-    clock: bool = False  # true if a time of day is accepted too
+    def accepts(self, text: str) -> bool:
+        from gbeam.io.table import is_clock  # not needed, nor imported, where there is no such key
 
-    def read(self, value: object) -> float | str:
-        """Return the value in SI, or an accepted word as it is; raise pydantic's error, with advice, otherwise."""
-        if isinstance(value, str) and (value in self.words or (self.clock and _is_clock(value))):
-            return value
-        otherwise = "".join(f', or "{word}"' for word in self.words)
-        try:
-            number = quantity(value, self.kind)
-        except UnitError as error:
-            raise wrong(error.problem, error.hint + otherwise) from None
-        if number and self.kind not in _OF_OBJECTS and not SMALLEST <= abs(number) <= LARGEST:
-            size = "large" if abs(number) > LARGEST else "small"
-            raise wrong(f"{{value}} is too {size} to compute with", f"give a size from {SMALLEST:g} to {LARGEST:g}")
-        if number < 0 and self.sign != "any":
-            raise wrong("{value} is negative", f"give {self._signed}{otherwise}")
-        if number == 0 and self.sign == "positive":
-            raise wrong("{value} is zero", f"give {self._signed}{otherwise}")
-        return number
+        return is_clock(text)
 
     @property
-    def _signed(self) -> str:
-        noun = KINDS[self.kind].phrase.split(" ", 1)[1]
-        return f"a positive {noun}" if self.sign == "positive" else f"zero or a positive {noun}"
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Validate with :meth:`read` alone: pydantic's own floats would take "10" and true."""
-        return core_schema.no_info_plain_validator_function(self.read)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """Describe it as a number in SI or as text with a unit."""
-        kind = KINDS[self.kind]
-        limit = {"positive": {"exclusiveMinimum": 0}, "zero or more": {"minimum": 0}}.get(self.sign, {})
-        number = {"type": "number", "description": f"{kind.phrase} in {kind.unit or 'plain numbers'}"} | limit
-        text = {"type": "string", "description": f"{kind.phrase} with its unit", "examples": [kind.example]}
-        words: list[JsonSchemaValue] = [{"const": word} for word in self.words]
-        words += [{"type": "string", "description": "a time of day", "examples": ["12:34:56.7"]}] if self.clock else []
-        return {"anyOf": [number, text, *words], "x-quantity": self.kind, "x-unit": kind.unit}
-
-
-def _is_clock(text: str) -> bool:
-    from gbeam.io.table import is_clock  # not needed, nor imported, where there is no such key
-
-    return is_clock(text)
+    def accepted(self) -> list[dict[str, Any]]:
+        return [{"type": "string", "description": "a time of day", "examples": ["12:34:56.7"]}]
 
 
 def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
@@ -206,38 +168,12 @@ def inside(annotation: Any) -> Iterator[Any]:
         yield from inside(part)
 
 
-Length = Annotated[float, Quantity("length", "positive")]
-Position = Annotated[float, Quantity("length", "zero or more")]
-Offset = Annotated[float, Quantity("length")]
-Area = Annotated[float, Quantity("area", "positive")]
-SecondMoment = Annotated[float, Quantity("second moment of area", "positive")]
-Mass = Annotated[float, Quantity("mass", "zero or more")]
-MomentOfInertia = Annotated[float, Quantity("moment of inertia", "zero or more")]
-Density = Annotated[float, Quantity("density", "positive")]
-Pressure = Annotated[float, Quantity("pressure", "positive")]
-Ratio = Annotated[float, Quantity("ratio")]
 Exponent = Annotated[float, Quantity("ratio", "positive")]
-Duration = Annotated[float, Quantity("time", "positive")]
-Time = Annotated[float, Quantity("time", "zero or more")]
-Moment = Annotated[float | str, Quantity("time", clock=True)]
-Step = Annotated[float | Literal["auto"], Quantity("time", "positive", ("auto",))]
-Speed = Annotated[float, Quantity("speed")]
-Acceleration = Annotated[float, Quantity("acceleration")]
-Growth = Annotated[float, Quantity("acceleration", "positive")]  # of a speed
-Jerk = Annotated[float, Quantity("jerk", "positive")]
-Angle = Annotated[float, Quantity("angle")]
+Pressure = Annotated[float, Quantity("pressure", "positive")]
+Moment = Annotated[float | str, ClockTime("time")]
+Step = Annotated[float | Literal["auto"], Quantity("time", "positive", words=("auto",))]
 Place3 = tuple[Offset, Offset, Offset]
 Turn3 = tuple[Angle, Angle, Angle]
-AngularRate = Annotated[float, Quantity("angular rate")]
-AngularAcceleration = Annotated[float, Quantity("angular acceleration", "positive")]
-Torque = Annotated[float, Quantity("torque")]
-TorqueRate = Annotated[float, Quantity("torque rate", "positive")]
-Force = Annotated[float, Quantity("force")]
-ForceRate = Annotated[float, Quantity("force rate", "positive")]
-ForcePerLength = Annotated[float, Quantity("force per length")]
-ForcePerLengthRate = Annotated[float, Quantity("force per length rate", "positive")]
-Stiffness = Annotated[float, Quantity("stiffness", "positive")]
-RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positive")]
 
 # A union would report the errors of both branches; the tags pick one, and explain drops them from the place.
 ONE_OR_LIST = Discriminator(lambda value: "list" if isinstance(value, (list, tuple)) else "one")

@@ -11,77 +11,34 @@ from pydantic import (
     Field,
     PrivateAttr,
     StrictBool,
-    StrictInt,
     ValidationInfo,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
 
-from gbeam.constants import Integrator, ModelKind, Parameter, Sampler, Shapes, State
-from gbeam.guards.limits import ENTRIES, SHAPES, TITLE
+from gbeam.constants import Integrator, Parameter, Sampler, State
+from gbeam.guards.limits import ENTRIES, TITLE
+from gbeam.guards.quantities import Acceleration, Duration, Offset, Position, Quantity, Ratio, Speed, Time
 from gbeam.printable import advise, level_words, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.arm import Arm
-from gbeam.scenario.schema.beam import Beam
-from gbeam.scenario.schema.fields import (
-    Acceleration,
-    Duration,
-    Loc,
-    Offset,
-    Position,
-    Quantity,
-    Ratio,
-    Speed,
-    Step,
-    Table,
-    Time,
-    by_name,
-    motion_name,
-    optional,
-    refuse,
-    wrong,
-)
-from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub, Motion, Sensor
-from gbeam.scenario.schema.profile import PartOfRecord, Record
+from gbeam.scenario.schema.fields import Loc, Step, Table, by_name, motion_name, optional, refuse, wrong
+from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub
+from gbeam.scenario.schema.record import PartOfRecord, Record
 from gbeam.scenario.text.source import Source
 
 if TYPE_CHECKING:
     from gbeam.constants import Verb
+
+    Beam = Any
+    Model = Any
+    Motion = Any
+    Sensor = Any
 else:
+    from gbeam.scenario.schema.beam import Beam, Model
+    from gbeam.scenario.schema.motion import Motion, Sensor
+
     Verb = Literal[tuple(QUESTIONS)]  # with those that are declared elsewhere
-
-
-Count = Annotated[StrictInt, Field(ge=0, le=SHAPES)]
-
-
-class Modes(Table):
-    """Numbers of shape functions."""
-
-    axial: Count = Field(description="axial shapes; for `exact` and `fourth-order` of the stretch")
-    y: Count = Field(description="bending shapes along y; for `exact` and `fourth-order` of the curvature")
-    z: Count = Field(description="bending shapes along z; for `exact` and `fourth-order` of the curvature")
-    twist: Count = Field(default=0, description="shapes of the twist, whose inertia is beam.rotary_inertia")
-    shear_y: Count = Field(default=0, description="shapes of the shear strain along y")
-    shear_z: Count = Field(default=0, description="shapes of the shear strain along z")
-
-
-class Model(Table):
-    """The model of the beam's deformation."""
-
-    kind: ModelKind = Field(
-        description="TLAM: linear, no foreshortening. FOAM: first order with foreshortening. SFOAM: FOAM "
-        "without axial coordinates. CFOAM: FOAM's field, complete energy. fourth-order: exact's places to that order, "
-        "complete. exact: any rotation"
-    )
-    modes: Modes | None = optional(
-        "numbers of shapes: { axial, y, z, twist, shear_y, shear_z }; where left out, `run` raises "
-        "those of axial, y and z until they are enough"
-    )
-    shapes: Shapes | None = optional(
-        "clamped-free: shapes of the bare uniform beam (for `exact` and `fourth-order`, polynomials); the "
-        "default for these two and where `modes` are given. adapted: the modes at rest of this beam with its tapers, "
-        "masses and root springs, of which fewer are needed; the default where `modes` are left out"
-    )
 
 
 # Which parameters each integrator takes.
@@ -349,7 +306,7 @@ class Environments(Titled):
             hint = f'name the column that numbers them, such as sections = "event" in [motion.{part.of}.record]'
             yield (*where, "section"), wrong("is given, and its record has no sections", hint, mark="key")
 
-    def _tracking(self, name: str, motion: Centrifuge) -> Iterator[tuple[Loc, PydanticCustomError]]:
+    def _tracking(self, name: str, motion: Any) -> Iterator[tuple[Loc, PydanticCustomError]]:
         flights = [name for name, candidate in self.motion.items() if isinstance(candidate, Flight)]
         if motion.tracks not in flights:
             target = self.motion.get(motion.tracks)

@@ -1,0 +1,167 @@
+"""Parameters of classes and functions as they are declared in their signatures, and docstrings that tell them."""
+
+from __future__ import annotations
+
+import collections.abc
+import re
+import types
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from inspect import Parameter as Argument
+from inspect import cleandoc, signature, unwrap
+from textwrap import fill
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from gbeam.guards.quantities import OneOrSome, Quantity, Rows, Shape
+
+SECTION = "Parameters\n----------\n"
+_FOLLOWING = re.compile(r"^(Returns|Yields|Attributes|Raises|Notes|See Also|References|Examples)\n-+$", re.MULTILINE)
+_WIDTH = 112
+_NUMERIC = (float, int, complex, bool, str, bytes, Any)  # what numbers may be given as
+_PLAIN = {float: "float", int: "int", bool: "bool", str: "str", Any: "object"}
+_LISTS = {list: "list", tuple: "tuple", collections.abc.Sequence: "sequence", collections.abc.Iterable: "iterable"}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter as it is declared."""
+
+    name: str
+    hint: Any  # its type, with all annotations
+    words: str  # what it is, beginning with a small letter and without a full stop; empty if it says nothing
+    default: Any  # inspect.Parameter.empty where it must be given
+
+    @property
+    def required(self) -> bool:
+        """True if it must be given."""
+        return self.default is Argument.empty
+
+    @property
+    def quantity(self) -> Quantity | None:
+        """The quantity that its numbers are; None if they are none."""
+        return next((part for part in annotations_in(self.hint) if isinstance(part, Quantity)), None)
+
+    def check(self, value: Any) -> None:
+        """Raise InputError unless a value that is a number, or numbers, has the quantity's sign and range."""
+        kinds = (kind for kind in alternatives_in(self.hint) if kind not in _NUMERIC)
+        if isinstance(value, tuple(kind for kind in kinds if isinstance(kind, type))):  # None, or a profile over time
+            return
+        if self.quantity is not None:
+            self.quantity.check(self.name, value)
+
+
+def parameters_of(declaring: Callable[..., Any]) -> dict[str, Parameter]:
+    """Parameters of a class or function by name; names that only type checkers import are Any."""
+    declaring = unwrap(declaring)
+    hints = resolved_hints(declaring.__init__ if isinstance(declaring, type) else declaring)  # type: ignore[misc]
+    return {
+        name: Parameter(name, hints.get(name, Any), _words(hints.get(name)), each.default)
+        for name, each in signature(declaring).parameters.items()
+        if each.kind is not Argument.VAR_KEYWORD and name not in ("self", "cls")
+    }
+
+
+def resolved_hints(function: Callable[..., Any]) -> dict[str, Any]:
+    """Types of the arguments of a function by name, with annotations; names that cannot be resolved are Any."""
+    unknown: dict[str, Any] = {}
+    while True:
+        try:
+            return get_type_hints(function, localns=unknown, include_extras=True)
+        except NameError as error:
+            unknown[str(error.name)] = Any
+
+
+def annotations_in(hint: Any) -> Iterator[Any]:
+    """Annotations of a type at any depth, outer ones first."""
+    if get_origin(hint) is Annotated:
+        yield from hint.__metadata__
+        yield from annotations_in(hint.__origin__)
+        return
+    for part in get_args(hint) if get_origin(hint) is not Literal else ():
+        yield from annotations_in(part)
+
+
+def alternatives_in(hint: Any) -> tuple[Any, ...]:
+    """Types among which a type lets choose."""
+    if get_origin(hint) is Annotated:
+        return alternatives_in(hint.__origin__)
+    if get_origin(hint) not in (Union, types.UnionType):
+        return (hint,)
+    return tuple(kind for part in get_args(hint) for kind in alternatives_in(part))
+
+
+def _words(hint: Any) -> str:
+    """Words of a type's own annotation."""
+    marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
+    return next((mark for mark in marks if isinstance(mark, str)), "")
+
+
+def with_parameters(docstring: str, parameters: Mapping[str, Parameter]) -> str:
+    """Return a docstring with a section of its parameters, before its other sections, if they have words."""
+    if not any(each.words for each in parameters.values()):
+        return docstring
+    text = cleandoc(docstring)
+    following = _FOLLOWING.search(text)
+    place = following.start() if following else len(text)
+    section = SECTION + "\n".join(map(_entry, parameters.values()))
+    return "\n\n".join(filter(None, (text[:place].rstrip(), section, text[place:])))
+
+
+def _entry(parameter: Parameter) -> str:
+    """Name, type, unit and words of a parameter as numpydoc has them."""
+    kind = [type_words(parameter.hint)]
+    if parameter.quantity is not None:
+        kind[0] = kind[0].replace("object", "float")  # of any kind of number, JAX's among them
+        kind += [parameter.quantity.unit] if parameter.quantity.unit else []
+    if not parameter.required:
+        kind.append("optional")
+    return f"{parameter.name} : {', '.join(kind)}" + (f"\n{_sentence(parameter)}" if parameter.words else "")
+
+
+def _sentence(parameter: Parameter) -> str:
+    """Words of a parameter as a sentence in indented lines; a symbol or a choice at their beginning stays small."""
+    words, choices = parameter.words, literals(parameter.hint)
+    if re.match("[a-z]{2}|a ", words) and words.partition(":")[0] not in choices:
+        words = words[0].upper() + words[1:]
+    return fill(f"{words}.", _WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 4, break_on_hyphens=False)
+
+
+def literals(hint: Any) -> tuple[Any, ...]:
+    """Words among which a type lets choose, at any depth."""
+    if get_origin(hint) is Literal:
+        return get_args(hint)
+    parts = (hint.__origin__,) if get_origin(hint) is Annotated else get_args(hint)
+    return tuple(word for part in parts for word in literals(part))
+
+
+def type_words(hint: Any) -> str:
+    """A type in words: its shape where that is declared, and no None."""
+    from numpy.typing import ArrayLike
+
+    marks = [*hint.__metadata__] if get_origin(hint) is Annotated else []
+    for mark in marks:
+        if isinstance(mark, Shape):
+            return f"({', '.join(map(str, mark.sizes))}{',' if len(mark.sizes) == 1 else ''}) of float"
+        if isinstance(mark, Rows):
+            return f"(n, {mark.size}) of float"
+        if isinstance(mark, OneOrSome):
+            one = f"({', '.join(map(str, mark.sizes))}) of float" if mark.sizes else "float"
+            return f"{one}, or a sequence of them"
+    if marks:
+        return type_words(hint.__origin__)
+    if hint is ArrayLike:
+        return "array_like"
+    origin, parts = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        if len(set(parts) & set(get_args(ArrayLike))) > 1:
+            parts = (*(each for each in parts if each not in get_args(ArrayLike)), ArrayLike)
+        return " or ".join(dict.fromkeys(type_words(each) for each in parts if each is not type(None)))
+    if origin is Literal:
+        return f"{{{', '.join(map(repr, parts))}}}"
+    if origin in _LISTS:
+        return f"{_LISTS[origin]} of {type_words(parts[0])}" if parts else _LISTS[origin]
+    if origin in (dict, Mapping, collections.abc.Mapping):
+        return f"dict of {type_words(parts[0])} to {type_words(parts[1])}"
+    if getattr(origin, "__name__", "") == "ndarray":
+        return "ndarray"
+    return _PLAIN.get(hint, getattr(hint, "__name__", str(hint)))
