@@ -11,23 +11,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam import (
-    Beam,
-    Flight,
-    Load,
-    Material,
-    Model,
-    Response,
-    Section,
-    Sine,
-    SmoothStep,
-    assemble,
-    simulate,
-    vector,
-)
 from gbeam.analysis.response.loss import Drive, lowest_over_time, worst_loss
-from gbeam.analysis.steady.stability import critical_load
-from gbeam.motion import constant
 from gbeam.results.parts import Base
 
 from .helpers import EI, LENGTH, LINE, OMEGA, SECTION, strip
@@ -81,31 +65,31 @@ def test_foam_does_not_lose_it_on_a_hub() -> None:
     assert worst_loss(strip(), time, on_rim, at_rest(strip(), time)) is None
 
 
-def column(kind: str, *loads: Load, damping: float = 0.0, counts: tuple[int, int, int] = (0, 0, 4)) -> Any:
+def column(kind: str, *loads: gb.Load, damping: float = 0.0, counts: tuple[int, int, int] = (0, 0, 4)) -> Any:
     """The strip, loaded."""
-    beam = Beam(LENGTH, SECTION, Material(2700.0, 7e10), damping_ratio=damping, loads=loads, rotary_inertia=False)
-    return assemble(beam, Model(kind, *counts))
+    beam = gb.Beam(LENGTH, SECTION, gb.Material(2700.0, 7e10), damping_ratio=damping, loads=loads, rotary_inertia=False)
+    return gb.assemble(beam, gb.Model(kind, *counts))
 
 
-def ran(structure: Any, motion: Any = None, duration: float = 2.0) -> Response:
-    motion = Flight(z=constant(0.0)) if motion is None else motion
-    return simulate(structure, motion, duration=duration, step=duration / 500, integrator="gauss", estimate=False)
+def ran(structure: Any, motion: Any = None, duration: float = 2.0) -> gb.Response:
+    motion = gb.Flight(z=gb.constant(0.0)) if motion is None else motion
+    return gb.simulate(structure, motion, duration=duration, step=duration / 500, integrator="gauss", estimate=False)
 
 
 def axial(profile: Any) -> Any:
-    return vector(x=profile)
+    return gb.vector(x=profile)
 
 
-def unstable(response: Response) -> bool:
+def unstable(response: gb.Response) -> bool:
     return response.outcome != "done" or any("definite" in each or "not stable" in each for each in response.warnings)
 
 
 def test_the_growth_is_that_of_one_shape() -> None:
     """q̈ = ω²(P/P₁ − 1) q of a column with one shape under a constant load."""
     one = {"counts": (0, 0, 1)}
-    limit = critical_load(column("FOAM", Load(LENGTH, force=(-1.0, 0.0, 0.0)), **one)).value
+    limit = gb.critical_load(column("FOAM", gb.Load(LENGTH, force=(-1.0, 0.0, 0.0)), **one)).value
     assert limit is not None
-    structure = column("FOAM", Load(LENGTH, force=(-1.5 * limit, 0.0, 0.0)), **one)
+    structure = column("FOAM", gb.Load(LENGTH, force=(-1.5 * limit, 0.0, 0.0)), **one)
     time = np.linspace(0, 0.3, 50)
     still = Base(*np.zeros((3, 50, 3)))
     loss = worst_loss(structure, time, still, at_rest(structure, time))
@@ -115,8 +99,8 @@ def test_the_growth_is_that_of_one_shape() -> None:
 
 PUSHES = {
     # An axial load at the tip, dead; along the beam; the base's own push; its weight on a shaker that stands.
-    "Euler": (lambda p: [Load(LENGTH, force=axial(p))], EULER * EI / LENGTH**2, -1.0),
-    "Greenhill": (lambda p: [Load(distributed=axial(p))], GREENHILL * EI / LENGTH**3, -1.0),
+    "Euler": (lambda p: [gb.Load(LENGTH, force=axial(p))], EULER * EI / LENGTH**2, -1.0),
+    "Greenhill": (lambda p: [gb.Load(None, force=axial(p))], GREENHILL * EI / LENGTH**3, -1.0),
     "push": (None, GREENHILL * EI / (LINE * LENGTH**3), 1.0),
 }
 
@@ -127,9 +111,9 @@ def test_a_straight_column_that_is_pressed_too_far_is_lost(kind: str, name: str)
     """The load grows evenly: the loss is at the share that the closed form gives; just below it there is none."""
     loads, critical, sign = PUSHES[name]
     for most, lost in ((0.98, False), (1.25, True)):
-        ramp = SmoothStep(sign * most * critical, 2.0)
+        ramp = gb.SmoothStep(sign * most * critical, 2.0)
         structure = column(kind, *(loads(ramp) if loads else ()), counts=(1, 0, 4))
-        answer = ran(structure, None if loads else Flight(x=ramp, z=constant(0.0)))
+        answer = ran(structure, None if loads else gb.Flight(x=ramp, z=gb.constant(0.0)))
         assert unstable(answer) == lost
         if lost:
             assert answer.outcome == "diverged" and "stiffness is not positive definite from t = " in answer.message
@@ -143,8 +127,10 @@ def test_a_straight_column_that_is_pressed_too_far_is_lost(kind: str, name: str)
 
 def test_an_exact_column_that_gives_way_is_followed() -> None:
     """A small load across decides where it goes: it bends far and rests where it is stable."""
-    ramp = SmoothStep(-1.2 * EULER * EI / LENGTH**2, 1.0)
-    answer = ran(column("exact", Load(LENGTH, force=vector(x=ramp, z=constant(1e-3))), damping=0.05, counts=(1, 0, 4)))
+    ramp = gb.SmoothStep(-1.2 * EULER * EI / LENGTH**2, 1.0)
+    answer = ran(
+        column("exact", gb.Load(LENGTH, force=gb.vector(x=ramp, z=gb.constant(1e-3))), damping=0.05, counts=(1, 0, 4))
+    )
     assert answer.outcome == "done" and not unstable(answer)
     assert np.abs(answer.tip[:, 2]).max() > 0.3 * LENGTH
 
@@ -152,7 +138,7 @@ def test_an_exact_column_that_gives_way_is_followed() -> None:
 @pytest.mark.parametrize(("load", "lost"), [(0.95, False), (1.1, True)])
 def test_a_follower_force_has_no_divergence_but_flutter(load: float, lost: bool) -> None:
     """Eight times Euler's load is nothing to a load that follows; Beck's is its limit."""
-    push = Load(LENGTH, force=(-load * BECK * EI / LENGTH**2, 0.0, 0.0), follower=True)
+    push = gb.Load(LENGTH, force=(-load * BECK * EI / LENGTH**2, 0.0, 0.0), follower=True)
     answer = ran(column("FOAM", push, damping=1e-6))
     assert unstable(answer) == lost
     if lost:
@@ -163,17 +149,17 @@ def test_a_follower_force_has_no_divergence_but_flutter(load: float, lost: bool)
 def test_a_load_that_acts_briefly_is_no_loss(share: float, words: str) -> None:
     """Ten times Euler's load for shares of the first period: nothing has the time to grow a thousandfold."""
     period = 2 * np.pi / OMEGA
-    knock = Sine(-10 * EULER * EI / LENGTH**2, 2 * share * period, start=0.02)  # pushes, then pulls
-    answer = ran(column("FOAM", Load(LENGTH, force=axial(knock)), damping=0.01), duration=0.2)
+    knock = gb.Sine(-10 * EULER * EI / LENGTH**2, 2 * share * period, start=0.02)  # pushes, then pulls
+    answer = ran(column("FOAM", gb.Load(LENGTH, force=axial(knock)), damping=0.01), duration=0.2)
     assert answer.outcome == "done" and unstable(answer) == bool(words)
     assert all(words in each for each in answer.warnings if "definite" in each)
 
 
 def test_a_shaft_above_its_critical_speed_is_held_by_its_spin() -> None:
     """K − Ω²M is indefinite for a round beam that spins about its axis; seen from outside it only spins."""
-    round_beam = Beam(LENGTH, Section.circle(0.004), Material(2700.0, 7e10), damping_ratio=0.0)
-    structure = assemble(round_beam, Model("FOAM", 0, 2, 2))
-    base = Flight(x=0.0, rates=vector(x=constant(1.5 * float(structure.rest[0][0])))).base(
+    round_beam = gb.Beam(LENGTH, gb.Section.circle(0.004), gb.Material(2700.0, 7e10), damping_ratio=0.0)
+    structure = gb.assemble(round_beam, gb.Model("FOAM", 0, 2, 2))
+    base = gb.Flight(x=0.0, rates=gb.vector(x=gb.constant(1.5 * float(structure.rest[0][0])))).base(
         time := np.linspace(0, 1, 20)
     )
     assert (lowest_over_time(structure.coefficients, Drive(*base_of(base))) < 0).all()

@@ -10,29 +10,8 @@ import jax
 import numpy as np
 import pytest
 
-import gbeam.arrays.jax_setup  # noqa: F401
-from gbeam import (
-    Beam,
-    Centrifuge,
-    Flight,
-    Hub,
-    Initial,
-    InputError,
-    Load,
-    Material,
-    Model,
-    PointMass,
-    Section,
-    Sine,
-    SmoothStep,
-    Structure,
-    Sum,
-    assemble,
-    constant,
-    simulate,
-    trapezoid,
-)
-from gbeam.analysis.steady.equilibrium import solve_equilibrium
+import gbeam as gb
+import gbeam.arrays.jax_setup
 from gbeam.arrays.namespace import namespace
 from gbeam.motion import Base
 
@@ -51,19 +30,19 @@ OF_BEAM = {"modulus": E, "density": METAL.density, "damping": 0.2}
 Values = dict[str, Any]
 
 
-def slew(at: Values) -> Hub:
-    return Hub(radius=at["radius"], rate=SmoothStep(at["rate"], 2.0))
+def slew(at: Values) -> gb.Hub:
+    return gb.Hub(radius=at["radius"], rate=gb.SmoothStep(at["rate"], 2.0))
 
 
-def torque(at: Values) -> Hub:
-    return Hub(radius=at["radius"], inertia=at["inertia"], torque=Sine(200.0, 2.0))
+def torque(at: Values) -> gb.Hub:
+    return gb.Hub(radius=at["radius"], inertia=at["inertia"], torque=gb.Sine(200.0, 2.0))
 
 
-def machine(at: Values) -> Centrifuge:
+def machine(at: Values) -> gb.Centrifuge:
     """The load rises, in 0.1 s, when the machine is up to speed."""
-    flight = Flight(z=Sum((constant(2.0), trapezoid(1.0, jerk=10.0, start=0.5037, hold=9.0))))
+    flight = gb.Flight(z=gb.Sum((gb.constant(2.0), gb.trapezoid(1.0, jerk=10.0, start=0.5037, hold=9.0))))
     ends = {"spin_up": 4.0, "spin_down": 4.0}
-    return Centrifuge(flight, arm=at["arm"], control_point=0.1, inverse="flat", gravity=False, smoothing=0.1, **ends)
+    return gb.Centrifuge(flight, arm=at["arm"], control_point=0.1, inverse="flat", gravity=False, smoothing=0.1, **ends)
 
 
 BASES: dict[str, tuple[Callable[[Values], Any], Values]] = {
@@ -78,13 +57,13 @@ def tip_of(kind: str, base: str, *, step: float = 0.02, integrator: str = "gauss
     motion, counts = BASES[base][0], IN_PLANE.get((kind, base)) or KINDS[kind]
 
     def tip(at: Values) -> Any:
-        material = Material(at.get("density", METAL.density), at.get("modulus", E))
+        material = gb.Material(at.get("density", METAL.density), at.get("modulus", E))
         damping = at.get("damping", 0.2)
         length, section, mass = (0.3, STRIP, 0.01) if base == "machine" else (LENGTH, BOX, 0.1)
-        beam = Beam(length, section, material, [PointMass(length, mass)], damping_ratio=damping)
-        structure = assemble(beam, Model(kind, *counts))
+        beam = gb.Beam(length, section, material, [gb.PointMass(length, mass)], damping_ratio=damping)
+        structure = gb.assemble(beam, gb.Model(kind, *counts))
         how = {"step": step, "integrator": integrator, "estimate": False, "loads": False}
-        response = simulate(structure, motion(at), duration=3.0, **how)
+        response = gb.simulate(structure, motion(at), duration=3.0, **how)
         return (response.tip / length).sum(axis=1)
 
     return tip
@@ -129,10 +108,10 @@ def test_steps_that_jax_does_not_fit_have_a_derivative_of_fourth_order() -> None
     """Against a central difference of runs without JAX, in short steps."""
 
     def tip(modulus: Any, step: float) -> Any:
-        beam = Beam(0.3, STRIP, Material(METAL.density, modulus), damping_ratio=0.01)
-        how = {"duration": 0.1, "step": step, "initial": Initial(tip_displacement={"z": 0.02})}
-        hub = Hub(radius=HUB_RADIUS, rate=constant(1.0))
-        return simulate(assemble(beam, Model("FOAM", z=1)), hub, estimate=False, loads=False, **how).tip[-1, 2]
+        beam = gb.Beam(0.3, STRIP, gb.Material(METAL.density, modulus), damping_ratio=0.01)
+        how = {"duration": 0.1, "step": step, "initial": gb.Initial(tip_displacement={"z": 0.02})}
+        hub = gb.Hub(radius=HUB_RADIUS, rate=gb.constant(1.0))
+        return gb.simulate(gb.assemble(beam, gb.Model("FOAM", z=1)), hub, estimate=False, loads=False, **how).tip[-1, 2]
 
     wanted = (float(tip(1.001 * E, 1e-4)) - float(tip(0.999 * E, 1e-4))) / (0.002 * E)
     slopes = [quickly_compiled(jax.grad(partial(tip, step=step)))(E) for step in (2.5e-3, 1.25e-3)]
@@ -157,13 +136,13 @@ def test_derivatives_of_where_a_loaded_beam_rests(kind: str) -> None:
     """With respect to the modulus, a force and the acceleration of the root."""
 
     def tip(at: Values) -> Any:
-        load = Load(LENGTH, force=[0.0, at["force"], 2.0])
-        structure = assemble(
-            Beam(LENGTH, BOX, Material(METAL.density, at["modulus"]), loads=[load]), Model(kind, *KINDS[kind])
+        load = gb.Load(LENGTH, force=[0.0, at["force"], 2.0])
+        structure = gb.assemble(
+            gb.Beam(LENGTH, BOX, gb.Material(METAL.density, at["modulus"]), loads=[load]), gb.Model(kind, *KINDS[kind])
         )
         nothing = np.zeros(3)
         base = Base(namespace(at["pull"]).stack([0.3, at["pull"], 0.2]), nothing, nothing)
-        return structure.tip(solve_equilibrium(structure, base).q)[1] * 100
+        return structure.tip(gb.solve_equilibrium(structure, base).q)[1] * 100
 
     agree(tip, {"modulus": E, "force": 1.5, "pull": 2.0})
 
@@ -175,24 +154,24 @@ def test_derivatives_of_a_run_from_a_displaced_tip(kind: str) -> None:
     rest = [0.02] * (sum(counts) - 1)
 
     def tip(at: Values) -> Any:
-        beam = Beam(0.3, STRIP, Material(METAL.density, at["modulus"]), damping_ratio=[at["first"], *rest])
-        initial = Initial(tip_displacement={"z": 0.02}, tip_velocity={"z": 0.2})
-        hub = Hub(radius=HUB_RADIUS, rate=constant(1.0))
+        beam = gb.Beam(0.3, STRIP, gb.Material(METAL.density, at["modulus"]), damping_ratio=[at["first"], *rest])
+        initial = gb.Initial(tip_displacement={"z": 0.02}, tip_velocity={"z": 0.2})
+        hub = gb.Hub(radius=HUB_RADIUS, rate=gb.constant(1.0))
         how = {"duration": 0.1, "step": 0.005, "initial": initial, "integrator": SAME}
-        response = simulate(assemble(beam, Model(kind, *counts)), hub, **how)
+        response = gb.simulate(gb.assemble(beam, gb.Model(kind, *counts)), hub, **how)
         return (response.tip[5:] ** 2).sum()
 
     agree(tip, {"modulus": E, "first": 0.01})
 
 
-SECTIONS: dict[str, tuple[Callable[..., Section], Values]] = {
+SECTIONS: dict[str, tuple[Callable[..., gb.Section], Values]] = {
     "tapered": (
-        lambda width, thickness: Section.rectangle([width, 0.01], [thickness, 0.5 * thickness], [0.0, 0.3]),
+        lambda width, thickness: gb.Section.rectangle([width, 0.01], [thickness, 0.5 * thickness], [0.0, 0.3]),
         {"width": 0.02, "thickness": 0.004},
     ),
-    "tube": (Section.tube, {"diameter": 0.01, "wall": 0.001}),
+    "tube": (gb.Section.tube, {"diameter": 0.01, "wall": 0.001}),
     "general": (
-        lambda area, bent, twisted, sheared: Section.general(
+        lambda area, bent, twisted, sheared: gb.Section.general(
             area, bent, 3e-9, torsion_constant=twisted, shear_coefficient_y=0.8, shear_coefficient_z=sheared
         ),
         {"area": 8e-5, "bent": 1e-10, "twisted": 4e-10, "sheared": 0.8},
@@ -206,13 +185,13 @@ def test_derivatives_with_respect_to_a_section_that_twists_and_shears(shape: str
     section, at = SECTIONS[shape]
 
     def tip(at: Values) -> Any:
-        material = Material(2700.0, E, poissons_ratio=at["ratio"])
-        aside = PointMass(0.3, 0.05, offset=(0.0, 0.02, 0.01))
-        beam = Beam(0.3, section(**{k: at[k] for k in at if k != "ratio"}), material, [aside], damping_ratio=0.01)
-        structure = assemble(beam, "FOAM", z=1, twist=1, shear_z=1)
+        material = gb.Material(2700.0, E, poissons_ratio=at["ratio"])
+        aside = gb.PointMass(0.3, 0.05, offset=(0.0, 0.02, 0.01))
+        beam = gb.Beam(0.3, section(**{k: at[k] for k in at if k != "ratio"}), material, [aside], damping_ratio=0.01)
+        structure = gb.assemble(beam, "FOAM", z=1, twist=1, shear_z=1)
         how = {"duration": 0.1, "step": 0.005, "initial": "undeformed", "estimate": False, "loads": False}
         how |= {"integrator": SAME}
-        response = simulate(structure, Flight(z=Sine(30.0, 12.0)), **how)
+        response = gb.simulate(structure, gb.Flight(z=gb.Sine(30.0, 12.0)), **how)
         return (response.tip[-5:] @ np.array([1.0, 2.0, 3.0]) * 1e3).sum()
 
     agree(tip, at | {"ratio": 0.33})
@@ -221,7 +200,7 @@ def test_derivatives_with_respect_to_a_section_that_twists_and_shears(shape: str
 OF_MATRICES = {"stretched": 5.6e6, "bent": 7.0, "twisted": 3.0, "mass": 0.2, "aside": 2e-3, "turned": 7e-6}
 
 
-def by_matrices(at: Values, kind: Any) -> Structure:
+def by_matrices(at: Values, kind: Any) -> gb.Structure:
     """A beam that couples stretch, twist and bending, with the mass beside its axis and half as much of all at the tip;
     its slices are as thick as "lengthwise" says.
     """
@@ -235,8 +214,8 @@ def by_matrices(at: Values, kind: Any) -> Structure:
     about = about - at.get("lengthwise", 0.0) * np.diag([1.0, 0.0, 0.0])
     mass = xp.block([[each, at["mass"] * lever], [at["mass"] * lever.T, about + at["mass"] * lever @ lever.T]])
     both = (xp.stack([matrix, 0.5 * matrix]) for matrix in (stiffness, mass))
-    beam = Beam(0.3, Section.of_matrices(*both, stations=[0.0, 0.3]), damping_ratio=0.01, rotary_inertia=True)
-    return assemble(beam, kind, y=1, z=1, twist=1)
+    beam = gb.Beam(0.3, gb.Section.of_matrices(*both, stations=[0.0, 0.3]), damping_ratio=0.01, rotary_inertia=True)
+    return gb.assemble(beam, kind, y=1, z=1, twist=1)
 
 
 @pytest.mark.parametrize(("kind", "of_slices"), [("FOAM", {}), ("exact", {"lengthwise": 3e-6})])
@@ -246,7 +225,7 @@ def test_derivatives_with_respect_to_a_sections_matrices(kind: str, of_slices: V
     def tip(at: Values) -> Any:
         how = {"duration": 0.1, "step": 0.005, "initial": "undeformed", "estimate": False, "loads": False}
         how |= {"integrator": SAME}
-        response = simulate(by_matrices(at, kind), Hub(radius=HUB_RADIUS, rate=SmoothStep(10.0, 0.1)), **how)
+        response = gb.simulate(by_matrices(at, kind), gb.Hub(radius=HUB_RADIUS, rate=gb.SmoothStep(10.0, 0.1)), **how)
         return (response.tip[-5:] @ np.array([1.0, 2.0, 3.0]) * 1e3).sum()
 
     agree(tip, OF_MATRICES | of_slices)
@@ -263,30 +242,30 @@ def test_slices_without_thickness_have_a_derivative_with_respect_to_it() -> None
 
 def test_a_held_target_is_turned_by_the_arms_number() -> None:
     def turned(arm: Any) -> Any:
-        flight = Flight(z=Sine(20.0, 1.0))
-        held = Centrifuge(flight, arm=arm, control_point=0.1, gravity=False, smoothing=0.1, idle=20.0)
+        flight = gb.Flight(z=gb.Sine(20.0, 1.0))
+        held = gb.Centrifuge(flight, arm=arm, control_point=0.1, gravity=False, smoothing=0.1, idle=20.0)
         return held.over(0.0, 3.0).base(1.0).a_WO_B.sum()
 
-    with pytest.raises(InputError, match="arm is traced by JAX, and by its number the target turns"):
+    with pytest.raises(gb.InputError, match="arm is traced by JAX, and by its number the target turns"):
         quickly_compiled(jax.grad(turned))(3.3)
 
 
 @pytest.mark.parametrize(
     ("beam", "words"),
     [
-        (lambda x: Beam(x, STRIP, ALUMINIUM), "length is traced by JAX"),
-        (lambda x: Beam(0.3, STRIP, ALUMINIUM, [PointMass(x, 0.1)]), r"masses\[0\].at is traced by JAX"),
+        (lambda x: gb.Beam(x, STRIP, ALUMINIUM), "length is traced by JAX"),
+        (lambda x: gb.Beam(0.3, STRIP, ALUMINIUM, [gb.PointMass(x, 0.1)]), r"masses\[0\].at is traced by JAX"),
     ],
 )
 def test_what_places_the_shapes_cannot_be_traced(beam: Any, words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        jax.grad(lambda x: assemble(beam(x), "FOAM", z=2).coefficients.mass.sum())(0.25)
+    with pytest.raises(gb.InputError, match=words):
+        jax.grad(lambda x: gb.assemble(beam(x), "FOAM", z=2).coefficients.mass.sum())(0.25)
 
 
 def test_adapted_shapes_cannot_be_traced() -> None:
     def stiffness(modulus: Any) -> Any:
-        beam = Beam(0.3, STRIP, Material(2700.0, modulus))
-        return assemble(beam, "FOAM", z=2, shapes="adapted").coefficients.stiffness.sum()
+        beam = gb.Beam(0.3, STRIP, gb.Material(2700.0, modulus))
+        return gb.assemble(beam, "FOAM", z=2, shapes="adapted").coefficients.stiffness.sum()
 
-    with pytest.raises(InputError, match="shapes adapted to a beam that JAX traces"):
+    with pytest.raises(gb.InputError, match="shapes adapted to a beam that JAX traces"):
         quickly_compiled(jax.grad(stiffness))(70e9)

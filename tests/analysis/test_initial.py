@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam import Flight, Hub, Initial, InputError, Response, Structure, modes, simulate, static
+from gbeam import Flight, Hub, Initial, InputError, Response, Structure, System, modes, simulate, static
 from gbeam.analysis.system.start import started
-from gbeam.mechanics.tree.system import System
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST

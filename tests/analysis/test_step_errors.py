@@ -15,10 +15,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from gbeam import Flight, Hub, Response, Sine, SmoothStep, Structure, simulate, smoothed, tabulated, trapezoid
+import gbeam as gb
 from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.analysis.response.posed import Posed, pose, prepared
-from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.step_errors import observed_order
 from gbeam.analysis.response.stepping import answered, refine
 from gbeam.integrate.equations import Trajectory
@@ -31,28 +30,28 @@ BOUND = 3.0  # times the estimate bound the error
 SOFT, STIFF = strip("FOAM", (0, 2, 0), 0.01), strip("FOAM", (0, 0, 2), 0.01)
 RECORD = np.cumsum(np.random.default_rng(3).normal(size=13)) * 3
 # Structure, motion, duration, corners that the reference starts anew at.
-CASES: dict[str, tuple[Structure, Any, float, list[float]]] = {
-    "sine of a hub's rate": (SOFT, Hub(radius=0.1, rate=Sine(3.0, 0.0751)), 0.12, [0.0751]),
+CASES: dict[str, tuple[gb.Structure, Any, float, list[float]]] = {
+    "sine of a hub's rate": (SOFT, gb.Hub(radius=0.1, rate=gb.Sine(3.0, 0.0751)), 0.12, [0.0751]),
     "trapezoid of a hub's rate": (
         SOFT,
-        Hub(radius=0.1, rate=trapezoid(1.0, jerk=37.0, start=0.0111, hold=0.03)),
+        gb.Hub(radius=0.1, rate=gb.trapezoid(1.0, jerk=37.0, start=0.0111, hold=0.03)),
         0.12,
         [0.0111, 0.0111 + 1 / 37, 0.0411 + 1 / 37, 0.0411 + 2 / 37],
     ),
-    "kick": (STIFF, Flight(z=tabulated([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])), 0.15, [0.002]),
+    "kick": (STIFF, gb.Flight(z=gb.tabulated([0.0, 0.002, 1.0], [0.0, 50.0, 50.0])), 0.15, [0.002]),
     "record": (
         STIFF,
-        Flight(z=tabulated(np.arange(13) / 30, RECORD - RECORD[0])),
+        gb.Flight(z=gb.tabulated(np.arange(13) / 30, RECORD - RECORD[0])),
         0.39,
         list(np.arange(1, 12) / 30),
     ),
     "rounded pulse": (
         STIFF,
-        Flight(z=smoothed(tabulated([0, 0.5, 0.5003, 0.5006, 2], [0, 0, 400, 0, 0]), 0.0004)),
+        gb.Flight(z=gb.smoothed(gb.tabulated([0, 0.5, 0.5003, 0.5006, 2], [0, 0, 400, 0, 0]), 0.0004)),
         0.55,
         [0.4998, 0.5001, 0.5002, 0.5004, 0.5005, 0.5008],
     ),
-    "short slew": (SOFT, Hub(radius=0.1, rate=SmoothStep(2.0, 0.001, 0.1)), 0.12, [0.1, 0.101]),
+    "short slew": (SOFT, gb.Hub(radius=0.1, rate=gb.SmoothStep(2.0, 0.001, 0.1)), 0.12, [0.1, 0.101]),
 }
 INTEGRATORS = ["newmark", "generalized-alpha", "gauss"]
 
@@ -71,7 +70,7 @@ INTEGRALS = np.stack(
 
 def posed(name: str) -> Posed:
     structure, motion, duration, _ = CASES[name]
-    settings = ResponseSettings(duration)
+    settings = gb.ResponseSettings(duration)
     return pose(prepared(structure, motion, settings), settings, duration / 100)
 
 
@@ -135,7 +134,7 @@ def apart(values: np.ndarray, reference: np.ndarray) -> float:
     return float(np.linalg.norm(values - reference, axis=-1).max() / np.linalg.norm(reference, axis=-1).max())
 
 
-def judge(response: Response, name: str) -> None:
+def judge(response: gb.Response, name: str) -> None:
     tip, loads = truth(name, response.time)
     assert response.loads is not None
     error, estimate = apart(response.tip, tip), response.errors.displacement.step
@@ -156,7 +155,7 @@ def judge(response: Response, name: str) -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_an_automatic_step_keeps_its_tolerance(name: str, integrator: str) -> None:
     structure, motion, duration, _ = CASES[name]
-    response = simulate(structure, motion, duration=duration, integrator=integrator, tolerance=1e-3)
+    response = gb.simulate(structure, motion, duration=duration, integrator=integrator, tolerance=1e-3)
     judge(response, name)
     assert response.errors.displacement.step <= 1e-4
     assert apart(response.tip, truth(name, response.time)[0]) <= 2e-4
@@ -169,7 +168,7 @@ def test_a_given_step_has_an_honest_error(name: str, integrator: str) -> None:
     """However coarse: the order is observed, not taken on trust."""
     structure, motion, duration, _ = CASES[name]
     for share in (400, 1600):
-        judge(simulate(structure, motion, duration=duration, integrator=integrator, step=duration / share), name)
+        judge(gb.simulate(structure, motion, duration=duration, integrator=integrator, step=duration / share), name)
 
 
 @pytest.mark.parametrize("name", ["short slew", "kick", "sine of a hub's rate"])
@@ -178,7 +177,7 @@ def test_steps_that_end_at_corners_keep_the_order_of_gauss(name: str) -> None:
     structure, motion, duration, _ = CASES[name]
     errors = []
     for count in (3200, 6400):  # so many that steps see the short slew alike
-        response = simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
+        response = gb.simulate(structure, motion, duration=duration, integrator="gauss", step=duration / count)
         errors.append(apart(response.tip, truth(name, response.time)[0]))
     order = np.log2(errors[0] / errors[1])
     assert order > 3.8 and (order < 4.2 or name == "sine of a hub's rate")
@@ -188,9 +187,9 @@ def test_loads_that_a_jump_excites_are_followed_or_the_run_says_what_follows_the
     """The axial mode is nothing in the tip's displacement, and a quarter of the root's force."""
     structure, motion = integrators.strip("FOAM", 0.0), integrators.JERK
     answer, rough = (
-        simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("gauss", "newmark")
+        gb.simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("gauss", "newmark")
     )
-    truth = simulate(structure, motion, duration=0.12, integrator="gauss", step=answer.step / 2, estimate=False)
+    truth = gb.simulate(structure, motion, duration=0.12, integrator="gauss", step=answer.step / 2, estimate=False)
     assert answer.loads is not None and truth.loads is not None
     stride = round(answer.time[1] / truth.step)
     error = apart(answer.loads.root_force, truth.loads.root_force[::stride])
@@ -204,7 +203,7 @@ def test_a_run_of_very_many_steps_says_why_and_what_needs_fewer() -> None:
     """An undamped vibration goes on for 22 cycles after a jump: a scheme of second order delays it."""
     structure, motion = strip("FOAM", (0, 2, 0)), CASES["sine of a hub's rate"][1]
     many, few = (
-        simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("newmark", "gauss")
+        gb.simulate(structure, motion, duration=0.12, integrator=integrator) for integrator in ("newmark", "gauss")
     )
     assert many.steps > 10 * few.steps and max(each.errors.displacement.step for each in (many, few)) <= 1e-4
     assert any(f"took {many.steps} steps" in each and "gauss" in each for each in many.warnings)
@@ -213,7 +212,7 @@ def test_a_run_of_very_many_steps_says_why_and_what_needs_fewer() -> None:
 
 def test_a_step_found_by_a_large_jump_is_checked() -> None:
     """Of a mode that coarse steps do not resolve at all, they do not show how its error falls."""
-    settings, slow, fast, resolved = ResponseSettings(duration=10.0), 9.0, 4e-4, 0.005
+    settings, slow, fast, resolved = gb.ResponseSettings(duration=10.0), 9.0, 4e-4, 0.005
 
     def error(step: float) -> float:
         return slow * step**2 + fast * min(1.0, step / resolved) ** 2
