@@ -47,7 +47,7 @@ MOTIONS: dict[str, tuple[Structure, Any, float]] = {
 def found_and_finer(name: str) -> tuple[Response, Response]:
     """A response, and one of a quarter of its step."""
     structure, motion, duration = MOTIONS[name]
-    response = simulate(structure, motion, duration=duration, tolerance=TOLERANCE)
+    response = simulate(structure, motion, duration=duration, tolerance=TOLERANCE, estimate=False)
     return response, simulate(structure, motion, duration=duration, step=response.step / 4, estimate=False)
 
 
@@ -84,8 +84,9 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
 def test_peaks_of_loads_are_found_between_the_steps_kept(name: str) -> None:
     """Against all loads of the same steps, many of newmark's, sampled; the response keeps some of them only."""
     structure, motion, duration = MOTIONS[name]
-    kept = simulate(structure, motion, duration=duration, integrator="newmark", tolerance=1e-5)
-    whole = simulate(structure, motion, duration=duration, integrator="newmark", step=kept.step, estimate=False)
+    how = {"duration": duration, "integrator": "newmark", "estimate": False}
+    kept = simulate(structure, motion, tolerance=1e-5, **how)
+    whole = simulate(structure, motion, step=kept.step, **how)
     assert len(whole.time) > 2 * len(kept.time)
     assert kept.peaks.loads is not None and whole.loads is not None and kept.loads is not None
     for peaks, history, sparse in (
