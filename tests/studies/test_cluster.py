@@ -15,7 +15,6 @@ from typing import Any
 import pytest
 
 import gbeam as gb
-from gbeam.errors import ComputationError, InputError
 
 dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
@@ -143,7 +142,7 @@ def test_workers_started_by_hand_lose_no_case_when_one_is_killed(
     monkeypatch.setattr("gbeam.studies.sweep._LONGEST", 1)
     with monkeypatch.context() as patch:
         patch.setattr("gbeam.studies.workers.CONNECTION", 1.0)
-        with pytest.raises(InputError, match="has no workers; start some with: dask worker"):
+        with pytest.raises(gb.InputError, match="has no workers; start some with: dask worker"):
             gb.sweep(fast, LEVELS, TIP, verb="static", scheduler=by_hand.address)
     by_hand.two()
     whole = gb.sweep(fast, LENGTHS, {"length": measures.slow})
@@ -155,7 +154,7 @@ def test_workers_started_by_hand_lose_no_case_when_one_is_killed(
     Path("other.py").write_text("import gbeam\ngbeam.__version__ = '0.0.1'\n", encoding="utf-8")
     by_hand.worker("--preload", str(Path("other.py").resolve()), "--name", "stranger")
     by_hand.wait(2)
-    with pytest.raises(InputError, match=r"the worker tcp://\S+ has gbeam 0\.0\.1, and this is") as refused:
+    with pytest.raises(gb.InputError, match=r"the worker tcp://\S+ has gbeam 0\.0\.1, and this is") as refused:
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, scheduler=by_hand.address)
     assert "same version everywhere" in refused.value.fix
 
@@ -180,10 +179,10 @@ def test_a_driver_and_a_scheduler_that_are_killed_are_resumed(
     whole = gb.sweep(fast, LENGTHS, {"length": measures.slow})
     arguments: dict[str, Any] = {"store": "there", "resume": True, "scheduler": by_hand.address}
     kill = after(first + 5, by_hand.scheduler.kill)
-    with pytest.raises(ComputationError, match=r"the scheduler at \S+ is lost .*--resume does the rest"):
+    with pytest.raises(gb.ComputationError, match=r"the scheduler at \S+ is lost .*--resume does the rest"):
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments, progress=kill)
     assert first < journal.read_bytes().count(b"\n") < 25
-    with pytest.raises(InputError, match="does not answer"):
+    with pytest.raises(gb.InputError, match="does not answer"):
         monkeypatch.setattr("gbeam.studies.workers.CONNECTION", 0.5)
         gb.sweep(fast, LENGTHS, {"length": measures.slow}, **arguments)
     swept = gb.sweep(fast, LENGTHS, {"length": measures.slow}, store="there", resume=True)

@@ -21,7 +21,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import DataObject, binary, data, integers, just, one_of
 
 import gbeam as gb
-from gbeam.errors import InputError
 from gbeam.studies.journal import NAME, Journal
 
 from ..scenarios import FAST
@@ -103,12 +102,12 @@ def test_a_disk_that_is_full_in_the_middle_of_a_line(fast: Path, gbeam: Call, mo
 
 def test_another_sweeps_store_is_refused_by_what_differs(fast: Path) -> None:
     gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
-    with pytest.raises(InputError, match="its measures differs"):
+    with pytest.raises(gb.InputError, match="its measures differs"):
         gb.sweep(fast, OVER, ["flight.tip.x"], **STATIC, store="there", resume=True)
-    with pytest.raises(InputError, match="its values and cases differ"):
+    with pytest.raises(gb.InputError, match="its values and cases differ"):
         gb.sweep(fast, ["motion.flight.acceleration.z.level=2 g:8 g:20"], MEASURE, **STATIC, store="there", resume=True)
     Path("there/cases.jsonl").write_text("something else\n", encoding="utf-8")
-    with pytest.raises(InputError, match="not the store of a sweep"):
+    with pytest.raises(gb.InputError, match="not the store of a sweep"):
         gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
 
 
@@ -122,10 +121,10 @@ def test_a_store_that_is_being_written_is_refused(fast: Path) -> None:
     assert process.stdout is not None and process.stdout.readline() == b"held\n"
     who = f"process {process.pid} on {platform.node()}"
     assert lock.read_text(encoding="utf-8").strip() == who
-    with pytest.raises(InputError, match=f"--out there is in use by {re.escape(who)}; wait"):
+    with pytest.raises(gb.InputError, match=f"--out there is in use by {re.escape(who)}; wait"):
         gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
     lock.write_text("", encoding="utf-8")  # as it is for a moment
-    with pytest.raises(InputError, match="in use by another process; wait"):
+    with pytest.raises(gb.InputError, match="in use by another process; wait"):
         gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
     process.kill()
     process.wait()
@@ -199,7 +198,7 @@ def test_a_sweep_that_was_begun_in_the_meantime_is_not_lost(
         begin(self, resume)
 
     monkeypatch.setattr(Journal, "_begin", later)
-    with pytest.raises(InputError, match="holds a sweep that is not finished"):
+    with pytest.raises(gb.InputError, match="holds a sweep that is not finished"):
         gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
     assert journal.read_bytes() == begun
 
@@ -256,7 +255,7 @@ def test_no_damage_of_a_store_changes_a_figure(fast: Path, whole: Whole, draw: D
     journal.write_bytes(text[:at] + inside + text[at + size :])
     try:
         swept = gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
-    except InputError as error:
+    except gb.InputError as error:
         assert error.where == "--out"
         return
     assert np.array_equal(swept.measures["flight.tip.z"], whole[0]) and swept.counts == {"done": 40}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from gbeam.errors import InputError
+import gbeam as gb
 from gbeam.studies.cases import read_cases, read_variation
 
 
@@ -53,13 +53,13 @@ def test_a_range_or_a_list(text: str, texts: tuple[str, ...], unit: str) -> None
     ],
 )
 def test_what_cannot_be_read_is_refused_with_its_path(text: str, problem: str) -> None:
-    with pytest.raises(InputError) as refused:
+    with pytest.raises(gb.InputError) as refused:
         read_variation(text)
     assert problem in str(refused.value) and refused.value.fix
 
 
 def test_a_misspelt_distribution_is_guessed() -> None:
-    with pytest.raises(InputError, match="did you mean 'normal'"):
+    with pytest.raises(gb.InputError, match="did you mean 'normal'"):
         read_variation("arm=norml(1, 2)")
 
 
@@ -104,10 +104,10 @@ def test_a_grid_and_samples_make_both() -> None:
     ],
 )
 def test_wrong_together(over: list[str], samples: int | None, problem: str) -> None:
-    with pytest.raises(InputError, match=problem):
+    with pytest.raises(gb.InputError, match=problem):
         read_cases(over, samples)
 
 
 def test_a_seed_below_zero_is_refused() -> None:
-    with pytest.raises(InputError, match="--seed is -1"):
+    with pytest.raises(gb.InputError, match="--seed is -1"):
         read_cases(["a=uniform(0, 1)"], 4, seed=-1)
