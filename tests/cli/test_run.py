@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.analysis.response import simulation
 from gbeam.cli import main
-from gbeam.errors import ComputationError
-from gbeam.results.response import Response
 
 from ..files import opened
 from ..scenarios import FAST, RAMPS
@@ -134,7 +133,7 @@ def pulls(tmp_path_factory: pytest.TempPathFactory) -> Any:
     file = tmp_path_factory.mktemp("pulls") / "pulls.toml"
     file.write_text(text.replace('duration = "0.5 s"', 'duration = "6 s"\nintegrator = "gauss"'), encoding="utf-8")
     with contextlib.redirect_stdout(io.StringIO()) as out:
-        main(["run", str(file), "--json"])
+        main(["run", str(file), "--set", "response.estimate=false", "--json"])
     return json.loads(out.getvalue())
 
 
@@ -219,7 +218,7 @@ def test_diverged_in_words(fast: Path, gbeam: Call) -> None:
 
 def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
-        raise ComputationError("not converged", "motion.flight: no relative equilibrium; use exact")
+        raise gb.ComputationError("not converged", "motion.flight: no relative equilibrium; use exact")
 
     monkeypatch.setattr("gbeam.analysis.environments.study", fail)
     answer = gbeam("run", fast, "--json", "--out", "there")
@@ -230,9 +229,9 @@ def test_no_result_leaves_no_files(fast: Path, gbeam: Call, monkeypatch: pytest.
 
 
 def test_what_one_motion_lacks_the_others_keep(fast: Path, gbeam: Call, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*args: Any, name: str, **how: Any) -> Response:
+    def fail(*args: Any, name: str, **how: Any) -> gb.Response:
         if name == "spin":
-            raise ComputationError("not converged", "no relative equilibrium; use exact")
+            raise gb.ComputationError("not converged", "no relative equilibrium; use exact")
         return simulation.simulate(*args, name=name, **how)
 
     monkeypatch.setattr("gbeam.analysis.environments.simulate", fail)

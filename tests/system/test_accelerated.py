@@ -142,7 +142,7 @@ def test_a_craft_on_two_rotors(kind: str) -> None:
     assert climb.coordinate == "air.z" and climb.acceleration == pytest.approx(felt - 9.81, rel=1e-4)
     sag = thrust * LENGTH**3 / 3 / EI - LINEAR * felt * LENGTH**4 / 8 / EI
     assert rest.at("right.tip")[2] == pytest.approx(sag, rel=2e-3) and rest.errors.displacement.total < 2e-3
-    response = gb.simulate(system, duration=0.2, step=2e-3, initial="relief")
+    response = gb.simulate(system, duration=0.2, step=2e-3, initial="relief", estimate=False)
     elastic = [k for k, name in enumerate(response.coordinates) if ".q" in name]
     assert np.abs(response.q[:, elastic] - rest.q[elastic]).max() < 1e-9 * np.abs(rest.q[elastic]).max()
     assert response.at("hub.root")[-1, 2] == pytest.approx(climb.acceleration * 0.02, rel=1e-6)

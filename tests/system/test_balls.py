@@ -61,7 +61,7 @@ def test_springs_and_stops_are_the_slope_of_their_energy(kind: str) -> None:
 def test_a_sprung_and_stopped_ball_keeps_its_energy() -> None:
     about = {"stiffness": SPRINGS, "stops": {"rx": (-0.2, 0.3)}, "stop_stiffness": {"rx": 30.0}}
     swinging = on_ball(ROD, initial={"rx": 0.1, "ry": -0.5}, initial_rate={"wx": 2.0, "wz": -1.0}, **about)
-    response = gb.simulate(swinging, duration=2.0, step=2e-4)
+    response = gb.simulate(swinging, duration=2.0, step=2e-4, estimate=False)
     assert response.invariants is not None and response.invariants.energy_change < 1e-6  # the stop bends within a step
     assert response.signal("ball.rx").max() > 0.3
     free = gb.simulate(on_ball(ROD, stiffness=SPRINGS, initial={"ry": -0.5}, initial_rate={"wz": -1.0}), duration=2.0)
