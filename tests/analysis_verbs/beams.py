@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from gbeam import Beam, Material, Model, PointMass, Section, Structure, assemble
-from gbeam.motion import Hub, Sine, constant
+from gbeam import Beam, Hub, Material, Model, PointMass, Section, Sine, Structure, assemble, constant
 
 AREA = 1e-2
 HUB = Hub(radius=0.0, rate=constant(1.0))

@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gbeam import InputError, Model, assemble
-from gbeam.analysis.steady.campbell import campbell
-from gbeam.analysis.steady.modal import modes
-from gbeam.analysis.steady.stability import critical_speed_map
-from gbeam.motion import Flight, Hub, constant
+from gbeam import Flight, Hub, InputError, Model, assemble, campbell, constant, critical_speed_map, modes
 from gbeam.results.facts import json_of
 
 from .beams import HUB, HUB_2009, beam_2009, slender

@@ -11,44 +11,29 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import jv
 
-from gbeam import (
-    Beam,
-    InputError,
-    Load,
-    Material,
-    Model,
-    Section,
-    assemble,
-    critical_load,
-    linearize,
-    simulate,
-    static,
-)
-from gbeam.analysis.steady.modal import modes
-from gbeam.analysis.steady.stability import buckling_acceleration, critical_speed
-from gbeam.motion import Flight, Hub, SmoothStep, constant, vector
+import gbeam as gb
 
 from .beams import slender
 
 BECK, BECK_FREQUENCY, LEIPHOLZ = 20.0509536, 11.0156, 40.0537
 GREENHILL = 9 / 4 * brentq(lambda z: jv(-1 / 3, z), 1.5, 2.2) ** 2
 MODELS = {
-    "FOAM": Model("FOAM", 1, 0, 8),
-    "SFOAM": Model("SFOAM", 0, 0, 8),
-    "CFOAM": Model("CFOAM", 1, 0, 6),
-    "exact": Model("exact", 1, 0, 7),
+    "FOAM": gb.Model("FOAM", 1, 0, 8),
+    "SFOAM": gb.Model("SFOAM", 0, 0, 8),
+    "CFOAM": gb.Model("CFOAM", 1, 0, 6),
+    "exact": gb.Model("exact", 1, 0, 7),
 }
 
 
-def column(model: Model, *loads: Load, damping: float = 0.0):
+def column(model: gb.Model, *loads: gb.Load, damping: float = 0.0):
     """ρA = EI = L = 1."""
-    section, material = Section.general(1e-2, 1e-8, 1e-8), Material(1e2, 1e8)
-    return assemble(Beam(1.0, section, material, damping_ratio=damping, loads=loads), model)
+    section, material = gb.Section.general(1e-2, 1e-8, 1e-8), gb.Material(1e2, 1e8)
+    return gb.assemble(gb.Beam(1.0, section, material, damping_ratio=damping, loads=loads), model)
 
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_euler(kind):
-    critical = critical_load(column(MODELS[kind], Load(1.0, force=(-0.5, 0.0, 0.0))))
+    critical = gb.critical_load(column(MODELS[kind], gb.Load(1.0, force=(-0.5, 0.0, 0.0))))
     assert critical.frame == "ground"
     # Clamped-free shapes know nothing of the load and converge slowly; polynomials at once.
     assert critical.value == pytest.approx(2 * np.pi**2 / 4, rel=1e-5 if kind == "exact" else 6e-4)
@@ -58,8 +43,8 @@ def test_euler(kind):
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_beck(kind):
-    structure = column(MODELS[kind], Load(1.0, force=(-1.0, 0.0, 0.0), follower=True))
-    critical = critical_load(structure)
+    structure = column(MODELS[kind], gb.Load(1.0, force=(-1.0, 0.0, 0.0), follower=True))
+    critical = gb.critical_load(structure)
     assert critical.value == pytest.approx(BECK, rel=3e-5 if kind == "exact" else 4e-4)
     assert (critical.kind, critical.direction) == ("flutter", "z")
     assert critical.errors.slender == pytest.approx(abs(critical.value / BECK - 1), rel=0.1, abs=3e-5)
@@ -68,9 +53,9 @@ def test_beck(kind):
 def test_becks_two_modes_meet():
     """Just below the critical load two frequencies are nearly one; above it `modes` says flutter."""
     close, beyond = (
-        modes(
-            column(MODELS["exact"], Load(1.0, force=(-share * BECK, 0.0, 0.0), follower=True)),
-            Flight(z=constant(0.0)),
+        gb.modes(
+            column(MODELS["exact"], gb.Load(1.0, force=(-share * BECK, 0.0, 0.0), follower=True)),
+            gb.Flight(z=gb.constant(0.0)),
             0.0,
         )
         for share in (0.99999, 1.001)
@@ -80,13 +65,13 @@ def test_becks_two_modes_meet():
 
 
 def test_leipholz():
-    structure = column(MODELS["exact"], Load(distributed=(-1.0, 0.0, 0.0), follower=True))
-    critical = critical_load(structure)
+    structure = column(MODELS["exact"], gb.Load(None, force=(-1.0, 0.0, 0.0), follower=True))
+    critical = gb.critical_load(structure)
     assert critical.value == pytest.approx(LEIPHOLZ, rel=1e-4) and critical.kind == "flutter"
 
 
 def test_a_dead_load_along_the_beam_is_greenhills():
-    critical = critical_load(column(MODELS["FOAM"], Load(distributed=(-1.0, 0.0, 0.0))))
+    critical = gb.critical_load(column(MODELS["FOAM"], gb.Load(None, force=(-1.0, 0.0, 0.0))))
     assert critical.value == pytest.approx(GREENHILL, rel=2e-5)
     assert pytest.approx(7.8373, abs=1e-4) == GREENHILL
 
@@ -94,29 +79,29 @@ def test_a_dead_load_along_the_beam_is_greenhills():
 @pytest.mark.parametrize("kind", ["FOAM", "exact"])
 def test_buckling_under_its_own_inertia(kind):
     """a_x pushes the root: 7.8373 EI/(m L³)."""
-    answer = buckling_acceleration(column(MODELS[kind]))
+    answer = gb.buckling_acceleration(column(MODELS[kind]))
     assert answer.value == pytest.approx(GREENHILL, rel=4e-5)
 
 
 def test_loads_of_another_time_and_none():
-    ramp = Load(1.0, force=vector(x=SmoothStep(-1.0, 2.0)))
+    ramp = gb.Load(1.0, force=gb.vector(x=gb.SmoothStep(-1.0, 2.0)))
     structure = column(MODELS["FOAM"], ramp)
-    with pytest.raises(InputError, match="has no load that acts"):
-        critical_load(structure)
-    assert critical_load(structure.at_time(1.0)).value == pytest.approx(np.pi**2 / 2, rel=6e-4)
-    with pytest.raises(InputError, match="gbeam critical-speed"):
-        critical_load(column(MODELS["FOAM"]))
+    with pytest.raises(gb.InputError, match="has no load that acts"):
+        gb.critical_load(structure)
+    assert gb.critical_load(structure.at_time(1.0)).value == pytest.approx(np.pi**2 / 2, rel=6e-4)
+    with pytest.raises(gb.InputError, match="gbeam critical-speed"):
+        gb.critical_load(column(MODELS["FOAM"]))
 
 
 def test_pulling_never_buckles():
-    critical = critical_load(column(MODELS["FOAM"], Load(1.0, force=(1.0, 0.0, 0.0))))
+    critical = gb.critical_load(column(MODELS["FOAM"], gb.Load(1.0, force=(1.0, 0.0, 0.0))))
     assert critical.value is None and critical.kind == "none" and critical.searched_to == pytest.approx(24.7, abs=0.1)
 
 
 def test_dead_load_lowers_the_frequency():
     """ω² falls nearly in proportion to the load, and vanishes with Euler's."""
     rest, half = (
-        modes(column(MODELS["exact"], Load(1.0, force=(-p, 0.0, 0.0))), Flight(z=constant(0.0)), 0.0)
+        gb.modes(column(MODELS["exact"], gb.Load(1.0, force=(-p, 0.0, 0.0))), gb.Flight(z=gb.constant(0.0)), 0.0)
         for p in (1e-9, np.pi**2 / 8)
     )
     assert (half.frequency[0] / rest.frequency[0]) ** 2 == pytest.approx(0.5, abs=0.02)
@@ -138,8 +123,9 @@ def test_a_beam_pointing_inward_diverges(kind, counts):
     for row, condition in ((0, (d @ d)[0]), (1, (d @ d @ d)[0]), (n, np.eye(n + 1)[n]), (n - 1, d[n])):
         stiff[row], spin[row] = condition, 0.0
     square = 1 / np.linalg.eigvals(np.linalg.solve(stiff, spin)).real.max()
-    critical = critical_speed(
-        assemble(slender(1e4), Model(kind, *counts)), Hub(radius=radius, rate=constant(1.0), pointing="inward")
+    critical = gb.critical_speed(
+        gb.assemble(slender(1e4), gb.Model(kind, *counts)),
+        gb.Hub(radius=radius, rate=gb.constant(1.0), pointing="inward"),
     )
     assert critical.value == pytest.approx(np.sqrt(square), rel=2e-5)
     assert (critical.kind, critical.direction) == ("divergence", "y")
@@ -149,28 +135,32 @@ def test_a_beam_pointing_inward_diverges(kind, counts):
 @pytest.mark.parametrize("kind", ["FOAM", "exact"])
 def test_a_column_under_a_follower_force_is_stable_up_to_becks_load(kind, load, kept):
     """It was called unstable where the symmetric part of its stiffness, which decides nothing, is indefinite."""
-    structure = column(MODELS[kind], Load(1.0, force=(-load, 0.0, 0.0), follower=True))
-    resting = static(structure)
+    structure = column(MODELS[kind], gb.Load(1.0, force=(-load, 0.0, 0.0), follower=True))
+    resting = gb.static(structure)
     assert resting.stable == kept
-    system = linearize(structure, Flight(z=constant(0.0)))
+    system = gb.linearize(structure, gb.Flight(z=gb.constant(0.0)))
     assert any("not stable: flutter along z" in each for each in system.warnings) == (not kept)
-    assert modes(structure, Flight(z=constant(0.0))).stable == kept
+    assert gb.modes(structure, gb.Flight(z=gb.constant(0.0))).stable == kept
 
 
 def test_one_shape_under_becks_load_is_unstable_with_more():
     """It flutters by two motions, of which one shape has none."""
     for load, flutters in ((0.98 * BECK, False), (1.02 * BECK, True)):
-        push = Load(1.0, force=(-load, 0.0, 0.0), follower=True)
-        one, eight = (column(Model("FOAM", 1, 0, z), push) for z in (1, 8))
-        assert modes(one).stable and modes(eight).stable != flutters
-        for answer, said in ((modes(one), flutters), (linearize(one, Flight(z=0.0)), flutters), (modes(eight), False)):
+        push = gb.Load(1.0, force=(-load, 0.0, 0.0), follower=True)
+        one, eight = (column(gb.Model("FOAM", 1, 0, z), push) for z in (1, 8))
+        assert gb.modes(one).stable and gb.modes(eight).stable != flutters
+        for answer, said in (
+            (gb.modes(one), flutters),
+            (gb.linearize(one, gb.Flight(z=0.0)), flutters),
+            (gb.modes(eight), False),
+        ):
             assert any(each.startswith("not stable with more shapes: ") for each in answer.warnings) == said
 
 
 def test_a_run_under_a_follower_force_below_becks_load_is_not_warned_of():
-    structure = column(MODELS["FOAM"], Load(1.0, force=(-15.0, 0.0, 0.0), follower=True))
-    response = simulate(structure, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
+    structure = column(MODELS["FOAM"], gb.Load(1.0, force=(-15.0, 0.0, 0.0), follower=True))
+    response = gb.simulate(structure, gb.Flight(z=gb.constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
     assert not any("not stable" in each for each in response.warnings)
-    beyond = column(MODELS["FOAM"], Load(1.0, force=(-21.0, 0.0, 0.0), follower=True))
-    response = simulate(beyond, Flight(z=constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
+    beyond = column(MODELS["FOAM"], gb.Load(1.0, force=(-21.0, 0.0, 0.0), follower=True))
+    response = gb.simulate(beyond, gb.Flight(z=gb.constant(1e-3)), duration=0.1, step=1e-3, estimate=False)
     assert any("equilibrium that is not stable" in each for each in response.warnings)

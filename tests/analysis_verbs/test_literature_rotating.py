@@ -9,10 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gbeam import Model, PointMass, assemble
-from gbeam.analysis.steady.modal import modes
-from gbeam.analysis.steady.stability import critical_speed
-from gbeam.motion import Hub, constant
+from gbeam import Hub, Model, PointMass, assemble, constant, critical_speed, modes
 from validation.published.tables import TIP_MASS_FLAP, UNIFORM_FLAP
 
 from .beams import FREE_2009, HUB, HUB_2009, slender, structure_2009

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
+import gbeam as gb
 from gbeam.cli.publication import publish
-from gbeam.errors import ComputationError
 
 Call = Callable[..., Any]
 
@@ -59,7 +59,7 @@ def test_a_full_disk_keeps_what_was_there_and_puts_the_files_elsewhere(
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         (hidden / "b.txt").write_text("new")
 
-    with pytest.raises(ComputationError, match="No space left on device, and are in") as caught:
+    with pytest.raises(gb.ComputationError, match="No space left on device, and are in") as caught:
         publish(out, make)
     assert caught.value.outcome == "not written"
     assert {file.read_text() for file in out.iterdir()} == {"old"} and len(list(out.iterdir())) == 2

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gbeam.analysis.imitation.plan import plan
+import gbeam as gb
 from gbeam.cli import main
 from gbeam.results.comparison import MachinePlan
 from gbeam.scenario import build_machines, loads
@@ -27,7 +27,7 @@ TURN = 3.2, 11.2  # s: the 8 g turn, between the steps of the aileron
 @cache
 def planned(*overrides: str) -> MachinePlan:
     loaded = loads(WITHOUT_LIMITS, overrides=[f"{MACHINE}.{each}" for each in overrides], folder=EXAMPLE.parent)
-    return plan("centrifuge", build_machines(loaded)["centrifuge"])
+    return gb.plan("centrifuge", build_machines(loaded)["centrifuge"])
 
 
 def error(machine_plan: MachinePlan) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from scipy.io import loadmat
 
-from gbeam.analysis.imitation.plan import plan
+import gbeam as gb
 from gbeam.cli import main
 from gbeam.cli.process import FIGURES
 from gbeam.report.page.result import report_of
@@ -58,7 +58,7 @@ def scenario(tmp_path: Path) -> Path:
 def test_a_plans_figure_and_page_draw_the_flight(scenario: Path) -> None:
     """Its load from its first to its last time, 2 g, 6 g and the ramps between, in g, and all else in g beside it."""
     (machine,) = build_machines(load_environments(scenario)).values()
-    answer = plan("spin", machine, "flight")
+    answer = gb.plan("spin", machine, "flight")
     size, *_, error = answer.plot("tracking")
     assert size.get_ylabel() == "size, g" and error.get_ylabel() == "tracking error, g"
     drawn = {line.get_label(): line.get_xydata() for line in size.get_lines()}

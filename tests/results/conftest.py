@@ -10,11 +10,11 @@ import pytest
 
 import gbeam as gb
 from gbeam.results.accounting import Accounting
-from gbeam.results.cases import Parameter, Sensitivity, Sweep
+from gbeam.results.cases import Parameter
 from gbeam.results.comparison import MachinePlan
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.placement import Candidate, Placement
-from gbeam.results.searches import CommandRun, Fit, FittedColumn, Optimum, Requirement, ShapedCommand
+from gbeam.results.searches import CommandRun, FittedColumn, Requirement
 from gbeam.results.study import ModelRow, ModelStudy
 
 from ..solids.bodies import STEEL, block, solid
@@ -98,20 +98,22 @@ def _searched() -> dict[str, Any]:
     grid = (Parameter("beam.length", np.array([0.3, 0.4]), "m"),)
     ended = np.array(["done", "done"], dtype=object)
     return {
-        "Fit": Fit(
+        "Fit": gb.Fit(
             "title", "taps.csv", names, ("m", "kg"), two, two, two, pair, square, square, pair, free, (column,), two,
             False, 7, 2.5,
         ),
-        "Optimum": Optimum(
+        "Optimum": gb.Optimum(
             "title", "tip.z", "m", names, ("m", "kg"), two, two, pair, free, 1.0, 0.5, 0.01,
             (Requirement("stress", "Pa", -np.inf, 3.0, 1.0, 2.0),), pair, two, 9,
         ),
-        "ShapedCommand": ShapedCommand(
+        "ShapedCommand": gb.ShapedCommand(
             "rate", 1.0, False, 2.0, two, two, np.inf, 0.1, two, two, runs, "FOAM", "exact", "slew"
         ),
-        "Sensitivity": Sensitivity(
+        "Sensitivity": gb.Sensitivity(
             "title", "run", ("tip.z",), ("m",), two[:1], names, ("m", "kg"), two, pair[:1], pair[:1],
             ("exact", "difference"), np.array([[False, True]]),
         ),
-        "Sweep": Sweep("title", "run", grid, {"tip.z": two}, {"tip.z": "m"}, ended, np.array(["", ""], dtype=object)),
+        "Sweep": gb.Sweep(
+            "title", "run", grid, {"tip.z": two}, {"tip.z": "m"}, ended, np.array(["", ""], dtype=object)
+        ),
     }  # fmt: skip

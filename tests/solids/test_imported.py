@@ -18,7 +18,6 @@ from scipy import sparse
 
 import gbeam as gb
 from gbeam.io.models.registry import model_of
-from gbeam.motion import constant
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 
@@ -97,7 +96,7 @@ def compare(read: Any, rtol: float) -> None:
 
 
 def flown(structure: gb.Structure) -> np.ndarray:
-    flight = gb.Flight(acceleration=constant(np.array([3.0, -2.0, 8.0])))
+    flight = gb.Flight(acceleration=gb.constant(np.array([3.0, -2.0, 8.0])))
     return gb.simulate(structure, flight, duration=0.05, step=1e-3).displacement[:, -1]
 
 
@@ -108,13 +107,13 @@ def test_matrices_of_a_beam_fly_as_the_beam() -> None:
     how = dict(modes=5, damping_ratio=0.01, clamp=[0], points={"tip": 1})
     stiffened = model.reduced(**how, geometric=each.geometric)
     assert any("of alpha_x, alpha_y" in said and "a_x" not in said.split("of ")[0] for said in stiffened.warnings)
-    flight = gb.Flight(acceleration=constant(np.array([3.0, -2.0, 8.0])))
+    flight = gb.Flight(acceleration=gb.constant(np.array([3.0, -2.0, 8.0])))
     mine, theirs = (gb.static(s, flight).tip for s in (stiffened, beam()))
     np.testing.assert_allclose(mine[1:], theirs[1:], rtol=1e-9)  # along x the beam's tip moves to second order as well
     mine, theirs = (flown(s)[:, 1:] for s in (stiffened, beam()))
     np.testing.assert_allclose(mine, theirs, rtol=1e-8, atol=1e-12)
     plain = model.reduced(**how)
-    push = gb.Flight(acceleration=constant(np.array([50.0, 0, 0])))  # compresses it
+    push = gb.Flight(acceleration=gb.constant(np.array([50.0, 0, 0])))  # compresses it
     said = [line for line in gb.modes(plain, push).warnings if "the order of" in line]
     stated = float(said[0].split("order of ")[1].split(" %")[0]) / 100
     # Of the same order: of an even cantilever 1.6 times a / (w² L).
@@ -241,7 +240,7 @@ def test_fields_of_simscape_are_read(tmp_path: Path) -> None:
         # Its only node is at the root: the even beam's length is that of its mass.
         assert model.length == pytest.approx(0.3, rel=1e-3)
         assert "the tip, node 1, is clamped and stays at 0" in model.warnings
-        push = gb.Flight(acceleration=constant(np.array([50.0, 0, 0])))
+        push = gb.Flight(acceleration=gb.constant(np.array([50.0, 0, 0])))
         stated = [line for line in gb.modes(model, push).warnings if "the order of" in line]
         whole = read_whole().reduced(modes=5, damping_ratio=0, clamp=[0], points={"tip": 1})
         assert stated == [line for line in gb.modes(whole, push).warnings if "the order of" in line]

@@ -14,7 +14,6 @@ import gbeam as gb
 from gbeam.mechanics.tree.bodies import momentum
 from gbeam.mechanics.tree.body_terms import body_of
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.motion import constant
 from gbeam.numerics.eigen import positive_definite
 from gbeam.solids.elements import mass_matrix, stiffness_matrix
 from gbeam.solids.links import attached
@@ -145,7 +144,7 @@ def test_an_interface_has_the_stress_and_strain_of_its_section() -> None:
     assert carried.points == ("seat", "cut", "tip") and {"strip.cut", "strip.seat"} <= set(rest.points)
     assert carried.point_stress[0, 1, 0] == pytest.approx(pull, rel=1e-3)
     assert carried.strain_at("cut")[0] == pytest.approx(pull / STIFF.youngs_modulus, rel=1e-3)
-    plant = gb.linearize(bar, gb.Flight(x=constant(1.0)), gauges=[gb.Gauge("cut")])
+    plant = gb.linearize(bar, gb.Flight(x=gb.constant(1.0)), gauges=[gb.Gauge("cut")])
     gain = plant.d - plant.c @ np.linalg.solve(plant.a, plant.b)
     (row,) = (k for k, each in enumerate(plant.outputs) if "strain" in each.name)
     column = [each.name for each in plant.inputs].index("base_acceleration_x")

@@ -13,7 +13,6 @@ import scipy.io
 from scipy import sparse
 
 import gbeam as gb
-from gbeam.motion import constant
 from gbeam.solids.elements import mass_matrix, stiffness_matrix
 
 from .bodies import block, solid
@@ -59,7 +58,7 @@ def test_a_beam_of_nodes_is_the_beam() -> None:
     np.testing.assert_allclose(rest.displacement[0, 2] / rest.tip[2], 17 / 48, rtol=1e-3)
     rigid = model.coefficients.rigid
     np.testing.assert_allclose(rigid[[0, 1, 4]], [MU * L, MU * L**2 / 2, MU * L**3 / 3], rtol=1e-3)
-    flown = gb.simulate(model, gb.Flight(z=constant(5.0)), duration=0.05, step=1e-3)
+    flown = gb.simulate(model, gb.Flight(z=gb.constant(5.0)), duration=0.05, step=1e-3)
     assert flown.body.points == ("middle", "tip") and flown.outcome == "done"
     assert any("no geometric stiffness is given" in each for each in flown.warnings)
 
@@ -79,7 +78,7 @@ def test_matrices_of_a_solid_are_the_solid_without_its_geometric_stiffness() -> 
         theirs = getattr(whole.coefficients, name)
         np.testing.assert_allclose(getattr(ours.coefficients, name), theirs, atol=1e-7 * np.abs(theirs).max())
     at = dict(acceleration=(3.0, -20.0, 40.0))
-    flight = gb.Flight(acceleration=constant(np.array(at["acceleration"])))
+    flight = gb.Flight(acceleration=gb.constant(np.array(at["acceleration"])))
     tips = [gb.static(each, flight).tip for each in (ours, whole)]
     np.testing.assert_allclose(tips[0], tips[1], rtol=1e-4)
     spun = [gb.modes(each, gb.Hub(radius=0.0, rate=300.0)).frequency[0] for each in (ours, whole)]

@@ -14,7 +14,6 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.motion import constant
 from gbeam.report import text
 from gbeam.report.study import response_lines
 from gbeam.report.words import number
@@ -60,7 +59,7 @@ def test_a_cantilever_bends_as_in_closed_form(kind: str) -> None:
     np.testing.assert_allclose(-rest.tip[2], 10 * STRIP[0] * L**4 / 8 / STRIP[1] + shear, rtol=3e-4)
     pulled = gb.static(model.structure, acceleration=(-10.0, 0.0, 0.0))
     assert pulled.tip[0] == pytest.approx(10 * STIFF.density * L**2 / 2 / STIFF.youngs_modulus, rel=1e-6)
-    system = gb.linearize(model.structure, gb.Flight(z=constant(10.0)))
+    system = gb.linearize(model.structure, gb.Flight(z=gb.constant(10.0)))
     moment = [each.name for each in system.outputs].index("root_moment_y")
     push = [each.name for each in system.inputs].index("base_acceleration_z")
     # Of the tip's place the root's moment knows the first order: an acceleration of 1 m/s² along z turns about −y.
@@ -109,7 +108,7 @@ def test_nothing_depends_on_the_axes() -> None:
     for R, material in ((np.eye(3), board), (turn, turned)):
         bent = block("tetra10", (3, 1, 1), (0.2, 0.05, 0.02), lambda x, R=R: x @ R.T)
         model = solid(bent, material, point_masses={"tip": 0.2}).reduced(modes=4, damping_ratio=0.02)
-        flight = gb.Flight(acceleration=constant(R @ at), rates=constant(R @ rates))
+        flight = gb.Flight(acceleration=gb.constant(R @ at), rates=gb.constant(R @ rates))
         answer.append((gb.modes(model.structure, flight), gb.static(model.structure, flight).tip @ R))
     np.testing.assert_allclose(answer[1][0].eigenvalue, answer[0][0].eigenvalue, rtol=1e-7)
     np.testing.assert_allclose(answer[1][1], answer[0][1], rtol=1e-7, atol=1e-12)
@@ -247,7 +246,7 @@ HALF: dict[str, Any] = {"duration": 0.002, "step": 1e-5, "integrator": "gauss"} 
 )
 def test_a_coarser_mesh_begins_as_the_run_does(initial: Any, two_meshes: tuple[gb.Structure, gb.Structure]) -> None:
     """Not in equilibrium: the stated share is the difference to its own run from that state, in half a period."""
-    lift = gb.Flight(z=constant(200.0))
+    lift = gb.Flight(z=gb.constant(200.0))
     of, rough = (gb.simulate(each, lift, initial=initial, **HALF) for each in two_meshes)
     assert of.errors.displacement.mesh == pytest.approx(changed(of, rough, "tip"), rel=2e-3)
     assert of.errors.loads.mesh == pytest.approx(changed(of, rough, "loads"), rel=1e-2)
@@ -292,7 +291,7 @@ def test_few_modes_answer_steady_loads_as_all_do() -> None:
     mesh = solid(block("hexahedron20", (4, 1, 1), (0.2, 0.05, 0.03)))
     few, many = (mesh.reduced(modes=n, damping_ratio=0) for n in (1, 60))
     assert few.structure.size <= 13
-    spin = gb.Flight(acceleration=constant([1.0, 2.0, 3.0]), rates=constant([1.0, 2.0, 3.0]))
+    spin = gb.Flight(acceleration=gb.constant([1.0, 2.0, 3.0]), rates=gb.constant([1.0, 2.0, 3.0]))
     tips = [gb.static(each.structure, spin).tip for each in (few, many)]
     np.testing.assert_allclose(tips[0], tips[1], rtol=1e-6)
 
@@ -307,15 +306,15 @@ def test_point_masses_points_and_origin() -> None:
     np.testing.assert_allclose(
         model.structure.coefficients.rigid[1] / model.structure.coefficients.rigid[0], 2.0, rtol=1e-3
     )
-    turn = gb.Flight(acceleration=constant([0.0, 0.0, 0.0]), rates=constant([0.0, 0.0, 2.0]))
+    turn = gb.Flight(acceleration=gb.constant([0.0, 0.0, 0.0]), rates=gb.constant([0.0, 0.0, 2.0]))
     pulled = gb.static(model.structure, turn).tip[0]
     # The corner's own place is a little off that of the section, on whose nodes the mass is spread evenly.
     assert pulled == pytest.approx(0.1 * 2.0**2 * 2.0 * L / (STIFF.youngs_modulus * B * H), rel=1e-2)
-    flown = gb.simulate(model.structure, gb.Flight(z=constant(1.0)), duration=0.1, step=0.01)
+    flown = gb.simulate(model.structure, gb.Flight(z=gb.constant(1.0)), duration=0.1, step=0.01)
     assert flown.body.points == ("middle", "tip") and flown.body.at("middle").shape == flown.tip.shape
     # (3 x²L − x³)/6EI of the force at the end.
     assert flown.body.at("middle")[-1, 2] / flown.tip[-1, 2] == pytest.approx(5 / 16, rel=2e-3)
-    system = gb.linearize(model.structure, gb.Flight(z=constant(1.0)))
+    system = gb.linearize(model.structure, gb.Flight(z=gb.constant(1.0)))
     assert "middle_z" in [each.name for each in system.outputs]
 
 

@@ -12,7 +12,6 @@ import pytest
 import pyuff
 
 import gbeam as gb
-from gbeam.motion import constant
 
 
 @cache
@@ -36,7 +35,7 @@ def measured() -> dict[str, Any]:
 
 
 def moved(structure: gb.Structure) -> np.ndarray:
-    flight = gb.Flight(acceleration=constant(np.array([0.0, -2.0, 8.0])))
+    flight = gb.Flight(acceleration=gb.constant(np.array([0.0, -2.0, 8.0])))
     return gb.simulate(structure, flight, duration=0.05, step=1e-3).displacement[:, -1]
 
 

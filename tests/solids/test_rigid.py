@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion import constant
 
 DATA = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 G = 9.80665
@@ -57,13 +56,13 @@ def test_a_textbooks_bolt_group() -> None:
     """Four bolts in a rectangle under a force above them: F/4 of shear each, and M y/Σy² of tension."""
     bolts = [(0.1, 0.05, 0), (-0.1, 0.05, 0), (0.1, -0.05, 0), (-0.1, -0.05, 0)]
     box = gb.RigidSpecimen.box(2.0, (0.1, 0.1, 0.2), (0, 0, 0.1), bolts=bolts, bolt_axis=(0, 0, 1))
-    loads = box.loads(gb.Flight(x=constant(50.0)), 1.0, sample=1.0)
+    loads = box.loads(gb.Flight(x=gb.constant(50.0)), 1.0, sample=1.0)
     # Accelerated along x at a height of 0.1 m: the rear pair holds it down.
     np.testing.assert_allclose(loads.shear, 100 / 4)
     np.testing.assert_allclose(loads.tension[0], 100 * 0.1 * 0.1 / (4 * 0.1**2) * np.array([1, 0, 1, 0]))
     np.testing.assert_allclose(loads.compression[0], 100 * 0.1 * 0.1 / (4 * 0.1**2) * np.array([0, 1, 0, 1]))
     sideways = gb.RigidSpecimen.box(2.0, (0.1, 0.1, 0.2), (0.3, 0, 0), bolts=bolts, bolt_axis=(0, 0, 1))
-    twisted = sideways.loads(gb.Flight(y=constant(50.0)), 1.0, sample=1.0)
+    twisted = sideways.loads(gb.Flight(y=gb.constant(50.0)), 1.0, sample=1.0)
     # In-plane: F/n and T r/Σr², Σr² = 4 (0.1² + 0.05²).
     turn = 100 * 0.3 / (4 * (0.1**2 + 0.05**2))
     np.testing.assert_allclose(twisted.bolt_force[0, 0], [-turn * 0.05, 25 + turn * 0.1, 0], atol=1e-12)
@@ -126,7 +125,7 @@ def test_specimens_that_cannot_be_are_refused(changed: dict[str, Any], words: st
 def test_a_free_hub_is_refused() -> None:
     box = gb.RigidSpecimen.box(2.0, (0.4, 0.2, 0.1), (0.0, 0.0, 0.0))
     with pytest.raises(gb.InputError, match="motion is a free hub"):
-        box.loads(gb.Hub(radius=2.0, inertia=10.0, torque=constant(1.0)), 1.0, sample=0.5)
+        box.loads(gb.Hub(radius=2.0, inertia=10.0, torque=gb.constant(1.0)), 1.0, sample=0.5)
 
 
 def test_what_deforms_is_not_asked_of_a_box() -> None:

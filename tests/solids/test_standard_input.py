@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion import constant
+from gbeam import constant
 
 OE = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 

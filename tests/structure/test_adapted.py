@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, truncated_wedge, with_bodies
 
-from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble
+from gbeam import Beam, InputError, Material, Model, PointMass, Root, Section, assemble
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import quadrature
-from gbeam.structure.attachments import Root
 
 from ..specimens import appendage
 

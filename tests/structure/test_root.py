@@ -7,9 +7,8 @@ import pytest
 from exact_beams import AREA, DENSITY, EI, INERTIA, LENGTH, MODULUS, with_bodies
 from scipy.optimize import brentq
 
-from gbeam import Beam, InputError, Material, Model, PointMass, Section, assemble, solve_equilibrium
+from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble, solve_equilibrium
 from gbeam.motion import Base
-from gbeam.structure.attachments import Load, Root
 
 from ..specimens import appendage
 

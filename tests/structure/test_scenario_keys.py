@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gbeam.motion import Hub
+import gbeam as gb
 from gbeam.scenario import ScenarioError, build, loads
 
 TEXT = """\
@@ -60,7 +60,7 @@ def test_what_they_build() -> None:
     np.testing.assert_allclose(beam.loads[2].distributed(0.0), [0.0, 20.0, 0.0])  # type: ignore[operator, misc]
     assert case.model.shapes == "adapted"
     slew, free = case.motions["slew"], case.motions["free"]
-    assert isinstance(slew, Hub) and isinstance(free, Hub) and free.free and not slew.free
+    assert isinstance(slew, gb.Hub) and isinstance(free, gb.Hub) and free.free and not slew.free
     np.testing.assert_allclose(slew.mount.gravity, [0, 0, -9.80665])
     np.testing.assert_allclose(slew.mount.R_HB[:, 0], [-1, 0, 0])
     np.testing.assert_allclose(slew.mount.R_HB[2], [0, 0.5, np.sqrt(0.75)])

@@ -11,8 +11,7 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
-from gbeam import Beam, Material, PointMass, Root, Section, Structure
-from gbeam.analysis.steady.modal import modes
+from gbeam import Beam, Material, PointMass, Root, Section, Structure, modes
 from gbeam.motion.protocol import Motion
 
 # A counterexample is as random as any example: it is not made smaller, which takes minutes.
