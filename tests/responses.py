@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+import gbeam as gb
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.parts import Base, Extremes, Outline, Peaks, VectorPeaks
-from gbeam.results.response import Response
 from gbeam.results.system import Assembly, Maxima
 
 
@@ -26,7 +26,7 @@ def of_beam(
     displacement: np.ndarray,
     size: int = 3,
     **more: Any,
-) -> Response:
+) -> gb.Response:
     """Response of a beam with `size` coordinates; what is not given has `values` of a shape."""
     times, axes = len(time), (len(time), 3)
     points, coordinates = ("beam.tip", "beam.root"), tuple(f"beam.q{k + 1}" for k in range(size))
@@ -36,7 +36,7 @@ def of_beam(
         shapes={"axial": 1, "y": 1, "z": 1},
     )  # fmt: skip
     ending: dict[str, Any] = {"outcome": "done", "message": "", "step": float(time[1] - time[0]), "steps": times - 1}
-    return Response(
+    return gb.Response(
         name=name,
         environment=environment,
         time=time,
@@ -66,13 +66,13 @@ def of_beam(
     )
 
 
-def with_body(response: Response, **more: Any) -> Response:
+def with_body(response: gb.Response, **more: Any) -> gb.Response:
     """Return a response of one body with other values of the body."""
     ((name, body),) = response.bodies.items()
     return replace(response, bodies={name: replace(body, **more)})
 
 
-def clamped(response: Response, outline: Outline) -> Response:
+def clamped(response: gb.Response, outline: Outline) -> gb.Response:
     """Return a response of a straight beam on its base as it is drawn, with an outline."""
     still, unknown = np.zeros((1, 3)), np.full((1, 3), np.nan)
     held = Assembly(("beam",), ("ground",), ("fixed",), still, np.zeros((2, 3)), unknown, unknown, unknown[None])

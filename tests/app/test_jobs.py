@@ -16,11 +16,11 @@ from pathlib import Path
 
 import pytest
 
+import gbeam as gb
 from gbeam.app import files
 from gbeam.app import jobs as module
 from gbeam.app.documents import changes
 from gbeam.app.jobs import LIMITED, Jobs
-from gbeam.errors import InputError
 
 from ..guards.test_importing import SCENARIO, sprung, trap
 from ..scenarios import FAST
@@ -102,7 +102,7 @@ def test_files_of_a_run_are_known_kinds_in_its_folder(tmp_path: Path) -> None:
     assert set(jobs.state(number)["files"]) == {"scenario.toml", "fit.nc", "report.html", "command.json"}
     assert jobs.file(number, "report.html") == out / "fit.html"
     for name in ("link.nc", "folder.nc", "fit.svg", "state.json", "../scenario.toml", "fit.html"):
-        with pytest.raises(InputError):
+        with pytest.raises(gb.InputError):
             jobs.file(number, name)
 
 

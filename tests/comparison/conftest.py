@@ -6,47 +6,35 @@ from collections.abc import Callable
 
 import pytest
 
-from gbeam import (
-    Beam,
-    Centrifuge,
-    Flight,
-    Material,
-    Model,
-    ResponseSettings,
-    Section,
-    Structure,
-    assemble,
-    tabulated,
-    vector,
-)
-from gbeam.motion import MachineLimits, Profile
+import gbeam as gb
+from gbeam.motion import Profile
 
 G = 9.80665
-STRIP, METAL = Section.rectangle(0.02, 0.004), Material(2700.0, 70e9)
-SPECIMEN = Beam(0.3, STRIP, METAL, damping_ratio=0.0, rotary_inertia=False)
+STRIP, METAL = gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9)
+SPECIMEN = gb.Beam(0.3, STRIP, METAL, damping_ratio=0.0, rotary_inertia=False)
 
 
 @pytest.fixture(scope="session")
 def load() -> Profile:
-    return vector(z=tabulated([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
+    return gb.vector(z=gb.tabulated([0.0, 1.25], [5 * G, 10 * G]))  # 4 g/s
 
 
 @pytest.fixture(scope="session")
-def structure() -> Structure:
-    return assemble(SPECIMEN, Model("FOAM", 1, 1, 3))
+def structure() -> gb.Structure:
+    return gb.assemble(SPECIMEN, gb.Model("FOAM", 1, 1, 3))
 
 
 @pytest.fixture(scope="session")
-def settings() -> ResponseSettings:
-    return ResponseSettings(start=0.5, duration=1.5, integrator="gauss", step=0.5e-3)
+def settings() -> gb.ResponseSettings:
+    return gb.ResponseSettings(start=0.5, duration=1.5, integrator="gauss", step=0.5e-3)
 
 
 @pytest.fixture(scope="session")
-def spin(flight: Flight) -> Callable[..., Centrifuge]:
+def spin(flight: gb.Flight) -> Callable[..., gb.Centrifuge]:
     def make(
-        smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1, limits: MachineLimits | None = None
-    ) -> Centrifuge:
-        return Centrifuge(
+        smoothing: float = 0.0596, control_point: float = 0.15, sign: int = 1, limits: gb.MachineLimits | None = None
+    ) -> gb.Centrifuge:
+        return gb.Centrifuge(
             flight, arm=3.3, control_point=control_point, inverse="flat", gravity=False, limits=limits,
             smoothing=smoothing, mounting="upright" if sign == 1 else "inverted", span=(0.2, 2.3),
         )  # fmt: skip
@@ -55,5 +43,5 @@ def spin(flight: Flight) -> Callable[..., Centrifuge]:
 
 
 @pytest.fixture(scope="session")
-def flight(load: Profile) -> Flight:
-    return Flight(acceleration=load)
+def flight(load: Profile) -> gb.Flight:
+    return gb.Flight(acceleration=load)

@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.errors import ComputationError, InputError
+import gbeam as gb
 from gbeam.guards import processes as module
 from gbeam.guards.processes import confined
-from gbeam.motion.records.record import read_record
 
 from ..calling import Answer, gbeam, spent
 from ..scenarios import FLIGHT, SPECIMEN, model
@@ -81,8 +80,8 @@ def test_a_reader_that_waits_for_ever_is_ended_by_the_clock(
     tmp_path: Path, hurried: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(module, "_PATIENCE", 2)
-    with pytest.raises(InputError, match=r"is not read within 2 s"):
-        confined(_wait, tmp_path, refuse=lambda problem: InputError("x", problem, "y"))
+    with pytest.raises(gb.InputError, match=r"is not read within 2 s"):
+        confined(_wait, tmp_path, refuse=lambda problem: gb.InputError("x", problem, "y"))
 
 
 @LINUX
@@ -90,10 +89,10 @@ def test_only_the_variables_that_are_needed_are_read(tmp_path: Path, monkeypatch
     monkeypatch.setattr(module, "READER_BYTES", 600 * 2**20)
     large_mat(tmp_path / "r.mat")
     columns = {"x": "0", "y": "0", "unit": "g"}
-    flown = read_record(tmp_path / "r.mat", time="t", z="az", **columns)
+    flown = gb.read_record(tmp_path / "r.mat", time="t", z="az", **columns)
     np.testing.assert_array_equal(flown.times, TIME)
-    with pytest.raises(InputError, match=r"record.file .*r.mat takes more than 6.. MB of memory to read"):
-        read_record(tmp_path / "r.mat", time="rec.t", z="az", **columns)
+    with pytest.raises(gb.InputError, match=r"record.file .*r.mat takes more than 6.. MB of memory to read"):
+        gb.read_record(tmp_path / "r.mat", time="rec.t", z="az", **columns)
 
 
 @POSIX
@@ -104,7 +103,7 @@ def test_the_app_shows_what_a_damaged_record_does_and_goes_on(tmp_path: Path, hu
     crashing_mat(tmp_path / "r.mat")
     endless_hdf5(tmp_path / "r.nc")
     for name in ("r.mat", "r.nc"):
-        with pytest.raises(InputError):
+        with pytest.raises(gb.InputError):
             documents.head(tmp_path / name)
         text = _scenario(tmp_path, name).read_text(encoding="utf-8")
         (problem,) = documents.described(text, tmp_path)["errors"]
@@ -159,7 +158,7 @@ def test_a_reader_ends_with_the_process_that_asked(tmp_path: Path) -> None:
 
 
 def test_answers_come_as_they_were_returned(tmp_path: Path) -> None:
-    answer = confined(_answer, tmp_path, 3, refuse=lambda problem: InputError("x", problem, "y"))
+    answer = confined(_answer, tmp_path, 3, refuse=lambda problem: gb.InputError("x", problem, "y"))
     assert answer["text"] == "µ\ud800" and answer["nothing"] is None and answer["path"] == os.fspath(tmp_path)
     assert answer["texts"].tolist() == [["a", ""], ["b", "c"]] and answer["texts"].dtype == object
     for name, dtype in (("numbers", "<f8"), ("bytes", "|S2"), ("scalar", "<i4"), ("big", ">f4")):
@@ -168,12 +167,12 @@ def test_answers_come_as_they_were_returned(tmp_path: Path) -> None:
 
 
 def test_what_a_reader_says_is_said_again(tmp_path: Path) -> None:
-    def refuse(problem: str) -> InputError:
-        return InputError("x", problem, "y")
+    def refuse(problem: str) -> gb.InputError:
+        return gb.InputError("x", problem, "y")
 
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        with pytest.raises(InputError) as refused:
+        with pytest.raises(gb.InputError) as refused:
             confined(_refuse, tmp_path, refuse=refuse)
     assert [str(each.message) for each in said] == ["twice"]
     assert (refused.value.where, refused.value.problem, refused.value.fix) == ("here", "is wrong", "mend it")
@@ -184,8 +183,8 @@ def test_what_a_reader_says_is_said_again(tmp_path: Path) -> None:
 @LINUX
 def test_a_reader_that_cannot_start_is_no_fault_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_START", "raise SystemExit(1)")
-    with pytest.raises(ComputationError, match="is there no memory for it"):
-        confined(_answer, tmp_path, 3, refuse=lambda problem: InputError("x", problem, "y"))
+    with pytest.raises(gb.ComputationError, match="is there no memory for it"):
+        confined(_answer, tmp_path, 3, refuse=lambda problem: gb.InputError("x", problem, "y"))
 
 
 def _wait(path: str) -> None:
@@ -208,7 +207,7 @@ def _answer(path: str, number: int) -> dict[str, Any]:
 
 def _refuse(path: str) -> None:
     warnings.warn("twice", stacklevel=1)
-    raise InputError("here", "is wrong", "mend it")
+    raise gb.InputError("here", "is wrong", "mend it")
 
 
 def _fail(path: str) -> float:

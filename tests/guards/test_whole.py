@@ -12,7 +12,6 @@ import pytest
 import gbeam as gb
 from gbeam.guards.whole import opened
 from gbeam.io.hdf5 import contents
-from gbeam.motion.records.record import read_record
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 
@@ -64,7 +63,7 @@ def test_what_lies_elsewhere_is_refused(tmp_path: Path, other: Path, way: Callab
     with pytest.raises(ValueError, match=r"az lies in another file, .*other\.h5: copy it into this one"), opened(path):
         pass
     with pytest.raises(gb.InputError, match=r"r\.h5 cannot be read \((a/b/)?az lies in another file"):
-        read_record(path, time="t", x="0", y="0", z="az", unit="g")
+        gb.read_record(path, time="t", x="0", y="0", z="az", unit="g")
     with pytest.raises(gb.InputError, match="is not a netCDF-4 file that can be read"):
         contents(str(path))
     matlab = write(tmp_path / "m.mat", way, other)

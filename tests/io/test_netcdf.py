@@ -15,19 +15,17 @@ import pytest
 import xarray as xr
 from scipy.integrate import cumulative_trapezoid
 
-from gbeam import Beam, Hub, Joint, Material, RigidBody, Section, SmoothStep, System, assemble, simulate
-from gbeam.errors import InputError
+import gbeam as gb
 from gbeam.io.hdf5 import image
 from gbeam.io.layout import Group, Variable
 from gbeam.io.netcdf import csv_of, read_stored, stored
 from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.comparison import Comparison
 from gbeam.results.machine import AxesResult, LimitUse, Shortfall
 from gbeam.results.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
 from gbeam.results.parts import Base, Loads, Peaks
 from gbeam.results.provenance import Provenance
-from gbeam.results.response import HubResult, Response
-from gbeam.results.study import Failure, Study
+from gbeam.results.response import HubResult
+from gbeam.results.study import Failure
 
 from ..files import opened
 from ..responses import of_beam, with_body
@@ -77,7 +75,7 @@ def _random(*shape: int) -> np.ndarray:
     return RANDOM.standard_normal(shape)
 
 
-def _response(name: str, environment: str) -> Response:
+def _response(name: str, environment: str) -> gb.Response:
     return of_beam(
         name,
         environment,
@@ -95,7 +93,7 @@ def _response(name: str, environment: str) -> Response:
 
 
 @pytest.fixture(scope="module")
-def study() -> Study:
+def study() -> gb.Study:
     """All three environments, with a comparison."""
     held = TIME > 0.5
     axes = AxesResult(*(_random(T, 3) for _ in range(5)), held, ((0.55, 1.0, "below idle"),), LIMITS, SHORTFALLS, 0.15)
@@ -112,15 +110,15 @@ def study() -> Study:
     split = Statistics(np.array([0.1, 0.3]), 18.0, *sizes, *(_random(T, 3) for _ in range(4)))
     history = RootHistory(*(_random(T, 3) for _ in range(4)))
     root = RootLoads(*(abs(_random(3)) for _ in range(6)), 1.0, 2.0, 3.0, history)
-    comparison = Comparison(
+    comparison = gb.Comparison(
         "flight", "spin", TIME, _random(T, 3), ~held, *(abs(_random(3)) for _ in range(4)), PAIRS, ACCOUNTING,
         {"tip": 0.02}, stations=split, root=root, fatigue=FATIGUE,
     )  # fmt: skip
-    return Study("a title", responses, (comparison,))
+    return gb.Study("a title", responses, (comparison,))
 
 
 @pytest.fixture(scope="module")
-def file(study: Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def file(study: gb.Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The study, written."""
     path = tmp_path_factory.mktemp("store") / "result.nc"
     origin = Provenance(SCENARIO, ("a=1", "b=2"), command="gbeam run s.toml")
@@ -134,7 +132,7 @@ def tree(file: Path) -> xr.DataTree:
     return opened(file)
 
 
-def test_xarray_reads_what_was_written(study: Study, tree: xr.DataTree) -> None:
+def test_xarray_reads_what_was_written(study: gb.Study, tree: xr.DataTree) -> None:
     flight, spin = (tree[f"motions/{name}"] for name in ("flight", "spin"))
     along_y = flight["beam_displacement"].sel(axis="y")
     np.testing.assert_array_equal(along_y, study.responses["flight"].displacement[:, :, 1])
@@ -188,7 +186,7 @@ OF_AXES = {
     ("name", "fields"), [("spin", RESPONSE | OF_AXES), ("slew", RESPONSE | OF_HUB | OF_LOADS)], ids=["spin", "slew"]
 )
 def test_every_variable_holds_what_its_name_says(
-    study: Study, tree: xr.DataTree, name: str, fields: dict[str, str]
+    study: gb.Study, tree: xr.DataTree, name: str, fields: dict[str, str]
 ) -> None:
     """All histories of the study are random: none can stand for another."""
     for variable, field in fields.items():
@@ -198,9 +196,9 @@ def test_every_variable_holds_what_its_name_says(
 
 def test_what_is_called_a_rate_is_one(tmp_path: Path) -> None:
     """In the file of a slew: rates integrate to what they are the rates of, by the trapezium rule."""
-    slew = Hub(radius=0.5, rate=SmoothStep(2.0, 1.5))
+    slew = gb.Hub(radius=0.5, rate=gb.SmoothStep(2.0, 1.5))
     path = tmp_path / "slew.nc"
-    simulate(hub_beam("FOAM", 0, 2), slew, duration=2.0, step=2e-3).save(path)
+    gb.simulate(hub_beam("FOAM", 0, 2), slew, duration=2.0, step=2e-3).save(path)
     file = opened(path)
     (answer,) = [node.to_dataset() for node in file.subtree if "hub_rate" in node]
     time = answer["time"].values
@@ -220,17 +218,17 @@ def test_what_is_called_a_rate_is_one(tmp_path: Path) -> None:
 
 def test_histories_of_a_run_are_written_once() -> None:
     """Motions of roots are those of points, too: they are asked for by the body."""
-    strip = Section.rectangle(width=0.02, thickness=0.004)
-    arm = assemble(
-        Beam(0.3, strip, Material(2700, 70e9), damping_ratio=0.01), "FOAM", axial=1, y=2, z=2, stations=[0.1, 0.3]
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    arm = gb.assemble(
+        gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01), "FOAM", axial=1, y=2, z=2, stations=[0.1, 0.3]
     )
-    hub = RigidBody(1.0, (0.1, 0.2, 0.3), points={"rim": (0.1, 0.02, 0)})
+    hub = gb.RigidBody(1.0, (0.1, 0.2, 0.3), points={"rim": (0.1, 0.02, 0)})
     joints = {
-        "hinge": Joint("revolute", "hub", axes=[(0.1, 1, 0.3)], initial=0.2),
-        "clamp": Joint("fixed", "arm", on="hub.rim"),
+        "hinge": gb.Joint("revolute", "hub", axes=[(0.1, 1, 0.3)], initial=0.2),
+        "clamp": gb.Joint("fixed", "arm", on="hub.rim"),
     }
-    swung = System({"hub": hub, "arm": arm}, joints, gravity=(0.3, 0.2, -9.81))
-    variables = stored(simulate(swung, duration=0.2, step=1e-3, estimate=False)).variables
+    swung = gb.System({"hub": hub, "arm": arm}, joints, gravity=(0.3, 0.2, -9.81))
+    variables = stored(gb.simulate(swung, duration=0.2, step=1e-3, estimate=False)).variables
     histories = {name: each for name, each in variables.items() if np.shape(each)[:1] == (201,)}
     moving = {
         name: {column.tobytes() for column in each.reshape(201, -1).T if np.ptp(column)}
@@ -256,7 +254,7 @@ def test_zeros_take_no_room() -> None:
         np.testing.assert_array_equal(file["moved"][:], random)
 
 
-def test_histories_at_the_root_of_a_comparison(study: Study, tree: xr.DataTree) -> None:
+def test_histories_at_the_root_of_a_comparison(study: gb.Study, tree: xr.DataTree) -> None:
     compared = tree["comparisons/spin"]
     assert study.comparisons[0].root is not None
     history = study.comparisons[0].root.history
@@ -274,7 +272,7 @@ def test_stress_cycles(tree: xr.DataTree) -> None:
     assert float(spin["damage_ratio"]) == pytest.approx((4**3 + 2 * 3**3) / (3**3 + 0.5 * 2**3))
 
 
-def test_the_torque_of_a_drive_is_the_hubs(study: Study) -> None:
+def test_the_torque_of_a_drive_is_the_hubs(study: gb.Study) -> None:
     """It is given on a free hub; what follows from the loads where the rate is prescribed is the body's, too."""
     slew = study.responses["slew"]
     torque = _random(T)
@@ -284,7 +282,7 @@ def test_the_torque_of_a_drive_is_the_hubs(study: Study) -> None:
     assert "drive_torque" not in slew.to_xarray()
 
 
-def test_what_is_written_is_what_xarray_gets(study: Study, tree: xr.DataTree, tmp_path: Path) -> None:
+def test_what_is_written_is_what_xarray_gets(study: gb.Study, tree: xr.DataTree, tmp_path: Path) -> None:
     built = study.to_xarray()
     assert [node.path for node in built.subtree] == [node.path for node in tree.subtree]
     for node in built.subtree:
@@ -296,13 +294,13 @@ def test_what_is_written_is_what_xarray_gets(study: Study, tree: xr.DataTree, tm
     xr.testing.assert_identical(read, study.responses["spin"].to_xarray())
 
 
-def test_a_failure_is_kept(study: Study, tmp_path: Path) -> None:
+def test_a_failure_is_kept(study: gb.Study, tmp_path: Path) -> None:
     failed = replace(study, failures={f"motion{i}": Failure("diverged", f"reason {i}") for i in range(12)})
     failed.save(tmp_path / "x.nc")
     assert opened(tmp_path / "x.nc").attrs["failure_motion11"] == "diverged: reason 11"
 
 
-def test_limits_and_what_cannot_be_followed(study: Study, file: Path, tree: xr.DataTree) -> None:
+def test_limits_and_what_cannot_be_followed(study: gb.Study, file: Path, tree: xr.DataTree) -> None:
     spin = tree["motions/spin"]
     np.testing.assert_array_equal(spin["acceleration_used"], [11, 21, 31])
     np.testing.assert_array_equal(spin["acceleration_allowed"], [20, 20, np.inf])
@@ -353,7 +351,7 @@ def test_every_number_says_what_it_is(tree: xr.DataTree) -> None:
                 assert variable.attrs["frame"].startswith(stated.get(name, frame)), name
 
 
-def test_h5py_reads_it(study: Study, file: Path) -> None:
+def test_h5py_reads_it(study: gb.Study, file: Path) -> None:
     with h5py.File(file) as opened:
         group = opened["motions/spin"]
         np.testing.assert_array_equal(group["beam_displacement"][:], study.responses["spin"].displacement)
@@ -372,7 +370,7 @@ def test_a_group_opens_alone(file: Path) -> None:
 
 
 def test_a_file_is_replaced_whole_or_not_at_all(
-    study: Study, file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    study: gb.Study, file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / file.name
     path.write_bytes(file.read_bytes())
@@ -396,11 +394,11 @@ def test_what_is_no_result_is_refused(content: bytes | None, tmp_path: Path) -> 
     path = tmp_path / "x.nc"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(InputError, match=r"x\.nc is (no file|not a netCDF-4 file)"):
+    with pytest.raises(gb.InputError, match=r"x\.nc is (no file|not a netCDF-4 file)"):
         read_stored(path)
 
 
-def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -> None:
+def test_histories_as_text_are_those_of_the_file(study: gb.Study, tmp_path: Path) -> None:
     study.save(tmp_path / "x.nc")
     rows = list(csv.DictReader(csv_of(read_stored(tmp_path / "x.nc")).splitlines()))
     assert len(rows) == sum(len(response.time) for response in study.responses.values())
@@ -420,11 +418,11 @@ def test_histories_as_text_are_those_of_the_file(study: Study, tmp_path: Path) -
             assert float(lines[-1]["stress_Pa"]) == pytest.approx(response.loads.stress[-1, 0])
 
 
-def test_histories_as_text_name_bodies_where_there_are_several(study: Study, tmp_path: Path) -> None:
+def test_histories_as_text_name_bodies_where_there_are_several(study: gb.Study, tmp_path: Path) -> None:
     slew = study.responses["slew"]
     bodies = {name: with_body(slew, displacement=_random(T, 2, 3)).body for name in ("left", "right")}
     bodies["right"] = replace(bodies["right"], loads=None)
-    Study("", {"slew": replace(slew, bodies=bodies)}, ()).save(tmp_path / "x.nc")
+    gb.Study("", {"slew": replace(slew, bodies=bodies)}, ()).save(tmp_path / "x.nc")
     rows = list(csv.DictReader(csv_of(read_stored(tmp_path / "x.nc")).splitlines()))
     for name, body in bodies.items():
         tip = [[float(row[f"{name}_tip_{axis}_m"]) for axis in "xyz"] for row in rows]

@@ -7,29 +7,27 @@ import jax
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
-from gbeam.motion import Centrifuge, Flight, machines, trapezoid
 from gbeam.motion.centrifuge.histories import axis_angles
-from gbeam.motion.records.record import read_record
 from gbeam.motion.rigid import moved
 
 G, R, XC = STANDARD_GRAVITY, 3.3, 0.15
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
-TRAPEZOID = Flight(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))
+TRAPEZOID = gb.Flight(z=gb.trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))
 SPAN = (0.0, 12.0)
 
 
-def machine(**options: Any) -> Centrifuge:
+def machine(**options: Any) -> gb.Centrifuge:
     arguments = {"arm": R, "control_point": XC, "inverse": "flat", "gravity": True, "idle": 1.4 * G, "smoothing": 0.06}
-    return Centrifuge(TRAPEZOID, **{**arguments, "span": SPAN, **options})
+    return gb.Centrifuge(TRAPEZOID, **{**arguments, "span": SPAN, **options})
 
 
 @pytest.fixture(scope="module")
-def f16() -> Centrifuge:
-    record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
-    return Centrifuge(
-        Flight(acceleration=record), arm=R, control_point=XC, inverse="flat", gravity=True, idle=1.4 * G,
+def f16() -> gb.Centrifuge:
+    record = gb.read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+    return gb.Centrifuge(
+        gb.Flight(acceleration=record), arm=R, control_point=XC, inverse="flat", gravity=True, idle=1.4 * G,
         smoothing=0.06, span=(0.0, 15.99),
     )  # fmt: skip
 
@@ -44,13 +42,13 @@ def test_root_has_the_control_points_motion_moved() -> None:
 
 
 def test_steady_load_at_the_root_is_less_the_centrifugal_one() -> None:
-    still = Centrifuge(Flight(z=6 * G), arm=R, control_point=XC, inverse="flat", gravity=False, span=(0.0, 1.0))
+    still = gb.Centrifuge(gb.Flight(z=6 * G), arm=R, control_point=XC, inverse="flat", gravity=False, span=(0.0, 1.0))
     base = still.base(0.5)
     # C is at rest in the turning axes, the root XC nearer the tip of r = (−XC, 0, 0): a_O = a_C + XC Ω² e1
     np.testing.assert_allclose(base.a_WO_B, [XC * 6 * G / R, 0, 6 * G], atol=1e-12)
 
 
-def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
+def test_f16_record_on_a_short_arm(f16: gb.Centrifuge) -> None:
     t = np.linspace(0, 15.99, 4001)
     base, error, held = f16.base(t), f16.tracking_error(t), f16.not_followed(t)
     for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
@@ -66,7 +64,7 @@ def test_f16_record_on_a_short_arm(f16: Centrifuge) -> None:
     assert all(0 <= e.start < e.end <= 15.99 for e in f16.episodes())
 
 
-def test_axis_angles_are_integrated_and_unwrapped(f16: Centrifuge) -> None:
+def test_axis_angles_are_integrated_and_unwrapped(f16: gb.Centrifuge) -> None:
     t = np.linspace(2.2, 15.99, 20001)  # the steps of the aileron before are over
     axes = f16.axes(t)
     angles = axis_angles(axes, t)
@@ -80,15 +78,15 @@ def test_like_scenarios_share_one_compiled_function() -> None:
     traces = []
 
     @jax.jit
-    def base(machine: Centrifuge, t: np.ndarray) -> object:
+    def base(machine: gb.Centrifuge, t: np.ndarray) -> object:
         traces.append(1)
         return machine.base(t)
 
     t = np.linspace(0, 12, 11)
     for arm, mounting, level in ((3.3, "upright", 10.0), (5.0, "inverted", 10.0), (5.0, "upright", 9.9)):
-        flight = Flight(z=trapezoid(level * G, jerk=level * 0.4 * G, start=1.0, hold=4.0))
+        flight = gb.Flight(z=gb.trapezoid(level * G, jerk=level * 0.4 * G, start=1.0, hold=4.0))
         idle = 0.14 * level * G
-        like = Centrifuge(
+        like = gb.Centrifuge(
             flight, arm=arm, control_point=XC, inverse="flat", gravity=True, idle=idle, smoothing=0.06,
             mounting=mounting, span=SPAN,
         )  # fmt: skip
@@ -97,8 +95,8 @@ def test_like_scenarios_share_one_compiled_function() -> None:
 
 
 def test_a_plan_is_made_where_the_motion_is_needed() -> None:
-    flight = Flight(z=trapezoid(6 * G, jerk=20 * G, start=0.5, hold=0.5))
-    spin = Centrifuge(flight, arm=R, control_point=XC, gravity=True, idle=1.4 * G)
+    flight = gb.Flight(z=gb.trapezoid(6 * G, jerk=20 * G, start=0.5, hold=0.5))
+    spin = gb.Centrifuge(flight, arm=R, control_point=XC, gravity=True, idle=1.4 * G)
     assert spin.method == "planned"
     waiting = spin.over(0.0, 2.0, ahead=False)
     assert waiting.course is not None and waiting.course.solution is None
@@ -111,8 +109,8 @@ def test_a_plan_is_made_where_the_motion_is_needed() -> None:
 
 
 def test_a_load_with_corners_needs_no_smoothing_for_a_plan() -> None:
-    flight = Flight(z=trapezoid(6 * G, jerk=20 * G, start=0.5, hold=0.5))
-    spin = Centrifuge(flight, arm=R, control_point=XC, gravity=True, idle=1.4 * G, smoothing=None, span=(0.0, 2.0))
+    flight = gb.Flight(z=gb.trapezoid(6 * G, jerk=20 * G, start=0.5, hold=0.5))
+    spin = gb.Centrifuge(flight, arm=R, control_point=XC, gravity=True, idle=1.4 * G, smoothing=None, span=(0.0, 2.0))
     assert np.linalg.norm(spin.tracking_error(np.linspace(1.0, 1.1, 21)), axis=1).max() < 0.01 * G
     assert not [each for each in spin.shortfalls() if each.unit == "m/s^4"]
 
@@ -121,7 +119,7 @@ def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> 
     sharp = machine(smoothing=None, gravity=False, inverse="quasi-static")
     assert np.isfinite(sharp.base(np.linspace(0, 12, 61)).alpha_WB_B).all() and sharp.corners(0.1).size
     for inverse, gravity in (("flat", False), ("quasi-static", True)):
-        with pytest.raises(InputError, match="60 ms") as caught:
+        with pytest.raises(gb.InputError, match="60 ms") as caught:
             machine(smoothing=None, gravity=gravity, inverse=inverse)
         assert caught.value.where == "smoothing"
 
@@ -139,13 +137,13 @@ def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> 
     ],
 )
 def test_refusals(change: dict[str, object], where: str, words: str) -> None:
-    with pytest.raises(InputError, match=words) as caught:
+    with pytest.raises(gb.InputError, match=words) as caught:
         machine(**{**change, "span": None})
     assert caught.value.where == where
 
 
 def test_the_target_is_built_for_the_span_that_is_asked_of_it() -> None:
-    with pytest.raises(InputError, match="use over") as caught:
+    with pytest.raises(gb.InputError, match="use over") as caught:
         machine(span=None).base(1.0)
     assert caught.value.where == "span"
     idle = machine(span=None)
@@ -157,13 +155,13 @@ def test_the_target_is_built_for_the_span_that_is_asked_of_it() -> None:
 
 
 def test_an_example_machine_tells_its_arm_limits_and_idle() -> None:
-    example = machines["specimen-3.3m"]
+    example = gb.machines["specimen-3.3m"]
     options: Any = {"control_point": XC, "inverse": "flat", "gravity": False, "smoothing": 0.06, "span": SPAN}
-    spin = Centrifuge(TRAPEZOID, limits=example, **options)
+    spin = gb.Centrifuge(TRAPEZOID, limits=example, **options)
     assert spin.geometry.arm == example.arm and spin.idle == example.idle
     assert spin.episodes()[0].reason == "below idle"  # the flight begins with no load
     assert {use.axis for use in spin.usage() if np.isfinite(use.allowed)} == {"axis 1", "axis 2", "axis 3"}
-    longer = Centrifuge(TRAPEZOID, arm=4.0, limits=example, idle=2 * G, **options)
+    longer = gb.Centrifuge(TRAPEZOID, arm=4.0, limits=example, idle=2 * G, **options)
     assert longer.geometry.arm == 4.0 and longer.idle == 2 * G
 
 

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.motion import Base, Centrifuge, Flight, Profile, Sine, Sum, constant, vector
+from gbeam.motion import Base, Profile
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.centrifuge.kinematics import Axes
 
@@ -21,22 +22,22 @@ SEARCH = 1e-4  # g0: where the search for a plan ends
 
 def centrifuge(
     raw: Profile, inverse: str, gravity: bool = False, sign: int = 1, control_point: float = 0.0
-) -> Centrifuge:
-    return Centrifuge(
-        Flight(acceleration=raw), arm=R, control_point=control_point, inverse=inverse, gravity=gravity, smoothing=None,
-        mounting="upright" if sign == 1 else "inverted", span=(0.0, 2.0),
+) -> gb.Centrifuge:
+    return gb.Centrifuge(
+        gb.Flight(acceleration=raw), arm=R, control_point=control_point, inverse=inverse, gravity=gravity,
+        smoothing=None, mounting="upright" if sign == 1 else "inverted", span=(0.0, 2.0),
     )  # fmt: skip
 
 
-def seen(machine: Centrifuge, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, Axes, Base]:
+def seen(machine: gb.Centrifuge, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, Axes, Base]:
     """Wanted and achieved loads, axes and base."""
     return machine.reference(t), machine.actual(t), machine.axes(t), machine.base(t)
 
 
 def swinging() -> Profile:
     """A load that varies smoothly in size and direction over all of T."""
-    y, z = Sine(2 * G, 4.0, start=-1.0), Sum((constant(5 * G), Sine(1.5 * G, 5.0, start=-2.0)))
-    return vector(x=Sine(G, 6.0, start=-1.0), y=y, z=z)
+    y, z = gb.Sine(2 * G, 4.0, start=-1.0), gb.Sum((gb.constant(5 * G), gb.Sine(1.5 * G, 5.0, start=-2.0)))
+    return gb.vector(x=gb.Sine(G, 6.0, start=-1.0), y=y, z=z)
 
 
 @settings(max_examples=40)
@@ -49,7 +50,7 @@ def swinging() -> Profile:
 def test_constant_loads_are_exact(load: tuple[float, float, float], sign: int, gravity: bool, inverse: str) -> None:
     assume(np.hypot(load[1], load[2]) > (1.05 - 1e-9 if gravity else 0.1))  # what the gimbals reach
     f = np.array(load) * G
-    machine = centrifuge(constant(f), inverse, gravity, sign)
+    machine = centrifuge(gb.constant(f), inverse, gravity, sign)
     _, actual, _, base = seen(machine, 1.0)
     np.testing.assert_allclose(actual, f, atol=SEARCH * G if inverse == "planned" else 1e-9)
     # the splines' rounding, two derivatives on; what the search for a plan leaves
@@ -60,7 +61,7 @@ def test_constant_loads_are_exact(load: tuple[float, float, float], sign: int, g
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("inverse", sorted(INVERSES))
 def test_six_g_through_the_thickness(inverse: str, sign: int) -> None:
-    base = seen(centrifuge(constant([0.0, 0.0, 6 * G]), inverse, sign=sign), 1.0)[3]
+    base = seen(centrifuge(gb.constant([0.0, 0.0, 6 * G]), inverse, sign=sign), 1.0)[3]
     left = SEARCH * G if inverse == "planned" else 1e-12
     np.testing.assert_allclose(base.w_WB_B, [0, -sign * np.sqrt(6 * G / R), 0], atol=left)
     np.testing.assert_allclose(base.a_WO_B, [0, 0, 6 * G], atol=left)  # the control point is the root here
@@ -68,7 +69,7 @@ def test_six_g_through_the_thickness(inverse: str, sign: int) -> None:
 
 @pytest.mark.parametrize("inverse", sorted(INVERSES))
 def test_a_load_along_the_beam_is_free_of_nan(inverse: str) -> None:
-    load = vector(x=Sum((constant(-4 * G), Sine(G, 4.0, start=-1.0))))
+    load = gb.vector(x=gb.Sum((gb.constant(-4 * G), gb.Sine(G, 4.0, start=-1.0))))
     base = seen(centrifuge(load, inverse), T)[3]
     for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B):
         assert np.isfinite(part).all()
@@ -93,8 +94,8 @@ def test_flat_with_gravity_has_the_direction_of_the_horizontal_load() -> None:
 
 
 def test_quasi_static_errs_along_the_beam_by_the_tangential_acceleration() -> None:
-    load = Sum((constant(5 * G), Sine(0.5 * G, 8.0, start=-3.0)))
-    machine = centrifuge(vector(z=load), "quasi-static")
+    load = gb.Sum((gb.constant(5 * G), gb.Sine(0.5 * G, 8.0, start=-3.0)))
+    machine = centrifuge(gb.vector(z=load), "quasi-static")
     reference, actual, axes, _ = seen(machine, T)
     tangential, error = R * np.asarray(axes.acceleration1), np.asarray(actual - reference)
     np.testing.assert_allclose(machine.tracking_error(T), error, atol=1e-12)

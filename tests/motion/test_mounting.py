@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from gbeam import Centrifuge, Flight
-from gbeam.motion import constant
+from gbeam import Centrifuge, Flight, constant
 
 G = 9.80665
 DRAWING = (Path(__file__).parents[2] / "docs" / "mounting.svg").read_text(encoding="utf-8")

@@ -9,39 +9,38 @@ import pytest
 from scipy.integrate import cumulative_simpson
 from scipy.signal import find_peaks
 
+import gbeam as gb
 from gbeam.arrays import tree
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
-from gbeam.motion import AxisLimit, Centrifuge, Flight, MachineLimits, constant, machines, trapezoid
 from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
 from gbeam.motion.centrifuge.inverses.instant import Geometry
 from gbeam.motion.centrifuge.limits import Limits
-from gbeam.motion.centrifuge.target.build import build_target
 from gbeam.motion.profiles.profile import Profile
-from gbeam.motion.records.record import read_record
 from gbeam.numerics.bspline import Grid
 
 G, R = STANDARD_GRAVITY, 3.3
 IDLE = 1.4 * G
 DATA = Path(__file__).parents[2] / "examples" / "data"
 LAST = {"f16_8g_turn": 15.99, "f16_pulls_and_push": 35.99}
-SPECIMEN = machines["specimen-3.3m"].limits
-TIGHT = MachineLimits(AxisLimit(10, 20, 40), AxisLimit(20, 60, 3e3), AxisLimit(10, 30, 1e3), inertia=2e3, power=1e5)
+SPECIMEN = gb.machines["specimen-3.3m"].limits
+TIGHT = gb.MachineLimits(
+    gb.AxisLimit(10, 20, 40), gb.AxisLimit(20, 60, 3e3), gb.AxisLimit(10, 30, 1e3), inertia=2e3, power=1e5
+)
 
 
 @cache
 def record(name: str) -> Profile:
-    return read_record(DATA / f"{name}.csv", "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+    return gb.read_record(DATA / f"{name}.csv", "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
 
 
 @cache
-def spin(name: str, limits: MachineLimits | None = SPECIMEN, **options: Any) -> Centrifuge:
+def spin(name: str, limits: gb.MachineLimits | None = SPECIMEN, **options: Any) -> gb.Centrifuge:
     arguments = {"inverse": "planned", "arm": R, "control_point": 0.15, "gravity": True, "idle": IDLE}
     arguments |= {"smoothing": 0.06, **options}
-    return Centrifuge(Flight(acceleration=record(name)), limits=limits, span=(0.0, LAST[name]), **arguments)
+    return gb.Centrifuge(gb.Flight(acceleration=record(name)), limits=limits, span=(0.0, LAST[name]), **arguments)
 
 
-def times(machine: Centrifuge, step: float) -> np.ndarray:
+def times(machine: gb.Centrifuge, step: float) -> np.ndarray:
     first, last = machine.extent
     return np.linspace(first, last, 2 * round((last - first) / step / 2) + 1)
 
@@ -140,10 +139,10 @@ def test_all_ten_limits_are_kept_where_flat_breaks_them() -> None:
 
 
 def test_what_no_machine_of_this_speed_can_do_is_missed_and_the_limit_is_kept() -> None:
-    flight = Flight(z=trapezoid(8 * G, jerk=8 * G, start=1.0, hold=2.0))
+    flight = gb.Flight(z=gb.trapezoid(8 * G, jerk=8 * G, start=1.0, hold=2.0))
     # 8 g needs 4.88 rad/s; with a strong arm and a quick gimbal it would swing to and fro to make up for that.
-    slow = MachineLimits(AxisLimit(4.5, 6.0, 200.0), AxisLimit(acceleration=100.0), inertia=2e3, power=25e3)
-    machine = Centrifuge(
+    slow = gb.MachineLimits(gb.AxisLimit(4.5, 6.0, 200.0), gb.AxisLimit(acceleration=100.0), inertia=2e3, power=25e3)
+    machine = gb.Centrifuge(
         flight, arm=R, control_point=0.15, inverse="planned", gravity=False, limits=slow, idle=2 * G, smoothing=0.1,
         span=(0.0, 5.0),
     )  # fmt: skip
@@ -171,8 +170,8 @@ def test_given_times_to_spin_up_and_down_are_taken() -> None:
 
 
 def test_a_spin_up_in_which_idle_is_not_reached_is_refused_with_one_that_is_enough() -> None:
-    weak = MachineLimits(AxisLimit(acceleration=0.5), AxisLimit(), AxisLimit())
-    with pytest.raises(InputError) as refusal:
+    weak = gb.MachineLimits(gb.AxisLimit(acceleration=0.5), gb.AxisLimit(), gb.AxisLimit())
+    with pytest.raises(gb.InputError) as refusal:
         spin("f16_8g_turn", weak, spin_up=2.5)
     assert refusal.value.where == "spin_up" and "axis 1" in refusal.value.problem
     enough = float(refusal.value.fix.split('"')[1].split()[0])
@@ -181,16 +180,16 @@ def test_a_spin_up_in_which_idle_is_not_reached_is_refused_with_one_that_is_enou
 
 
 def test_an_idle_beyond_what_the_arm_can_do_is_refused() -> None:
-    with pytest.raises(InputError) as refusal:
-        spin("f16_8g_turn", MachineLimits(AxisLimit(1.5), AxisLimit(), AxisLimit()))
+    with pytest.raises(gb.InputError) as refusal:
+        spin("f16_8g_turn", gb.MachineLimits(gb.AxisLimit(1.5), gb.AxisLimit(), gb.AxisLimit()))
     assert refusal.value.where == "idle" and "axis 1" in refusal.value.problem
 
 
 def a_plan(standstill: bool, limits: Limits) -> tuple[AxisSplines, Tracking, KeptLimits]:
     """Plan of a flight of 3 s that falls below idle, on knots 0.2 s apart."""
-    flight = trapezoid(6 * G, jerk=8 * G, start=1.0, hold=0.5)
-    target = build_target(
-        Flight(z=flight, x=0.5 * G).acceleration, span=(0.0, 3.0), idle=IDLE, smoothing=0.1, gravity=True, arm=R
+    flight = gb.trapezoid(6 * G, jerk=8 * G, start=1.0, hold=0.5)
+    target = gb.build_target(
+        gb.Flight(z=flight, x=0.5 * G).acceleration, span=(0.0, 3.0), idle=IDLE, smoothing=0.1, gravity=True, arm=R
     )
     geometry = Geometry(np.asarray(R), G)
     splines = AxisSplines(Grid(-2.0 * standstill, 3.0 + 2.0 * standstill, 0.2, np.array([1, 3, 5]) / 6), standstill)
@@ -246,7 +245,7 @@ def shares_of(splines: AxisSplines, x: np.ndarray, limits: Limits) -> np.ndarray
 @pytest.mark.parametrize("power", [1e4, 1e5])  # the first binds before the axes do
 def test_what_keeps_the_rows_keeps_the_limits_at_all_times_and_they_are_not_much_tighter(power: float) -> None:
     rng = np.random.default_rng(6)
-    limits = Limits(MachineLimits(*TIGHT.axes, inertia=2e3, power=power))
+    limits = Limits(gb.MachineLimits(*TIGHT.axes, inertia=2e3, power=power))
     splines, _, kept = a_plan(True, limits)
     place = np.linspace(0, np.pi, splines.grid.size)[:, None]
     shape, waves = np.sin(place) ** 4, np.sin(place * np.arange(2, 6))
@@ -268,12 +267,12 @@ def test_what_keeps_the_rows_keeps_the_limits_at_all_times_and_they_are_not_much
 
 
 def test_equal_machines_share_a_plan_and_a_load_of_another_kind_has_its_own() -> None:
-    pulls = [trapezoid(20.0, jerk=20.0, start=1.0, hold=1.0) for _ in range(3)]
+    pulls = [gb.trapezoid(20.0, jerk=20.0, start=1.0, hold=1.0) for _ in range(3)]
     own_profile = tree.record(type("UserProfile", (type(pulls[2]),), {}))  # of no module
     object.__setattr__(pulls[2], "__class__", own_profile)
     first, second, other = (
-        Centrifuge(
-            Flight(z=pull), gravity=False, limits=SPECIMEN, arm=R, control_point=0.15, idle=IDLE, span=(0.0, 5.0)
+        gb.Centrifuge(
+            gb.Flight(z=pull), gravity=False, limits=SPECIMEN, arm=R, control_point=0.15, idle=IDLE, span=(0.0, 5.0)
         )
         for pull in pulls
     )
@@ -286,19 +285,21 @@ def test_equal_machines_share_a_plan_and_a_load_of_another_kind_has_its_own() ->
 def test_a_run_shorter_than_the_first_knots_is_planned() -> None:
     """From idle, so without a spin-up; a constant load is held as it is."""
     for seconds in (0.05, 0.2):
-        machine = Centrifuge(Flight(z=30.0), arm=R, control_point=0.2, gravity=False, start="idle", span=(0.0, seconds))
+        machine = gb.Centrifuge(
+            gb.Flight(z=30.0), arm=R, control_point=0.2, gravity=False, start="idle", span=(0.0, seconds)
+        )
         assert machine.actual(np.linspace(0, seconds, 7)) == pytest.approx(np.array([[0.0, 0.0, 30.0]] * 7), abs=1e-9)
 
 
 def test_only_a_plan_has_an_ease() -> None:
     arguments = {"arm": R, "control_point": 0.15, "gravity": True, "span": (0.0, 1.0)}
-    flight = Flight(z=constant(2 * G))
+    flight = gb.Flight(z=gb.constant(2 * G))
     for inverse in ("flat", "exact", "quasi-static"):
-        with pytest.raises(InputError, match=f"ease is given beside inverse = {inverse}"):
-            Centrifuge(flight, inverse=inverse, ease=0.1, **arguments)
-        assert Centrifuge(flight, inverse=inverse, **arguments).less_eased() is None
+        with pytest.raises(gb.InputError, match=f"ease is given beside inverse = {inverse}"):
+            gb.Centrifuge(flight, inverse=inverse, ease=0.1, **arguments)
+        assert gb.Centrifuge(flight, inverse=inverse, **arguments).less_eased() is None
     for wrong in (0.0, -1.0, np.inf):
-        with pytest.raises(InputError, match="ease is"):
-            Centrifuge(flight, ease=wrong, **arguments)
-    gentle = Centrifuge(flight, ease=0.1, **arguments).less_eased()
+        with pytest.raises(gb.InputError, match="ease is"):
+            gb.Centrifuge(flight, ease=wrong, **arguments)
+    gentle = gb.Centrifuge(flight, ease=0.1, **arguments).less_eased()
     assert gentle is not None and gentle.ease == pytest.approx(0.01)

@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
-from gbeam.motion.records.record import read_record
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 HEADER = "t,ax,ay,az"
@@ -17,7 +16,7 @@ ROWS = [f"{0.1 * i:.1f},{i / 10:g},{i / 5:g},{-3 * i / 10:g}" for i in range(12)
 def read(tmp_path: Path, lines: list[str], time: str = "t", z: str = "az", unit: str = "m/s^2"):  # type: ignore[no-untyped-def]
     path = tmp_path / "record.csv"
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return read_record(path, time, "ax", "-ay", z, unit)
+    return gb.read_record(path, time, "ax", "-ay", z, unit)
 
 
 def test_columns_signs_and_units(tmp_path: Path) -> None:
@@ -30,12 +29,12 @@ def test_columns_signs_and_units(tmp_path: Path) -> None:
 
 def test_a_record_of_zeros_alone_is_none(tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_text("\n".join([HEADER, *ROWS]), encoding="utf-8")
-    with pytest.raises(InputError, match=r'takes nothing of the file: x, y and z are "0".*name a column'):
-        read_record(tmp_path / "record.csv", "t", "0", "0", "0", "g", quantity="acceleration")
+    with pytest.raises(gb.InputError, match=r'takes nothing of the file: x, y and z are "0".*name a column'):
+        gb.read_record(tmp_path / "record.csv", "t", "0", "0", "0", "g", quantity="acceleration")
 
 
 def test_f16_record() -> None:
-    record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+    record = gb.read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     assert record.times.shape == (1600,) and record.values.shape == (1600, 3)
     assert float(record.times[-1]) == 15.99
     assert 8.0 < float(np.max(record.values[:, 2])) / STANDARD_GRAVITY < 8.3  # level flight loads +z once mapped
@@ -73,7 +72,7 @@ def replaced(row: int, text: str) -> list[str]:
 def test_refusals_name_the_row_and_the_fix(
     tmp_path: Path, lines: list[str], options: dict[str, str], where: str, words: list[str]
 ) -> None:
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(gb.InputError) as caught:
         read(tmp_path, lines, **options)
     assert caught.value.where == where
     for word in words:
@@ -89,5 +88,5 @@ def test_missing_empty_and_binary_files(tmp_path: Path) -> None:
     empty.write_text("")
     binary.write_bytes(b"\xff\xfe\x00\x81")
     for path, words in ((tmp_path / "none.csv", "cannot be read"), (empty, "empty"), (binary, "not CSV")):
-        with pytest.raises(InputError, match=words):
-            read_record(path, "t", "x", "y", "z", "g")
+        with pytest.raises(gb.InputError, match=words):
+            gb.read_record(path, "t", "x", "y", "z", "g")

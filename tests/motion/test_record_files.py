@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 NAMES = ("t", "a_x", "a_y", "a_z")
@@ -194,7 +194,7 @@ def test_every_kind_of_file_is_read_to_the_same_numbers(tmp_path: Path, kind: st
     name, write = BINARY[kind]
     names = write(tmp_path / name)
     check(fly(tmp_path / name, names))
-    with pytest.raises(InputError, match=r"record.z names no column 'a_q'; .*the columns are"):
+    with pytest.raises(gb.InputError, match=r"record.z names no column 'a_q'; .*the columns are"):
         fly(tmp_path / name, (*names[:3], "a_q"))
 
 
@@ -203,7 +203,7 @@ def test_universal_files_are_read_to_their_digits(tmp_path: Path) -> None:
     record = fly(tmp_path / "r.unv", names)
     np.testing.assert_allclose(record.acceleration.times, T, rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(record.acceleration.values, STANDARD_GRAVITY * NUMBERS[:, 1:], rtol=1e-11)
-    with pytest.raises(InputError, match=r"columns are time, Nose, 12-Y, 12\+Z"):
+    with pytest.raises(gb.InputError, match=r"columns are time, Nose, 12-Y, 12\+Z"):
         fly(tmp_path / "r.unv", ("t", *names[1:]))
 
 
@@ -214,7 +214,9 @@ def test_universal_files_hold_what_they_state(tmp_path: Path) -> None:
     first = blocks[1].split(b"\n")
     short = b"\n".join([*first[: -1 - 16], *first[-2:]])
     (tmp_path / "r.unv").write_bytes(b"    -1\n    58\n".join([blocks[0], short, *blocks[2:]]))
-    with pytest.raises(InputError, match=r"record.file .*states 240 samples of 'Nose' and holds 180; export it again"):
+    with pytest.raises(
+        gb.InputError, match=r"record.file .*states 240 samples of 'Nose' and holds 180; export it again"
+    ):
         fly(tmp_path / "r.unv", names)
 
 
@@ -228,7 +230,9 @@ def test_arrays_that_were_not_written_to_their_end_are_refused(tmp_path: Path) -
                 : 240 if name == "t" else 180
             ]
         file["nothing"] = h5py.Empty("f8")
-    with pytest.raises(InputError, match=r"record.x column 'a_x' has room for 240 numbers, of which 3 of 4 parts were"):
+    with pytest.raises(
+        gb.InputError, match=r"record.x column 'a_x' has room for 240 numbers, of which 3 of 4 parts were"
+    ):
         fly(tmp_path / "r.h5")
     with h5py.File(tmp_path / "r.h5", "r+") as file:
         for name, values in zip(NAMES, NUMBERS.T, strict=True):
@@ -250,7 +254,7 @@ def test_fields_of_compounds_are_columns(tmp_path: Path) -> None:
     record = fly(tmp_path / "r.h5", ("imu/t", "imu/acc/x", "imu/acc/yz[:,0]", "imu/acc/yz[:,1]"))
     np.testing.assert_allclose(record.acceleration.values, STANDARD_GRAVITY * NUMBERS[:, 1:], rtol=1e-7)
     with pytest.raises(
-        InputError, match=r"columns are imu/t, imu/acc/x, imu/acc/yz\[:,0\], imu/acc/yz\[:,1\], imu/n_z"
+        gb.InputError, match=r"columns are imu/t, imu/acc/x, imu/acc/yz\[:,0\], imu/acc/yz\[:,1\], imu/n_z"
     ):
         fly(tmp_path / "r.h5", ("t", "x", "y", "n_z"))
 
@@ -278,7 +282,7 @@ def test_a_variable_that_only_matlab_reads_leaves_the_others(version: str, tmp_p
         1.99 if path == DATED else 2.39
     )
     with pytest.raises(
-        InputError, match=r"record.time column 'when' is of MATLAB's class datetime.*seconds\(t - t\(1\)\)"
+        gb.InputError, match=r"record.time column 'when' is of MATLAB's class datetime.*seconds\(t - t\(1\)\)"
     ):
         fly(path, ("when", "ax", "ay", "az"), "m/s^2")
 
@@ -294,12 +298,12 @@ def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> 
     np.testing.assert_allclose(values, STANDARD_GRAVITY * NUMBERS[:, 3], rtol=1e-12)
     with h5py.File(tmp_path / "r.nc", "r+") as file:
         file["z"][7] = -9999
-    with pytest.raises(InputError, match=r"record.z sample 8, column 'z' is nan"):
+    with pytest.raises(gb.InputError, match=r"record.z sample 8, column 'z' is nan"):
         fly(tmp_path / "r.nc", ("t", "0", "0", "z"))
     with h5py.File(tmp_path / "r.nc", "r+") as file:
         file["z"][0] = 0
         file["z"].attrs["scale_factor"] = np.inf
-    with warnings.catch_warnings(), pytest.raises(InputError, match=r"record.z sample 1, column 'z' is nan"):
+    with warnings.catch_warnings(), pytest.raises(gb.InputError, match=r"record.z sample 1, column 'z' is nan"):
         warnings.simplefilter("error")
         fly(tmp_path / "r.nc", ("t", "0", "0", "z"))
 
@@ -321,7 +325,7 @@ def test_packed_values_are_unpacked_and_missing_ones_refused(tmp_path: Path) -> 
 def test_files_that_disagree_are_refused(tmp_path: Path, text: str, where: str, words: list[str]) -> None:
     path = tmp_path / "record.csv"
     path.write_text(text)
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(gb.InputError) as caught:
         fly(path, ("t", "0", "0", "a_z"))
     assert caught.value.where == where
     for word in words:
@@ -331,7 +335,7 @@ def test_files_that_disagree_are_refused(tmp_path: Path, text: str, where: str, 
 def test_a_unit_stated_wrongly_by_the_file_can_be_overridden(tmp_path: Path) -> None:
     path = tmp_path / "record.csv"
     path.write_text(lines(header=("t [ms]", "a_x", "a_y", "a_z [m/s^2]")))
-    with pytest.raises(InputError, match=r'skip_checks = \["unit"\]'):
+    with pytest.raises(gb.InputError, match=r'skip_checks = \["unit"\]'):
         fly(path)
     check(fly(path, time_unit="s", conditioning=Conditioning(skip_checks=("unit",))))
 
@@ -383,7 +387,7 @@ def test_units_that_are_none_or_not_the_files_are_refused(
 ) -> None:
     path = tmp_path / "record.csv"
     np.savetxt(path, NUMBERS, delimiter=",", header=",".join(header), comments="", fmt="%.12g")
-    with pytest.raises(InputError, match=words) as caught:
+    with pytest.raises(gb.InputError, match=words) as caught:
         fly(path, header, unit)
     assert caught.value.where == "record.unit"
 
@@ -409,12 +413,12 @@ def test_labviews_header_says_units_rate_and_samples(tmp_path: Path) -> None:
     assert fly(path).summary.notes == ("the file's header states 800 samples, and it holds 240",)
     path.write_text(labview(step=0.005))
     with pytest.raises(
-        InputError, match=r"record.time has 100 Hz, and the file states Delta_X, 200 Hz; if the file is"
+        gb.InputError, match=r"record.time has 100 Hz, and the file states Delta_X, 200 Hz; if the file is"
     ):
         fly(path)
     check(fly(path, conditioning=Conditioning(skip_checks=("sampling",))))
     path.write_text(labview(unit="m/s^2"))
-    with pytest.raises(InputError, match=r'record.unit is g, .* in m/s\^2; write unit = "m/s\^2"'):
+    with pytest.raises(gb.InputError, match=r'record.unit is g, .* in m/s\^2; write unit = "m/s\^2"'):
         fly(path)
 
 
@@ -439,12 +443,12 @@ def test_a_file_without_times_is_flown_at_its_sample_rate(tmp_path: Path, write:
     path, names = tmp_path / "r.mat", ("acc(:,1)", "acc(:,2)", "acc(:,3)")
     write(path)
     with pytest.raises(
-        InputError, match=r'no column \'t\'; .* or write sample_rate = "100 Hz" in place of time, the Fs of'
+        gb.InputError, match=r'no column \'t\'; .* or write sample_rate = "100 Hz" in place of time, the Fs of'
     ):
         fly(path, ("t", *names))
     check(read_flight(path, None, *names, "g", sample_rate=100.0))
     with pytest.raises(
-        InputError, match=r'record.sample_rate is 200 Hz, and the file states Fs.* sample_rate = "100 Hz"'
+        gb.InputError, match=r'record.sample_rate is 200 Hz, and the file states Fs.* sample_rate = "100 Hz"'
     ):
         read_flight(path, None, *names, "g", sample_rate=200.0)
 
@@ -460,14 +464,14 @@ def test_sample_rates_of_hdf5_are_those_of_their_groups(tmp_path: Path) -> None:
     check(fly(tmp_path / "r.h5"))
     with h5py.File(tmp_path / "r.h5", "r+") as file:
         file["imu"].attrs["wf_increment"] = 0.02
-    with pytest.raises(InputError, match=r"has 100 Hz, and the file states imu/wf_increment, 50 Hz"):
+    with pytest.raises(gb.InputError, match=r"has 100 Hz, and the file states imu/wf_increment, 50 Hz"):
         fly(tmp_path / "r.h5")
 
 
 def test_rates_in_another_unit_than_the_file_states(tmp_path: Path) -> None:
     path = tmp_path / "record.csv"
     path.write_text(lines(header=("t", "a_x", "p [deg/s]", "a_z")))
-    with pytest.raises(InputError, match=r'record.rate_unit is rad/s, .* write rate_unit = "deg/s"'):
+    with pytest.raises(gb.InputError, match=r'record.rate_unit is rad/s, .* write rate_unit = "deg/s"'):
         fly(path, ("t", "a_x", "0", "a_z"), rates=Rates("p", "0", "0", "rad/s"))
     assert fly(path, ("t", "a_x", "0", "a_z"), rates=Rates("p", "0", "0", "deg/s")).rates is not None
 
@@ -476,7 +480,7 @@ def test_rates_in_another_unit_than_the_file_states(tmp_path: Path) -> None:
 def test_files_that_are_not_what_their_names_say(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text(lines())
     for path in (tmp_path / name, tmp_path / f"none.{name}"):
-        with pytest.raises(InputError) as caught:
+        with pytest.raises(gb.InputError) as caught:
             fly(path)
         assert caught.value.where == "record.file"
 
@@ -484,7 +488,10 @@ def test_files_that_are_not_what_their_names_say(tmp_path: Path, name: str) -> N
 def test_numbers_of_a_vax_are_refused(tmp_path: Path) -> None:
     header = struct.pack("<5i", 2000, 4, 1, 0, 2)  # version 4: VAX D-float, 4 by 1, real, a name of one letter
     (tmp_path / "r.mat").write_bytes(header + b"t\0" + np.arange(4.0).tobytes())
-    with warnings.catch_warnings(), pytest.raises(InputError, match=r"VAX D-float.*may be corrupt.*save the record by"):
+    with (
+        warnings.catch_warnings(),
+        pytest.raises(gb.InputError, match=r"VAX D-float.*may be corrupt.*save the record by"),
+    ):
         warnings.simplefilter("error")
         fly(tmp_path / "r.mat", ("t", "0", "0", "t"))
 
@@ -510,7 +517,7 @@ def test_a_long_cell_takes_no_more_than_its_length(tmp_path: Path, cell: str, de
     named = delimiter.join((*NAMES[:3], cell)) if cell in HEADERS else first
     path.write_text("\n".join([named, *[long] * 10, rest]))
     begin = time.process_time()
-    with pytest.raises(InputError, match=r"record\."):
+    with pytest.raises(gb.InputError, match=r"record\."):
         fly(path)
     assert time.process_time() - begin < 1.0
 
@@ -521,6 +528,6 @@ def test_a_long_cell_takes_no_more_than_its_length(tmp_path: Path, cell: str, de
 def test_a_long_size_of_a_count_is_refused_at_once(text: str, tmp_path: Path) -> None:
     begin = time.process_time()
     (tmp_path / "r.csv").write_text(lines())
-    with pytest.raises(InputError, match=r"record\.unit"):
+    with pytest.raises(gb.InputError, match=r"record\.unit"):
         read_flight(tmp_path / "r.csv", *NAMES, text)
     assert time.process_time() - begin < 1.0

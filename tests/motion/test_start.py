@@ -5,37 +5,36 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
-from gbeam.motion import AxisLimit, Base, Centrifuge, Flight, MachineLimits, Profile, tabulated, vector
+from gbeam.motion import Base, Profile
 from gbeam.motion.centrifuge.inverses.spin_up import LEAST_TURNED, USUAL_TURNED
 from gbeam.motion.centrifuge.kinematics import Axes, forward
-from gbeam.motion.records.record import read_record
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 SPIN_UP, SPIN_DOWN, LAST, W = 3.0, 4.0, 8.0, 0.2
 # It begins and ends with corners, which are rounded within half a width of the flight's edges.
-RISING = vector(
-    x=tabulated([0, 4, 6], [0.5 * G, 0.5 * G, G]),
-    y=tabulated([0.0], [G]),
-    z=tabulated([0, 3.5, 5, 8], np.array([2, 2.5, 5, 4]) * G),
+RISING = gb.vector(
+    x=gb.tabulated([0, 4, 6], [0.5 * G, 0.5 * G, G]),
+    y=gb.tabulated([0.0], [G]),
+    z=gb.tabulated([0, 3.5, 5, 8], np.array([2, 2.5, 5, 4]) * G),
 )
 
 
 def machine(
     start: str = "rest", inverse: str = "flat", *, raw: Profile = RISING, gravity: bool = True, sign: int = 1,
     spin_up: float | None = SPIN_UP, spin_down: float | None = SPIN_DOWN, smoothing: float = W,
-    idle: float | None = None, limits: MachineLimits | None = None,
-) -> Centrifuge:  # fmt: skip
-    return Centrifuge(
-        Flight(acceleration=raw), arm=R, control_point=0.15, inverse=inverse, gravity=gravity, idle=idle,
+    idle: float | None = None, limits: gb.MachineLimits | None = None,
+) -> gb.Centrifuge:  # fmt: skip
+    return gb.Centrifuge(
+        gb.Flight(acceleration=raw), arm=R, control_point=0.15, inverse=inverse, gravity=gravity, idle=idle,
         smoothing=smoothing, mounting="upright" if sign == 1 else "inverted", start=start, spin_up=spin_up,
         spin_down=spin_down, limits=limits, span=(0.0, LAST),
     )  # fmt: skip
 
 
-def seen(spin: Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
+def seen(spin: gb.Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
     axes, jerk = spin.axes_and_jerks(t)
     return axes, jerk, spin.base(t), spin.reference(t), forward(axes, spin.geometry.arm, spin.geometry.gravity).a_WO_B
 
@@ -98,9 +97,9 @@ def test_commands_integrate_from_standstill_to_standstill(start: str, inverse: s
 
 def test_no_sample_of_the_record_is_replaced() -> None:
     """A 10 g pull at 4.3 s stays, however long the spin-up; it used to vanish behind the load at its end."""
-    pull = tabulated([0, 3.5, 4.3, 5.1, 12, 16], np.array([1.5, 1.5, 10, 1.5, 3, 3]) * G)
-    flight = Flight(z=pull)
-    spin = Centrifuge(
+    pull = gb.tabulated([0, 3.5, 4.3, 5.1, 12, 16], np.array([1.5, 1.5, 10, 1.5, 3, 3]) * G)
+    flight = gb.Flight(z=pull)
+    spin = gb.Centrifuge(
         flight, arm=7.6, control_point=0.3, inverse="flat", gravity=True, idle=1.4 * G, smoothing=0.06, start="rest",
         spin_up=10.0, span=(0.0, 16.0),
     )  # fmt: skip
@@ -159,10 +158,10 @@ def test_times_left_out_turn_the_arm_once_or_keep_the_limits(start: str) -> None
     horizontal = R * free.axes(-W / 2).rate1 ** 2
     assert 0.19 < R * np.abs(free.axes(t).acceleration1).max() / horizontal < 0.2
     for limits, binding in (
-        (MachineLimits(AxisLimit(acceleration=0.4)), ("axis 1", "acceleration")),
-        (MachineLimits(AxisLimit(jerk=0.3)), ("axis 1", "jerk")),
-        (MachineLimits(axis3=AxisLimit(rate=0.05)), ("axis 3", "rate")),
-        (MachineLimits(inertia=2000.0, power=1000.0), ("arm", "power")),
+        (gb.MachineLimits(gb.AxisLimit(acceleration=0.4)), ("axis 1", "acceleration")),
+        (gb.MachineLimits(gb.AxisLimit(jerk=0.3)), ("axis 1", "jerk")),
+        (gb.MachineLimits(axis3=gb.AxisLimit(rate=0.05)), ("axis 3", "rate")),
+        (gb.MachineLimits(inertia=2000.0, power=1000.0), ("arm", "power")),
     ):
         spin = machine(start, spin_up=None, spin_down=None, limits=limits)
         begin, end = spin.extent
@@ -173,7 +172,7 @@ def test_times_left_out_turn_the_arm_once_or_keep_the_limits(start: str) -> None
 
 
 def test_limits_are_judged_from_standstill_to_standstill() -> None:
-    limits = MachineLimits(AxisLimit(acceleration=3.0))
+    limits = gb.MachineLimits(gb.AxisLimit(acceleration=3.0))
     for spin_up, spin_down, when in ((1.5, 4.0, (-1.5, 0)), (4.0, 1.5, (LAST, LAST + 1.5))):
         short = machine(spin_up=spin_up, spin_down=spin_down, limits=limits)
         use = {(each.axis, each.quantity): each for each in short.usage()}
@@ -192,14 +191,14 @@ def test_idle_begins_and_ends_with_the_flight() -> None:
 
 
 def test_the_f16_record_from_standstill_to_standstill() -> None:
-    record = read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+    record = gb.read_record(F16, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     options = {
         "arm": R, "control_point": 0.15, "inverse": "flat", "gravity": True, "idle": 1.4 * G,
         "smoothing": 0.06, "span": (0.0, 15.99),
     }  # fmt: skip
-    spin = Centrifuge(Flight(acceleration=record), **options)
+    spin = gb.Centrifuge(gb.Flight(acceleration=record), **options)
     assert spin.ends.start == "rest"  # unless told otherwise
-    idle, t = Centrifuge(Flight(acceleration=record), **options, start="idle"), np.linspace(0.03, 15.96, 3001)
+    idle, t = gb.Centrifuge(gb.Flight(acceleration=record), **options, start="idle"), np.linspace(0.03, 15.96, 3001)
     np.testing.assert_array_equal(states(spin.axes(t)), states(idle.axes(t)))
     begin, end = spin.extent
     way = np.concatenate([np.linspace(begin, -0.03, 500), np.linspace(16.02, end, 500)])
@@ -219,6 +218,6 @@ def test_the_f16_record_from_standstill_to_standstill() -> None:
     ],
 )
 def test_refusals(options: dict[str, object], where: str, words: str) -> None:
-    with pytest.raises(InputError, match=words) as caught:
+    with pytest.raises(gb.InputError, match=words) as caught:
         machine(**options)  # type: ignore[arg-type]
     assert caught.value.where == where

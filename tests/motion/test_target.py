@@ -5,36 +5,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
-from gbeam.motion import (
-    Centrifuge,
-    Flight,
-    Profile,
-    Sine,
-    SmoothStep,
-    Sum,
-    constant,
-    smoothed,
-    tabulated,
-    trapezoid,
-    vector,
-)
-from gbeam.motion.centrifuge.target.build import build_target
+from gbeam.motion import Profile
 from gbeam.motion.centrifuge.target.reachability import MIN_TRANSVERSE_LOAD, nearest_to_zero
 from gbeam.motion.centrifuge.target.target import Target, gentle
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.motion.records.record import read_record
 
 G, R, IDLE, W = STANDARD_GRAVITY, 3.3, 1.4 * STANDARD_GRAVITY, 0.06
-TRAPEZOID = vector(z=trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))
+TRAPEZOID = gb.vector(z=gb.trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))
 T = np.linspace(0, 12, 1201)
 DATA = Path(__file__).parents[2] / "examples" / "data"
 PULLS = "f16_pulls_and_push.csv"
 
 
 def record(name: str) -> tuple[Profile, float]:
-    raw = read_record(DATA / name, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
+    raw = gb.read_record(DATA / name, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
     return raw, float(raw.times[-1])
 
 
@@ -42,7 +28,7 @@ def wander(seed: int) -> tuple[Profile, float]:
     """Loads between zero and 6 g in every direction, in 20 s."""
     rng = np.random.default_rng(seed)
     times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.5, 24))])
-    return tabulated(times, rng.uniform(0, 3.5, (25, 1)) * rng.normal(size=(25, 3)) * G), float(times[-1])
+    return gb.tabulated(times, rng.uniform(0, 3.5, (25, 1)) * rng.normal(size=(25, 3)) * G), float(times[-1])
 
 
 RECORDS = {"turn": record("f16_8g_turn.csv"), "pulls": record(PULLS), **{str(seed): wander(seed) for seed in range(6)}}
@@ -55,17 +41,17 @@ def target(
     gravity: bool = False,
     clip: bool = False,
 ) -> Target:
-    return build_target(raw, span=(0.0, 12.0), idle=idle, smoothing=smoothing, gravity=gravity, clip=clip)
+    return gb.build_target(raw, span=(0.0, 12.0), idle=idle, smoothing=smoothing, gravity=gravity, clip=clip)
 
 
 def of_record(name: str, **options: object) -> tuple[Target, np.ndarray, np.ndarray, np.ndarray]:
     """Target, times, the flight's load with its corners rounded, and the target's."""
     raw, end = RECORDS[name]
     arguments = {"span": (0.0, end), "idle": IDLE, "smoothing": W, "gravity": True, "arm": R, **options}
-    built = build_target(raw, **arguments)  # type: ignore[arg-type]
+    built = gb.build_target(raw, **arguments)  # type: ignore[arg-type]
     t = np.linspace(0, end, int(1000 * end) + 1)
     inside = t[(t > W / 2) & (t < end - W / 2)]
-    return built, inside, np.asarray(smoothed(raw, W)(inside)), np.asarray(built.load(inside))
+    return built, inside, np.asarray(gb.smoothed(raw, W)(inside)), np.asarray(built.load(inside))
 
 
 def size(load: np.ndarray) -> np.ndarray:
@@ -162,10 +148,10 @@ def test_the_target_stands_still_beyond_the_span_and_is_smooth_within(name: str)
 def test_a_load_above_idle_is_smoothed_and_nothing_else(gravity: bool) -> None:
     raw = PiecewiseLinear([0.0, 3.0, 5.0, 12.0], [[0, 2, 3], [-1, 4, 3], [1, 1, 6], [0, 1, 3]] * np.array(G))
     built, inside = target(raw, idle=IDLE, gravity=gravity), T[(T > W / 2) & (T < 12 - W / 2)]
-    np.testing.assert_allclose(built.load(inside), smoothed(raw, W)(inside), rtol=1e-14)
+    np.testing.assert_allclose(built.load(inside), gb.smoothed(raw, W)(inside), rtol=1e-14)
     assert built.episodes() == [] and not np.any(built.not_followed(T))
     # Cut out of it, a span begins and ends with what the flight has there: no sample of it is another.
-    cut = build_target(raw, span=(1.0, 11.0), idle=IDLE, smoothing=W, gravity=gravity)
+    cut = gb.build_target(raw, span=(1.0, 11.0), idle=IDLE, smoothing=W, gravity=gravity)
     np.testing.assert_allclose(cut.load(np.array([-5.0, 20.0])), raw(np.array([1.0, 11.0])), rtol=1e-12)
     np.testing.assert_allclose(cut.load(T[105:1096]), built.load(T[105:1096]), rtol=1e-12)
 
@@ -184,13 +170,13 @@ def test_a_trapezoid_leaves_and_meets_idle() -> None:
 
 def test_a_hold_keeps_the_direction_and_smooths_what_an_arm_at_idle_could_not_follow() -> None:
     raw = PiecewiseLinear([0.0, 12.0], [[0.3 * G, 0.4 * G, 0.0], [0.0, 0.6 * G, 0.8 * G]])
-    slow = build_target(raw, span=(0.0, 12.0), idle=2 * G, smoothing=W, gravity=False)
+    slow = gb.build_target(raw, span=(0.0, 12.0), idle=2 * G, smoothing=W, gravity=False)
     np.testing.assert_allclose(size(slow.load(T)), 2 * G, rtol=1e-12)
     np.testing.assert_allclose(unit(np.asarray(slow.load(T)))[20:-20], unit(np.asarray(raw(T)))[20:-20], atol=1e-4)
     times = np.arange(0, 12, 0.02)
     flicker = 0.4 * np.sin(2 * np.pi * 4 * times)
-    quick = tabulated(times, G * np.stack([0 * times, np.sin(flicker), np.cos(flicker)], axis=1))
-    held = build_target(quick, span=(0.0, 12.0), idle=2 * G, smoothing=W, gravity=False, arm=R)
+    quick = gb.tabulated(times, G * np.stack([0 * times, np.sin(flicker), np.cos(flicker)], axis=1))
+    held = gb.build_target(quick, span=(0.0, 12.0), idle=2 * G, smoothing=W, gravity=False, arm=R)
     inner = np.asarray(held.load(T[300:-300]))
     assert np.abs(np.arctan2(inner[:, 1], inner[:, 2])).max() < 0.02
 
@@ -199,8 +185,8 @@ def test_a_hold_keeps_the_direction_and_smooths_what_an_arm_at_idle_could_not_fo
 @pytest.mark.parametrize("side", [0.0, 0.05])
 def test_a_load_that_reverses_through_zero_is_a_roll_at_idle(gravity: bool, side: float) -> None:
     for raw in (REVERSING, JUMPING):
-        beside = vector(y=constant(side * G), z=raw.parts[2])
-        built = build_target(beside, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R)
+        beside = gb.vector(y=gb.constant(side * G), z=raw.parts[2])
+        built = gb.build_target(beside, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R)
         t = np.linspace(4.5, 7.5, 6001)
         load = np.asarray(built.load(t))
         roll = np.unwrap(np.arctan2(load[:, 2], load[:, 1]))
@@ -208,7 +194,7 @@ def test_a_load_that_reverses_through_zero_is_a_roll_at_idle(gravity: bool, side
         assert np.isfinite(built.load.derivatives(t, 3)).all() and size(load).min() > IDLE * (1 - 1e-12)
     # At 5 g/s through zero there is half a second.
     assert np.abs(np.gradient(np.unwrap(np.arctan2(load[:, 2], load[:, 1])), t)).max() > 100  # a jump stays one
-    slow = build_target(REVERSING, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R).load(t)
+    slow = gb.build_target(REVERSING, span=(0.0, 12.0), idle=IDLE, smoothing=W, gravity=gravity, arm=R).load(t)
     assert np.abs(np.gradient(np.unwrap(np.arctan2(slow[:, 2], slow[:, 1])), t)).max() < 2 * np.pi / (2 * 1.4 / 5)
 
 
@@ -218,11 +204,11 @@ def test_loads_gravity_exceeds_are_raised_across_the_beam_and_the_axial_one_is_k
         [0.0, 4.0, 5.0, 6.0, 12.0],
         np.array([[2, 0, 3], [2, 0, 3], [2, 0.15, 0.15], [2, 3, 0], [2, 3, 0]]) * G,
     )
-    with pytest.raises(InputError, match=r"0\.212 g only at 5\.000 s.*clip = true"):
+    with pytest.raises(gb.InputError, match=r"0\.212 g only at 5\.000 s.*clip = true"):
         target(raw, gravity=True)  # another load only if asked for: by idle, or by clip
     for idle in (None, IDLE):
         built = target(raw, idle=idle, gravity=True, clip=True)
-        load, kept = np.asarray(built.load(T)), np.asarray(smoothed(raw, W)(T))
+        load, kept = np.asarray(built.load(T)), np.asarray(gb.smoothed(raw, W)(T))
         assert across(load).min() > MIN_TRANSVERSE_LOAD * (1 - 1e-12)
         np.testing.assert_allclose(load[:, 0], 2 * G, rtol=1e-7 if idle is None else 2e-3)
         clear = across(kept) > 1.5 * MIN_TRANSVERSE_LOAD
@@ -235,7 +221,7 @@ def test_loads_gravity_exceeds_are_raised_across_the_beam_and_the_axial_one_is_k
 
 
 def test_a_load_along_the_beam_only_is_raised_upwards_of_gravity() -> None:
-    built = target(vector(x=constant(3 * G)), idle=IDLE, gravity=True)
+    built = target(gb.vector(x=gb.constant(3 * G)), idle=IDLE, gravity=True)
     np.testing.assert_allclose(built.load(T), np.broadcast_to([3 * G, 0, MIN_TRANSVERSE_LOAD], (T.size, 3)), atol=1e-9)
     assert [episode.reason for episode in built.episodes()] == ["gimbals"]
 
@@ -243,7 +229,9 @@ def test_a_load_along_the_beam_only_is_raised_upwards_of_gravity() -> None:
 @pytest.mark.parametrize("idle", [1.1 * G, 1.12 * G, 5 * G])
 def test_the_least_idle_is_in_reach_in_every_direction(idle: float) -> None:
     angle = np.linspace(0, 40, 300)
-    raw = tabulated(np.linspace(0, 12, 300), np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1) * 0.8 * idle)
+    raw = gb.tabulated(
+        np.linspace(0, 12, 300), np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1) * 0.8 * idle
+    )
     load = target(raw, idle=idle, gravity=True).load
     np.testing.assert_allclose(size(load(T)), idle, rtol=1e-12)
     assert across(load(T)).min() > MIN_TRANSVERSE_LOAD * (1 - 1e-12) and np.isfinite(load.derivatives(T, 3)).all()
@@ -301,9 +289,9 @@ def test_a_path_of_close_and_uneven_knots_is_that_of_the_continuous_load() -> No
 
 
 def test_curved_profiles_are_kept_exactly_or_sampled_finely() -> None:
-    raw = vector(z=Sum((constant(3 * G), Sine(2 * G, 10.0, start=1.0))))
-    np.testing.assert_allclose(target(raw).load(T), smoothed(raw, W)(T), rtol=1e-14)
-    built, kept = target(raw, idle=2 * G), np.asarray(smoothed(raw, W)(T))
+    raw = gb.vector(z=gb.Sum((gb.constant(3 * G), gb.Sine(2 * G, 10.0, start=1.0))))
+    np.testing.assert_allclose(target(raw).load(T), gb.smoothed(raw, W)(T), rtol=1e-14)
+    built, kept = target(raw, idle=2 * G), np.asarray(gb.smoothed(raw, W)(T))
     held = np.asarray(built.not_followed(T))
     assert held.any() and not held.all()
     clear = size(kept) > 2.2 * G
@@ -317,12 +305,12 @@ def test_corners_and_turning() -> None:
     sharp = target(TRAPEZOID, idle=IDLE, smoothing=None)
     assert not sharp.rounded and not sharp.turns
     assert target(TRAPEZOID, idle=IDLE, smoothing=None, gravity=True).turns  # the roll angle varies with size
-    assert target(vector(z=Sum((constant(2 * G), SmoothStep(G, 3.0)))), smoothing=None).rounded
-    assert target(vector(y=constant(G), z=constant(2 * G)), smoothing=0.0).rounded
+    assert target(gb.vector(z=gb.Sum((gb.constant(2 * G), gb.SmoothStep(G, 3.0)))), smoothing=None).rounded
+    assert target(gb.vector(y=gb.constant(G), z=gb.constant(2 * G)), smoothing=0.0).rounded
 
 
-REVERSING = vector(z=PiecewiseLinear([0.0, 5.0, 7.0, 12.0], [5 * G, 5 * G, -5 * G, -5 * G]))
-JUMPING = vector(z=PiecewiseLinear([0.0, 5.0, 5.001, 12.0], [5 * G, 5 * G, -5 * G, -5 * G]))
+REVERSING = gb.vector(z=PiecewiseLinear([0.0, 5.0, 7.0, 12.0], [5 * G, 5 * G, -5 * G, -5 * G]))
+JUMPING = gb.vector(z=PiecewiseLinear([0.0, 5.0, 5.001, 12.0], [5 * G, 5 * G, -5 * G, -5 * G]))
 AXIAL = PiecewiseLinear([0.0, 6.0, 12.0], [[5 * G, 0, 3 * G], [5 * G, 0, 0], [5 * G, 3 * G, 3 * G]])
 
 
@@ -333,18 +321,18 @@ AXIAL = PiecewiseLinear([0.0, 6.0, 12.0], [[5 * G, 0, 3 * G], [5 * G, 0, 0], [5 
         (TRAPEZOID, {"idle": G, "gravity": True}, "idle", ["1.1 g"]),
         (TRAPEZOID, {"idle": -1.0}, "idle", ["positive"]),
         (TRAPEZOID, {"smoothing": -0.1, "idle": 2 * G}, "smoothing", ["negative"]),
-        (vector(x=REVERSING.parts[2]), {"idle": IDLE}, "tracks", ["reverses", "6.0"]),
+        (gb.vector(x=REVERSING.parts[2]), {"idle": IDLE}, "tracks", ["reverses", "6.0"]),
         (REVERSING, {"gravity": True}, "tracks", ["reverses", "6.0"]),
         (JUMPING, {"gravity": True}, "tracks", ["reverses", "5.0"]),
         (JUMPING, {}, "tracks", ["next to no load", "5.0"]),
-        (vector(z=constant(G)), {"gravity": True}, "tracks", ["1.05 g", "idle"]),
-        (vector(), {"idle": 2 * G}, "tracks", ["direction"]),
+        (gb.vector(z=gb.constant(G)), {"gravity": True}, "tracks", ["1.05 g", "idle"]),
+        (gb.vector(), {"idle": 2 * G}, "tracks", ["direction"]),
         (AXIAL, {}, "tracks", ["along its axis only at"]),
         (AXIAL, {"idle": IDLE}, "tracks", ["along its axis only at"]),
     ],
 )
 def test_refusals(raw: Profile, options: dict[str, float], where: str, words: list[str]) -> None:
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(gb.InputError) as caught:
         target(raw, **options)  # type: ignore[arg-type]
     assert caught.value.where == where
     for word in words:
@@ -352,8 +340,8 @@ def test_refusals(raw: Profile, options: dict[str, float], where: str, words: li
 
 
 def test_span_must_run_forward() -> None:
-    with pytest.raises(InputError, match="after the start"):
-        build_target(TRAPEZOID, span=(3.0, 3.0), idle=2 * G, smoothing=W, gravity=False)
+    with pytest.raises(gb.InputError, match="after the start"):
+        gb.build_target(TRAPEZOID, span=(3.0, 3.0), idle=2 * G, smoothing=W, gravity=False)
 
 
 def test_nearest_to_zero_looks_between_knots() -> None:
@@ -364,9 +352,9 @@ def test_nearest_to_zero_looks_between_knots() -> None:
 
 def test_a_curved_flight_that_is_smoothed_twice_is_read_from_a_table() -> None:
     """A quadrature within a quadrature took a minute and 12 GB for 8 s; the table is within 1e-4 of the peak."""
-    wave = smoothed(Sine(15.0, 8.0), 0.04)
-    load = vector(x=constant(3.0), y=wave, z=constant(12.0))
-    target = build_target(load, span=(0.0, 8.0), idle=None, smoothing=0.12, gravity=False)
+    wave = gb.smoothed(gb.Sine(15.0, 8.0), 0.04)
+    load = gb.vector(x=gb.constant(3.0), y=wave, z=gb.constant(12.0))
+    target = gb.build_target(load, span=(0.0, 8.0), idle=None, smoothing=0.12, gravity=False)
     times = np.linspace(0.1, 7.9, 9)
     expected = np.array([_twice_smoothed_sine(t, 0.04, 0.12) for t in times])
     np.testing.assert_allclose(target.load(times)[:, 1], 15 * expected, atol=1.5e-3)
@@ -381,10 +369,13 @@ def _twice_smoothed_sine(t: float, *widths: float) -> float:
 
 def test_knots_that_rounding_parts_make_no_corner() -> None:
     """Knots 1e-12 s apart, of parts that were smoothed apart, made the path's equations singular."""
-    pulls = [trapezoid(50.0, jerk=90.0, start=1.5, hold=0.5), trapezoid(25.0, jerk=90.0, start=1.5 + 1e-12, hold=0.1)]
-    z = Sum((*(smoothed(pull, 0.04) for pull in pulls), constant(9.80665)))
-    load = vector(x=constant(3.0), y=smoothed(Sine(15.0, 4.0), 0.04), z=z)
-    target = build_target(load, span=(0.0, 4.0), idle=17.0, smoothing=0.12, gravity=True, arm=7.6)
+    pulls = [
+        gb.trapezoid(50.0, jerk=90.0, start=1.5, hold=0.5),
+        gb.trapezoid(25.0, jerk=90.0, start=1.5 + 1e-12, hold=0.1),
+    ]
+    z = gb.Sum((*(gb.smoothed(pull, 0.04) for pull in pulls), gb.constant(9.80665)))
+    load = gb.vector(x=gb.constant(3.0), y=gb.smoothed(gb.Sine(15.0, 4.0), 0.04), z=z)
+    target = gb.build_target(load, span=(0.0, 4.0), idle=17.0, smoothing=0.12, gravity=True, arm=7.6)
     assert np.isfinite(target.load(np.linspace(0, 4, 41))).all()
 
 
@@ -397,9 +388,9 @@ def test_a_long_flight_is_diagnosed_as_a_short_one(length: float) -> None:
     times = np.union1d(knots, [corner - 0.2, corner, corner + 0.2])
     values = np.interp(times, knots, level)
     flat, pulled = (
-        Centrifuge(
-            Flight(z=tabulated(times, values + pull * (times == corner))), arm=3.3, control_point=0.2, inverse="flat",
-            gravity=True, smoothing=0.5, span=(0.0, length),
+        gb.Centrifuge(
+            gb.Flight(z=gb.tabulated(times, values + pull * (times == corner))), arm=3.3, control_point=0.2,
+            inverse="flat", gravity=True, smoothing=0.5, span=(0.0, length),
         )
         for pull in (0.0, 40.0)
     )  # fmt: skip
@@ -410,15 +401,15 @@ def test_a_long_flight_is_diagnosed_as_a_short_one(length: float) -> None:
 
 def test_a_long_curve_is_held_by_as_many_knots_as_a_short_one() -> None:
     """Knots every 2 ms along a curve of 1,150 s were more than a target may have."""
-    slow = Flight(z=Sum((constant(15.0), SmoothStep(30.0, 1150.0, 10.0))))
-    machine = Centrifuge(slow, arm=3.3, control_point=0.2, inverse="flat", gravity=True, smoothing=0.5)
+    slow = gb.Flight(z=gb.Sum((gb.constant(15.0), gb.SmoothStep(30.0, 1150.0, 10.0))))
+    machine = gb.Centrifuge(slow, arm=3.3, control_point=0.2, inverse="flat", gravity=True, smoothing=0.5)
     assert not machine.over(0.0, 1200.0).target.episodes()
 
 
 def test_many_times_at_once_are_many_times_apart() -> None:
     rng = np.random.default_rng(0)
     table = PiecewiseLinear(np.arange(0.0, 100.0, 0.01), rng.normal(size=(10_000, 3)))
-    for profile, count in ((table.smoothed(0.5), 60_000), (SmoothStep(1.0, 3.0).smoothed(0.5), 60_000)):
+    for profile, count in ((table.smoothed(0.5), 60_000), (gb.SmoothStep(1.0, 3.0).smoothed(0.5), 60_000)):
         t = np.linspace(-1.0, 99.0, count)
         for at_once, apart in zip(
             profile.derivatives(t, 3), profile.derivatives(t[::600].reshape(10, 10), 3), strict=True

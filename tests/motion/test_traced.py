@@ -11,21 +11,25 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY  # fmt: skip
-from gbeam.errors import InputError
-from gbeam.motion import Centrifuge, Flight, Hub, Profile, Sine, SmoothStep, Sum, smoothed, tabulated, trapezoid, vector
+from gbeam.motion import Profile
 from gbeam.motion.profiles.combine import clamped
 
 G = STANDARD_GRAVITY
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 T = np.linspace(0.03, 3.97, 23)
 FEW = np.array([0.61, 1.4, 2.7])
-RAMP, STEP, SINE = trapezoid(3.0, jerk=2.0, start=0.5, hold=0.4), SmoothStep(2.0, 1.5, 0.4), Sine(1.0, 2.5, 0.2)
+RAMP, STEP, SINE = (
+    gb.trapezoid(3.0, jerk=2.0, start=0.5, hold=0.4),
+    gb.SmoothStep(2.0, 1.5, 0.4),
+    gb.Sine(1.0, 2.5, 0.2),
+)
 
 PROFILES: dict[str, Profile] = {
     "smooth step": STEP,
-    "sum clamped, then smoothed": smoothed(clamped(Sum((STEP, RAMP)), 0.9, 1.7), 0.3),
-    "vector": smoothed(vector(x=1.0, y=SINE, z=RAMP), 0.2),
+    "sum clamped, then smoothed": gb.smoothed(clamped(gb.Sum((STEP, RAMP)), 0.9, 1.7), 0.3),
+    "vector": gb.smoothed(gb.vector(x=1.0, y=SINE, z=RAMP), 0.2),
 }
 
 
@@ -42,18 +46,18 @@ def test_closed_derivatives_are_those_of_forward_differentiation(name: str) -> N
         np.testing.assert_allclose(closed, traced, rtol=1e-11, atol=1e-11 * (1 + np.abs(closed).max()))
 
 
-def centrifuge(level: Any, arm: Any = 3.3, control_point: Any = 0.2, **options: Any) -> Centrifuge:
-    flight = Flight(z=Sum((tabulated([0.0], [5 * G]), trapezoid(level, jerk=2 * G, start=0.5, hold=1.0))))
+def centrifuge(level: Any, arm: Any = 3.3, control_point: Any = 0.2, **options: Any) -> gb.Centrifuge:
+    flight = gb.Flight(z=gb.Sum((gb.tabulated([0.0], [5 * G]), gb.trapezoid(level, jerk=2 * G, start=0.5, hold=1.0))))
     arguments = {"inverse": "flat", "gravity": False, "smoothing": 0.06, **options}
-    return Centrifuge(flight, arm=arm, control_point=control_point, span=(0.0, 4.0), **arguments)
+    return gb.Centrifuge(flight, arm=arm, control_point=control_point, span=(0.0, 4.0), **arguments)
 
 
 MADE_OF: dict[str, tuple[Callable[[Any], Any], float]] = {
-    "a flight's level": (lambda x: Flight(z=smoothed(trapezoid(x, jerk=3.0, hold=1.0), 0.2)), 4.0),
-    "a table's value": (lambda x: Flight(x=tabulated([0.0, 4.0], jnp.stack([x, 2 * x]))), 4.0),
-    "a hub's radius": (lambda x: Hub(radius=x, rate=STEP), 0.5),
-    "a hub's final rate": (lambda x: Hub(radius=0.5, rate=SmoothStep(x, 2.0), gravity=(0.0, -9.8, 0.0)), 2.0),
-    "a setting angle": (lambda x: Hub(radius=0.5, rate=STEP, setting_angle=x), 0.4),
+    "a flight's level": (lambda x: gb.Flight(z=gb.smoothed(gb.trapezoid(x, jerk=3.0, hold=1.0), 0.2)), 4.0),
+    "a table's value": (lambda x: gb.Flight(x=gb.tabulated([0.0, 4.0], jnp.stack([x, 2 * x]))), 4.0),
+    "a hub's radius": (lambda x: gb.Hub(radius=x, rate=STEP), 0.5),
+    "a hub's final rate": (lambda x: gb.Hub(radius=0.5, rate=gb.SmoothStep(x, 2.0), gravity=(0.0, -9.8, 0.0)), 2.0),
+    "a setting angle": (lambda x: gb.Hub(radius=0.5, rate=STEP, setting_angle=x), 0.4),
     "a centrifuge's arm": (lambda x: centrifuge(3 * G, arm=x), 3.3),
     "a control point": (lambda x: centrifuge(3 * G, control_point=x, gravity=True), 0.2),
     "the load that is tracked": (lambda x: centrifuge(x, gravity=True), 3 * G),
@@ -78,14 +82,14 @@ def test_gradient_with_respect_to_the_values_of_a_profile() -> None:
     values = np.array([1.0, 3.0, 2.0])
 
     def load(values: Any) -> Any:
-        return (smoothed(tabulated([0.0, 1.0, 2.5], values), 0.4)(FEW) ** 2).sum()
+        return (gb.smoothed(gb.tabulated([0.0, 1.0, 2.5], values), 0.4)(FEW) ** 2).sum()
 
     finite = [(load(values + step) - load(values - step)) / 2e-6 for step in 1e-6 * np.eye(3)]
     np.testing.assert_allclose(jax.jit(jax.grad(load))(values), finite, rtol=1e-6, atol=1e-8)
 
 
 def test_what_is_solved_for_numerically_says_so() -> None:
-    with pytest.raises(InputError, match="JAX traces the machine"):
+    with pytest.raises(gb.InputError, match="JAX traces the machine"):
         jax.grad(lambda arm: centrifuge(3 * G, arm=arm, inverse="planned").base(T).a_WO_B.sum())(3.3)
     # A machine of numbers, prepared, is a pytree: derivatives with respect to what it is made of go through.
     machine = centrifuge(3 * G, inverse="exact", idle=2 * G)
@@ -106,7 +110,7 @@ def test_maps_over_values_and_over_times() -> None:
 
 
 def test_numpy_in_numpy_out() -> None:
-    for motion in (Flight(z=RAMP), Hub(radius=0.5, rate=STEP, gravity=(0.0, 0.0, -9.8)), centrifuge(3 * G)):
+    for motion in (gb.Flight(z=RAMP), gb.Hub(radius=0.5, rate=STEP, gravity=(0.0, 0.0, -9.8)), centrifuge(3 * G)):
         base = motion.base(T)
         assert all(type(part) is np.ndarray for part in (base.a_WO_B, base.w_WB_B, base.alpha_WB_B))
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.sparse import block_diag, csc_array, diags_array, eye_array, kron
 
-from gbeam.errors import InputError
+import gbeam as gb
 from gbeam.numerics import sparse
 
 ORDER = {"pypardiso": "Pardiso", "rslab": "RSLAB", "scipy": "SuperLU"}
@@ -67,13 +67,13 @@ def test_frequencies_of_a_lattice_of_equal_springs() -> None:
 def test_a_mass_that_nothing_holds_is_refused() -> None:
     loose = csc_array(block_diag([row(1000), csc_array((1, 1))]))
     fault = r"springs is (singular|not positive definite); hold the structure"
-    with pytest.raises(InputError, match=fault), sparse.factorised(loose, "springs"):
+    with pytest.raises(gb.InputError, match=fault), sparse.factorised(loose, "springs"):
         pass
 
 
 def test_what_is_too_large_names_the_library_and_a_licence_that_is_not_free(library: str) -> None:
     named = {"pypardiso": r"Pardiso of MKL \(proprietary: Intel .*License\)", "rslab": "RSLAB", "scipy": "SuperLU"}
-    with pytest.raises(InputError, match=rf"mesh makes 5e\+07 unknowns, .* hours by {named[library]}; mesh it"):
+    with pytest.raises(gb.InputError, match=rf"mesh makes 5e\+07 unknowns, .* hours by {named[library]}; mesh it"):
         sparse.refuse_cost("mesh", 50_000_000)
     sparse.refuse_cost("mesh", 200_000)
 
@@ -83,7 +83,7 @@ def test_a_negative_spring_is_refused(library: str) -> None:
         pytest.skip("LU has no signs of pivots: `reduce` judges the modes")
     buckled = row(1000) - 1e-4 * eye_array(999)  # beyond (π/1000)²
     fault = r"springs is not positive definite; hold the structure"
-    with pytest.raises(InputError, match=fault), sparse.factorised(csc_array(buckled), "springs"):
+    with pytest.raises(gb.InputError, match=fault), sparse.factorised(csc_array(buckled), "springs"):
         pass
 
 

@@ -14,12 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam import InputError
-from gbeam.analysis.imitation.place import place
-from gbeam.analysis.imitation.place_measures import Choice
+from gbeam import AxisLimit, Choice, InputError, MachineLimits, place
 from gbeam.cli import main
 from gbeam.cli.centrifuge import parse
-from gbeam.motion import AxisLimit, MachineLimits
 from gbeam.numerics.minimise import coarse, refine
 from gbeam.results.machine import LimitUse
 from gbeam.results.placement import MEASURES, Candidate, Placement

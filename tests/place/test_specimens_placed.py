@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam import place
 from gbeam.analysis.imitation.accounting import gradients
-from gbeam.analysis.imitation.place import place
-from gbeam.analysis.imitation.place_measures import Choice, choice_of
 from gbeam.analysis.imitation.specimen import Specimen
 from gbeam.cli import main
 from gbeam.questions import QUESTIONS
@@ -29,7 +28,7 @@ NOW = np.linspace(0.0, 1.0, 3)
 
 
 def placed(structure: Any, flight: Any, spin: Any, settings: Any, measure: str) -> Any:
-    choice = Choice(lambda mounting, w: spin(w), ("upright",), (0.0596,), refined=False)
+    choice = gb.Choice(lambda mounting, w: spin(w), ("upright",), (0.0596,), refined=False)
     return place(structure, flight, choice, settings, {measure: 1.0}, current=spin())
 
 
@@ -94,13 +93,12 @@ def test_static_answers_are_those_of_equilibrium() -> None:
     structure = gb.assemble(beam, "exact", axial=1, y=2, z=2, twist=2)
     specimen = Specimen.of(gb.System.of(structure), NOW)
     from gbeam.analysis.imitation.accounting import gradients
-    from gbeam.analysis.steady.equilibrium import solve_equilibrium
     from gbeam.results.parts import Base
 
     rng = np.random.default_rng(26)
     for _ in range(3):
         a, w, alpha = 1e-3 * rng.normal(size=3), 3e-2 * rng.normal(size=3), 1e-3 * rng.normal(size=3)
-        rest = solve_equilibrium(structure, Base(a, w, alpha))
+        rest = gb.solve_equilibrium(structure, Base(a, w, alpha))
         answer = specimen.displacement["body.tip"].at(a, gradients(w, alpha))
         np.testing.assert_allclose(answer, structure.tip(np.asarray(rest.q)), atol=1e-4 * np.abs(answer).max())
 
@@ -184,18 +182,18 @@ def spun(flight: gb.Flight = ROUND, **more: Any) -> gb.Centrifuge:
 
 def test_a_rigid_bodys_force_is_the_flights_at_its_centre_of_mass_whichever_way_round() -> None:
     machine = spun()
-    placement = place(CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine)
+    placement = place(CASE.structure, ROUND, gb.choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine)
     np.testing.assert_allclose(placement.best.place, CASE.centre, atol=1e-5)
-    turned = replace(choice_of(machine, [0.1]), turns=((0.3, -0.5, 0.8),))
+    turned = replace(gb.choice_of(machine, [0.1]), turns=((0.3, -0.5, 0.8),))
     for each in place(CASE.structure, ROUND, turned, SPELL, {"root-shear": 1.0}, current=machine).options:
         np.testing.assert_allclose(each.place, CASE.centre, atol=1e-5)
     # Where nothing may be moved but along x, the rest of the way to the centre of mass stays.
     along = place(
-        CASE.structure, ROUND, choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine, along="x"
+        CASE.structure, ROUND, gb.choice_of(machine, [0.1]), SPELL, {"root-shear": 1.0}, current=machine, along="x"
     )
     assert along.best.place[1:] == (0.0, 0.0) and along.best.difference > 100 * placement.best.difference
     with pytest.raises(gb.InputError, match="along is 'q'"):
-        place(CASE.structure, ROUND, choice_of(machine), SPELL, {"load": 1.0}, current=machine, along="q")
+        place(CASE.structure, ROUND, gb.choice_of(machine), SPELL, {"load": 1.0}, current=machine, along="q")
 
 
 @pytest.mark.parametrize("turning", [False, True])
@@ -204,7 +202,7 @@ def test_the_loads_difference_is_that_of_running(turning: bool) -> None:
     rates = gb.smoothed(gb.vector(x=gb.trapezoid(0.8, jerk=2.0, start=0.4, hold=0.8), y=gb.constant(0.5)), 0.4)
     flight = gb.Flight(acceleration=ROUND.acceleration, rates=rates if turning else None)
     machine = spun(flight)
-    placement = place(CASE.structure, flight, choice_of(machine, [0.1]), SPELL, {"load": 1.0}, current=machine)
+    placement = place(CASE.structure, flight, gb.choice_of(machine, [0.1]), SPELL, {"load": 1.0}, current=machine)
     best = spun(flight, control_point=placement.best.place, mounting=placement.best.mounting)
     for each, of in ((machine, "current"), (best, "best")):
         apart = largest_difference(each, np.linspace(0.1, 3.4, 1651))
@@ -225,7 +223,7 @@ def largest_difference(machine: gb.Centrifuge, times: np.ndarray) -> float:
 def test_where_and_which_way_round_beats_a_grid_of_both() -> None:
     """The search beside every place of a grid in the box and 98 directions of axis 3, and beside running them."""
     machine, weights = spun(), {"load": 1.0}
-    choice = choice_of(machine, [0.1], turns="any")
+    choice = gb.choice_of(machine, [0.1], turns="any")
     assert len(choice.turns) == 13
     placement = place(CASE.structure, ROUND, choice, SPELL, weights, current=machine)
     rng = np.random.default_rng(26)
@@ -294,7 +292,7 @@ def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
     joints = CLAMP | {"screws": gb.Joint("fixed", "camera", "strip.tip")}
     system = gb.System({"strip": boom, "camera": camera}, joints)
     machine, weights = spun(control_point=0.15), {"tip": 1.0}
-    choice = choice_of(machine, [0.1], turns="right-angles")
+    choice = gb.choice_of(machine, [0.1], turns="right-angles")
     placement = place(system, ROUND, choice, SPELL, weights, current=machine, check=True)
     run = {each.name: each for each in placement.verifications}
     assert placement.best.place[2] > 0.01 and placement.point.startswith(("strip", "camera"))

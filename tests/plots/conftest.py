@@ -7,20 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.comparison import Comparison
 from gbeam.results.errors import ErrorEstimate, Errors
 from gbeam.results.machine import AxesResult, LimitUse
 from gbeam.results.parts import Base, Peaks
-from gbeam.results.response import HubResult, Response
-from gbeam.results.study import Study
+from gbeam.results.response import HubResult
 
 from ..responses import of_beam
 
 TIME = np.linspace(0, 2, 201)
 
 
-def _response(name: str, environment: str, turning: float) -> Response:
+def _response(name: str, environment: str, turning: float) -> gb.Response:
     wave = 1e-3 * np.sin(np.outer(2 * np.pi * TIME, [1, 2, 3])) * [0.1, 0.2, 1.0]
     zero = np.zeros((len(TIME), 3))
     return of_beam(
@@ -41,7 +40,7 @@ def _response(name: str, environment: str, turning: float) -> Response:
 
 
 @pytest.fixture(scope="session")
-def study() -> Study:
+def study() -> gb.Study:
     """A flight, a centrifuge that is held in the middle, a hub; one comparison."""
     flight = _response("flight", "flight", 0.0)
     held = (TIME > 0.5) & (TIME < 0.8)
@@ -67,7 +66,7 @@ def study() -> Study:
         (NotFollowed(0.5, 0.8, "below idle", 60.0),),
     )  # fmt: skip
     pairs = {"tip": PeakPair(1e-3, 1.1e-3, 0.75, 0.75)}
-    comparison = Comparison(
+    comparison = gb.Comparison(
         "flight", "spin", TIME, difference, ~held, 0.1 * peaks, 0.05 * peaks, peaks, peaks, pairs, accounting
     )
-    return Study("a title", {"flight": flight, "spin": spin, "slew": slew}, (comparison,))
+    return gb.Study("a title", {"flight": flight, "spin": spin, "slew": slew}, (comparison,))

@@ -15,20 +15,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from gbeam import InputError
+from gbeam import Comparison, InputError, Response, Rest, Study
 from gbeam.figures import bodies, figures_of, imitation, machine, response, steady
 from gbeam.figures.description import Figure as Described
 from gbeam.plots import draw, write_figures
 from gbeam.plots.draw import BROAD
 from gbeam.report.page.result import report_of, report_of_file
-from gbeam.results.comparison import Comparison, MachinePlan
+from gbeam.results.comparison import MachinePlan
 from gbeam.results.declared import declarations
-from gbeam.results.equilibrium import BodyRest, Rest
+from gbeam.results.equilibrium import BodyRest
 from gbeam.results.machine import LimitUse
 from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock
 from gbeam.results.parts import Base, Loads
-from gbeam.results.response import Response
-from gbeam.results.study import Study
 
 from ..responses import with_body
 

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import gbeam as gb
 from gbeam.report import as_json, text
 from gbeam.report.facts import facts as to_json
-from gbeam.results.study import Study
 
 from ..responses import with_body
 
 
-def test_summary_names_what_matters(study: Study) -> None:
+def test_summary_names_what_matters(study: gb.Study) -> None:
     said = text(study)
     assert said.startswith("a title\n")
     assert "spin (centrifuge): done" in said and "flight: done" in said
@@ -28,28 +28,28 @@ def test_summary_names_what_matters(study: Study) -> None:
     assert verdict[1:] in " ".join(said.split())
 
 
-def test_summary_of_a_failure(study: Study) -> None:
+def test_summary_of_a_failure(study: gb.Study) -> None:
     bad = replace(study.responses["flight"], outcome="diverged", message="it [bold] left", warnings=("mind",))
-    said = text(Study("", {"flight": bad}, ()))
+    said = text(gb.Study("", {"flight": bad}, ()))
     assert "flight: diverged" in said and "It [bold] left" in said and "warning: mind" in said
 
 
-def test_rounding_is_not_a_displacement(study: Study) -> None:
+def test_rounding_is_not_a_displacement(study: gb.Study) -> None:
     response = study.responses["flight"]
     peaks = replace(response.peaks, max_abs=np.array([1e-20, 0.0, 1e-3]))
-    said = text(Study("", {"flight": with_body(response, peaks=peaks)}, ()))
+    said = text(gb.Study("", {"flight": with_body(response, peaks=peaks)}, ()))
     rows = [line.split() for line in said.splitlines()]
     assert [row[1] for row in rows if row[:1] == ["flight"]] == ["z"]
 
 
-def test_many_episodes_are_counted(study: Study) -> None:
+def test_many_episodes_are_counted(study: gb.Study) -> None:
     spin = study.responses["spin"]
     axes = replace(spin.axes, episodes=tuple((i, i + 0.5, "below idle") for i in range(20)))
-    said = text(Study("", {"spin": replace(spin, axes=axes)}, ()))
+    said = text(gb.Study("", {"spin": replace(spin, axes=axes)}, ()))
     assert said.count("below idle") == 8 and "12 times more" in said
 
 
-def test_json(study: Study) -> None:
+def test_json(study: gb.Study) -> None:
     facts = json.loads(as_json(to_json(study)))
     spin = facts["motions"]["spin"]
     assert spin["tracking_error"] == pytest.approx({"max": 0.6, "time_of_max": 2.0, "fraction": 0.01})
@@ -59,23 +59,23 @@ def test_json(study: Study) -> None:
     assert facts["comparisons"][0]["relative"]["z"] == pytest.approx(0.1)
 
 
-def test_a_hub_that_turns_backwards_has_the_size_of_its_largest_rate(study: Study) -> None:
+def test_a_hub_that_turns_backwards_has_the_size_of_its_largest_rate(study: gb.Study) -> None:
     slew = study.responses["slew"]
     assert slew.hub is not None
     backwards = replace(slew, hub=replace(slew.hub, angle=-slew.hub.angle, rate=-slew.hub.rate))
-    facts = json.loads(as_json(to_json(Study("", {"slew": backwards}, ()))))
+    facts = json.loads(as_json(to_json(gb.Study("", {"slew": backwards}, ()))))
     assert facts["motions"]["slew"]["hub"] == {"angle_end": -2.0, "rate_max": 4.0, "rate_end": -4.0}
 
 
-def test_json_has_null_for_what_is_no_number(study: Study) -> None:
+def test_json_has_null_for_what_is_no_number(study: gb.Study) -> None:
     axes = replace(study.responses["spin"].axes, not_followed=np.ones(201, dtype=bool))
     response = replace(study.responses["spin"], axes=axes, step=float("nan"), error_estimate=float("inf"))
-    spin = json.loads(as_json(to_json(Study("", {"spin": response}, ()))))["motions"]["spin"]
+    spin = json.loads(as_json(to_json(gb.Study("", {"spin": response}, ()))))["motions"]["spin"]
     assert spin["step"] is None and spin["error_estimate"] is None
     assert spin["tracking_error"] == {"max": None, "time_of_max": None, "fraction": None}
 
 
-def test_steps_add_up_to_the_time(study: Study) -> None:
+def test_steps_add_up_to_the_time(study: gb.Study) -> None:
     """Times of a machine's ways from and to standstill are the results', longer than the flight's refined ones."""
     spin = replace(study.responses["spin"], steps=1820)
     assert spin.steps_in_words == "1800 steps of 1.000 ms, 20 of 10.00 ms from and to standstill"

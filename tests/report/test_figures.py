@@ -17,11 +17,9 @@ from gbeam.plots import draw
 from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, drawn
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
-from gbeam.results.comparison import Comparison
 from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock, Sizes
 from gbeam.results.measures import Statistics as Apart
 from gbeam.results.result import Result
-from gbeam.results.study import Study
 
 from .test_page import BEAM, _fit, _optimum, _sensitivity, _shaped, header_of
 
@@ -66,7 +64,7 @@ def _sweeps() -> Iterator[Result]:
         yield replace(each, message=np.full(each.outcome.shape, message["message"][0], dtype=object))
 
 
-def _results(study: Study) -> dict[str, list[Result]]:
+def _results(study: gb.Study) -> dict[str, list[Result]]:
     structure, hub = gb.assemble(BEAM, "TLAM", y=2, z=2), gb.Hub(radius=0.5)
     machine = gb.Centrifuge(gb.Flight(z=20.0), arm=3.3, control_point=0.2, gravity=False, span=(0.0, 0.5))
     spectra = np.outer(np.arange(1.0, 6.0), [1, 1, 2])
@@ -102,7 +100,7 @@ def _column(*, follower: bool, **modes: int) -> gb.Structure:
     return gb.assemble(replace(BEAM, loads=(push,), damping_ratio=0.0), "SFOAM", **modes or {"z": 3})
 
 
-def _apart(compared: Comparison) -> Comparison:
+def _apart(compared: gb.Comparison) -> gb.Comparison:
     """A comparison with root loads, a difference of the load, trends and vibrations."""
     t, one = compared.time, np.ones((1, 3))
     waves = [np.outer(k + np.sin(t), [1.0, 2.0, 3.0]) for k in range(9)]
@@ -140,7 +138,7 @@ NAMES = [
 
 
 @pytest.fixture(scope="module")
-def results(study: Study) -> dict[str, list[Result]]:
+def results(study: gb.Study) -> dict[str, list[Result]]:
     return _results(study)
 
 

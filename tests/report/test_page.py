@@ -21,7 +21,6 @@ from hypothesis import strategies as st
 
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.errors import InputError
 from gbeam.figures.bodies import carried_at_root
 from gbeam.numerics.samples import thinned
 from gbeam.report.facts import facts
@@ -32,7 +31,6 @@ from gbeam.report.words import as_json
 from gbeam.results.parts import Outline
 from gbeam.results.result import Result
 from gbeam.results.searches import CommandRun, FittedColumn, Requirement
-from gbeam.results.study import Study
 
 from ..responses import clamped, with_body
 
@@ -49,7 +47,7 @@ def header_of(page: str) -> dict[str, object]:
     return built
 
 
-def test_page_says_what_the_run_says(study: Study) -> None:
+def test_page_says_what_the_run_says(study: gb.Study) -> None:
     page = html.unescape(report_of(study))
     verdict = study.comparisons[0].verdict
     assert verdict[1:] in page and '<span class="badge good">done</span>' in page
@@ -57,7 +55,7 @@ def test_page_says_what_the_run_says(study: Study) -> None:
     assert "Largest error of the load while it is followed: 0.0612 g" in page
 
 
-def test_page_of_several_imitations_begins_with_their_verdicts(study: Study) -> None:
+def test_page_of_several_imitations_begins_with_their_verdicts(study: gb.Study) -> None:
     (first,) = study.comparisons
     page = html.unescape(report_of(replace(study, comparisons=(first, replace(first, centrifuge="other")))))
     table = page[page.index(">Verdicts<") : page.index(">Verdict: spin<")]
@@ -65,7 +63,9 @@ def test_page_of_several_imitations_begins_with_their_verdicts(study: Study) -> 
     assert ">Verdicts<" not in report_of(study)
 
 
-def test_page_says_when_the_result_was_written(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_page_says_when_the_result_was_written(
+    study: gb.Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert report_of(study).count("2025-06-15 15:06 UTC") == 2  # at the head, and with where it comes from
     study.save(tmp_path / "result.nc")
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")
@@ -76,7 +76,7 @@ def test_page_says_when_the_result_was_written(study: Study, tmp_path: Path, mon
     assert f"{datetime.now(UTC):%Y-%m-%d}" in report_of(study)
 
 
-def test_page_says_how_much_is_not_followed(study: Study) -> None:
+def test_page_says_how_much_is_not_followed(study: gb.Study) -> None:
     assert "Not followed: 15 % of the flight's time (85 % is followed, within" in html.unescape(report_of(study))
 
 
@@ -92,7 +92,7 @@ def plots_of(page: str) -> dict[str, dict[str, np.ndarray]]:
     }
 
 
-def test_loads_are_shown_beside_the_flights(study: Study) -> None:
+def test_loads_are_shown_beside_the_flights(study: gb.Study) -> None:
     lines = plots_of(report_of(study))["spin: load at the control point: flight's, the target and the machine's: z"]
     assert [*lines] == ["flight", "target", "machine"]
     flight, axes = study.responses["flight"], study.responses["spin"].axes
@@ -106,7 +106,7 @@ def test_loads_are_shown_beside_the_flights(study: Study) -> None:
     )
 
 
-def test_nothing_from_outside_is_obeyed(study: Study) -> None:
+def test_nothing_from_outside_is_obeyed(study: gb.Study) -> None:
     response = replace(study.responses["flight"], warnings=(NASTY,), message=NASTY, outcome="diverged")
     page = report_of(replace(study, title=NASTY, responses={NASTY: response}, comparisons=()))
     assert "<script>alert" not in page and "<b>" not in page
@@ -115,7 +115,7 @@ def test_nothing_from_outside_is_obeyed(study: Study) -> None:
     assert NASTY[:9] in html.unescape(page)
 
 
-def test_page_allows_its_own_script_only_and_needs_no_network(study: Study) -> None:
+def test_page_allows_its_own_script_only_and_needs_no_network(study: gb.Study) -> None:
     page = report_of(study)
     policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]+)"', page)
     assert policy is not None and policy[1].startswith("default-src 'none'")
@@ -128,7 +128,7 @@ def test_page_allows_its_own_script_only_and_needs_no_network(study: Study) -> N
     assert set(re.findall(r"https?://[\w.]+", page)) <= {"http://www.w3.org"}  # a namespace
 
 
-def test_page_of_a_file_is_that_of_the_result(study: Study, tmp_path: Path) -> None:
+def test_page_of_a_file_is_that_of_the_result(study: gb.Study, tmp_path: Path) -> None:
     study.save(tmp_path / "result.nc")
     assert report_of_file(tmp_path) == report_of(study)
 
@@ -157,15 +157,15 @@ def test_page_of_json_is_that_of_the_result(tmp_path: Path) -> None:
 def test_no_report_without_a_result(tmp_path: Path) -> None:
     for name, text in (("a.json", "{"), ("b.json", "[]"), ("c.json", '{"outcome": "done"}'), ("d.nc", "x")):
         (tmp_path / name).write_text(text)
-        with pytest.raises(InputError):
+        with pytest.raises(gb.InputError):
             report_of_file(tmp_path / name)
     for kind, text in (("Study", '"motions": 1, "comparisons": []'), ("Modes", '"modes": [{}], "instabilities": []')):
         (tmp_path / "c.json").write_text(f'{{"form": {{"kind": "{kind}"}}, "outcome": "done", {text}}}')
-        with pytest.raises(InputError, match=r"c\.json holds no whole result"):
+        with pytest.raises(gb.InputError, match=r"c\.json holds no whole result"):
             report_of_file(tmp_path / "c.json")
-    with pytest.raises(InputError, match="holds several results"):
+    with pytest.raises(gb.InputError, match="holds several results"):
         report_of_file(tmp_path)
-    with pytest.raises(InputError, match="no file"):
+    with pytest.raises(gb.InputError, match="no file"):
         report_of_file(tmp_path / "none.nc")
 
 
@@ -220,7 +220,7 @@ def test_modes_of_a_bent_beam_are_drawn_along_its_line() -> None:
     assert first["radiusShown"] < 0.12
 
 
-def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
+def test_scene_has_the_motions_with_an_outline(study: gb.Study) -> None:
     flight = study.responses["flight"]
     outline = Outline(
         np.array([0.0, 0.3]), np.full(2, 0.02), np.full(2, 0.004), False, np.empty((0, 2)), flight.time[::50],
@@ -235,7 +235,7 @@ def test_scene_has_the_motions_with_an_outline(study: Study) -> None:
     assert "scene" not in header_of(report_of(study))
 
 
-def test_shown_numbers_are_those_of_the_result(study: Study) -> None:
+def test_shown_numbers_are_those_of_the_result(study: gb.Study) -> None:
     answer = facts(study)
     assert answer is not None
     page = page_of(answer, {})
@@ -255,7 +255,7 @@ def test_thinned_keeps_the_least_and_the_largest(count: int, seed: int) -> None:
     assert (np.diff(t) > 0).all() and (t[0], t[-1]) == (time[0], time[-1])
 
 
-def test_values_beyond_all_bounds_are_drawn_as_gaps(study: Study, tmp_path: Path) -> None:
+def test_values_beyond_all_bounds_are_drawn_as_gaps(study: gb.Study, tmp_path: Path) -> None:
     study.save(tmp_path / "result.nc")
     with h5py.File(tmp_path / "result.nc", "r+") as file:
         for name in ("place", "beam_displacement", "ground_root_acceleration"):
