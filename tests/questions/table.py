@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 import gbeam as gb
-from gbeam.errors import GbeamError
 from gbeam.questions import QUESTIONS
 from gbeam.report.page.result import report_of, shown
 from tests.questions.specimens import FLIGHT, KINDS, MACHINE, Kind, write
@@ -162,7 +161,7 @@ def _place(scenario: Scenario) -> Any:
 @asked("shape")
 def _shape(scenario: Scenario) -> Any:
     goal: dict[str, Any] = {} if scenario.kind.held else {"joint": "orbit.z", "distance": 0.01}
-    return gb.shape_hub_command(scenario.file(scenario.kind.turned()), duration=0.2, **goal)
+    return gb.shape_hub_command(scenario.file(scenario.kind.turned()), duration=0.05, **goal)
 
 
 @asked("sweep")
@@ -323,7 +322,7 @@ def cell(ask: Ask, scenario: Scenario) -> Cell:
     """Ask a question of a specimen."""
     try:
         ask(scenario)
-    except GbeamError as error:
+    except gb.GbeamError as error:
         return Cell(_PLACE.sub("", str(error).splitlines()[0]))
     except Exception as error:  # a defect, which the table shows
         return Cell(f"{type(error).__name__}: {error}".splitlines()[0])

@@ -80,8 +80,8 @@ class ResponseSettings(Value):
     >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
     >>> beam = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01)
     >>> structure = gb.assemble(beam, "FOAM", axial=1, y=2, z=2)
-    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=39.2, start=0.5, hold=1.0))
-    >>> settings = gb.ResponseSettings(duration=6.0, integrator="newmark", tolerance=0.001)
+    >>> turn = gb.Flight(z=gb.trapezoid(78.5, jerk=392.0, start=0.1, hold=0.2))
+    >>> settings = gb.ResponseSettings(duration=1.0, integrator="newmark", tolerance=0.001)
     >>> gb.simulate(structure, turn, settings).integrator
     'newmark'
     """
