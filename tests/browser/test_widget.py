@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+import gbeam as gb
 from gbeam.report.page.result import shown
 from gbeam.results.parts import Outline
-from gbeam.results.study import Study
 
 from ..plots.conftest import study
 from ..responses import clamped
@@ -28,7 +28,7 @@ DRAW = """async ([module, header, numbers]) => {
 }"""
 
 
-def test_widget_shows_a_response(browser: Any, study: Study) -> None:
+def test_widget_shows_a_response(browser: Any, study: gb.Study) -> None:
     flight = study.responses["flight"]
     points = np.linspace(0, 0.3, 4)
     displacement = np.linspace(0, 0.1, 5)[:, None, None] * points[:, None] * [0, 0, 1.0]

@@ -32,6 +32,7 @@ class Former:
     question: str
 
 
+@cache
 def case(seed: int) -> Former:
     """The case of a seed: kinds and motions go round, the rest is drawn."""
     random = np.random.default_rng(seed)

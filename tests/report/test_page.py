@@ -354,7 +354,8 @@ def test_numbers_of_a_system_have_units_and_rounding_is_zero() -> None:
         page = report_of(result)
         assert "<td>step</td><td>0.05000</td><td>s</td>" in page and ">at the end, m or rad<" in page
     assert ">at rest, m or rad<" in report_of(gb.static(system))
-    spun = gb.simulate(gb.assemble(BEAM, "FOAM", axial=1, y=1, z=1), gb.Hub(radius=0.5, rate=10.0), duration=0.1)
+    turning = gb.Hub(radius=0.5, rate=10.0)
+    spun = gb.simulate(gb.assemble(BEAM, "FOAM", axial=1, y=1, z=1), turning, duration=0.1, step=0.05)
     loads = spun.peaks.loads
     assert loads is not None and np.abs(loads.moment.size.value).max() < 1e-12
     tiny = replace(loads.moment, size=replace(loads.moment.size, value=np.full(2, 1e-15)))
