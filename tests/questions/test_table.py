@@ -17,6 +17,7 @@ PHYSICS = (
     "no surface to show", "no body deforms",
 )  # fmt: skip
 _table = cache(asked_all)
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
