@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +91,7 @@ def tip(folder: Path, text: str) -> np.ndarray:
     path.write_text(text, encoding="utf-8")
     case: Any = read_scenario(path)
     (motion,) = case.motions.values()
-    return simulate(case.subject, motion, case.response).tip
+    return simulate(case.subject, motion, replace(case.response, estimate=False)).tip
 
 
 PLAIN = {key: next(iter(SIZES[kind])) for key, (kind, _) in VALUES.items()}

@@ -410,7 +410,7 @@ def compared(seed: int, count: int | None = None) -> Compared | None:
     system, tree = drawn(seed, count)
     if not len(system.tree.free):
         return None
-    run = gb.simulate(system, duration=DURATION, tolerance=1e-5)
+    run = gb.simulate(system, duration=DURATION, tolerance=1e-5, estimate=False)
     assert run.outcome == "done", run.message
     some = np.linspace(0, len(run.time) - 1, 13).round().astype(int)
     motions = tree.run(run.time[some])
