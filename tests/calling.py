@@ -6,13 +6,16 @@ import json
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from typing import Any
 
 import pytest
 
-from gbeam.cli import main
 from gbeam.cli.process import FIGURES
 from gbeam.progress import INTERVAL
+
+(COMMAND,) = entry_points(group="console_scripts", name="gbeam")
+main: Callable[[list[str]], int] = COMMAND.load()
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 
 from ..lagrange import quickly_compiled
 from ..specimens import strip

@@ -12,8 +12,8 @@ import pytest
 import gbeam as gb
 from gbeam import Hub, ResponseSettings, SmoothStep, simulate
 from gbeam.analysis.model_study import SHAPES_FINE, shape_tail
-from gbeam.cli import main
 
+from ..calling import main
 from ..scenarios import APPENDAGE, SLEW, model, response
 from .beams import structure_2009
 

@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from gbeam.cli import main
-
+from ..calling import main
 from ..scenarios import FAST, SLEWING
 from .chromium import arguments, environment, find, watch
 

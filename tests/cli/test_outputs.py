@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from gbeam.cli import main
 from gbeam.cli.outputs import write_json
 from gbeam.cli.publication import publish
 from gbeam.plots import save
+
+from ..calling import main
 
 
 def _publish(folder: Path, *stems: str, command: str = "gbeam run") -> list[Path]:

@@ -16,8 +16,8 @@ import pytest
 
 import gbeam as gb
 from gbeam.analysis.response import simulation
-from gbeam.cli import main
 
+from ..calling import main
 from ..files import opened
 from ..scenarios import FAST, RAMPS
 

@@ -59,7 +59,7 @@ def test_particles_of_a_beam_are_the_beam(by_stress: bool) -> None:
         theirs = getattr(whole.coefficients, name)
         np.testing.assert_allclose(getattr(ours.coefficients, name), theirs, atol=1e-12 * max(np.abs(theirs).max(), 1))
     spinning = gb.Hub(radius=HUB_RADIUS, rate=gb.constant(2.0))
-    answer, wanted = gb.modes(ours, spinning), gb.modes(whole, spinning)
+    answer, wanted = gb.modes(ours, spinning, errors=False), gb.modes(whole, spinning, errors=False)
     np.testing.assert_allclose(answer.frequency, wanted.frequency, rtol=SAME)
     np.testing.assert_allclose(answer.damping_ratio, wanted.damping_ratio, rtol=1e-8)
     assert answer.direction == wanted.direction
@@ -97,7 +97,9 @@ def test_particles_of_a_beam_respond_as_the_beam_does(by_stress: bool) -> None:
 
 def test_particles_on_a_free_hub() -> None:
     free = gb.Hub(radius=HUB_RADIUS, inertia=200.0, torque=gb.constant(20.0))
-    ours, theirs = (gb.simulate(s, free, duration=1.0, step=0.02) for s in (particles(by_stress=True), beam()))
+    ours, theirs = (
+        gb.simulate(s, free, duration=1.0, step=0.02, estimate=False) for s in (particles(by_stress=True), beam())
+    )
     assert ours.hub is not None and theirs.hub is not None
     np.testing.assert_allclose(ours.hub.angle, theirs.hub.angle, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(ours.q, theirs.q, atol=1e-9 * np.abs(theirs.q).max())

@@ -28,9 +28,10 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
-from gbeam.cli import main
 from gbeam.progress import INTERVAL
 from gbeam.scenario import loads
+
+from ..calling import main
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]

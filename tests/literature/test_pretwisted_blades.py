@@ -48,8 +48,8 @@ def determinant(frequency: float) -> float:
 @pytest.mark.parametrize("model", ["exact", "FOAM"])
 def test_five_frequencies_are_those_of_the_transfer_matrix(model: str) -> None:
     shapes = {"axial": 1, "y": 9, "z": 9, "twist": 4, "shear_y": 7, "shear_z": 7}
-    ours = gb.modes(gb.assemble(BLADE, model, **shapes)).frequency[:5]
+    ours = gb.modes(gb.assemble(BLADE, model, **shapes), errors=False).frequency[:5]
     for each in ours:
         assert each == pytest.approx(brentq(determinant, 0.998 * each, 1.002 * each, xtol=1e-9), rel=1e-5)
-    straight = gb.modes(gb.assemble(STRAIGHT, "FOAM", y=6, z=6)).frequency
+    straight = gb.modes(gb.assemble(STRAIGHT, "FOAM", y=6, z=6), errors=False).frequency
     assert ours[1] < 0.9 * straight[1]  # chord and flap have come together

@@ -222,7 +222,7 @@ def test_other_models_twist_and_shear_to_their_order(kind: str) -> None:
     """By the Taylor polynomials of the exact places: at rest all are one."""
     camera = beam(masses=[gb.PointMass(LENGTH, 0.1, offset=(0.0, 0.04, 0.0))])
     one, two = (
-        gb.modes(gb.assemble(camera, each, axial=1, z=4, twist=3, shear_z=2, shapes="adapted"))
+        gb.modes(gb.assemble(camera, each, axial=1, z=4, twist=3, shear_z=2, shapes="adapted"), errors=False)
         for each in (kind, "exact")
     )
     np.testing.assert_allclose(one.frequency, two.frequency, rtol=1e-9)

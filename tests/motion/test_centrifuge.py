@@ -6,9 +6,9 @@ from typing import Any
 import jax
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.histories import axis_angles
 from gbeam.motion.rigid import moved
 

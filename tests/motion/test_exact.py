@@ -5,9 +5,9 @@ Ledger of the source: "the control point is always consistent" holds for smooth 
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Base, Profile
 from gbeam.motion.centrifuge.kinematics import Axes  # fmt: skip
 

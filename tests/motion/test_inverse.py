@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Base, Profile
 from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.centrifuge.kinematics import Axes

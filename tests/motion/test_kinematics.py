@@ -8,8 +8,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.kinematics import Axes, forward
 from gbeam.motion.rigid import moved
 

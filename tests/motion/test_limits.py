@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Profile
 from gbeam.motion.centrifuge.limits import Limits, usage
 from gbeam.motion.centrifuge.target.reachability import TOO_SHARP

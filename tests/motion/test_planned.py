@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 from scipy.integrate import cumulative_simpson
 from scipy.signal import find_peaks
 
 import gbeam as gb
 from gbeam.arrays import tree
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
 from gbeam.motion.centrifuge.inverses.instant import Geometry
 from gbeam.motion.centrifuge.limits import Limits

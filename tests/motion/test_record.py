@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 HEADER = "t,ax,ay,az"

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
 
 NAMES = ("t", "a_x", "a_y", "a_z")

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Base, Profile
 from gbeam.motion.centrifuge.inverses.spin_up import LEAST_TURNED, USUAL_TURNED
 from gbeam.motion.centrifuge.kinematics import Axes, forward

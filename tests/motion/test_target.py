@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.motion import Profile
 from gbeam.motion.centrifuge.target.reachability import MIN_TRANSVERSE_LOAD, nearest_to_zero
 from gbeam.motion.centrifuge.target.target import Target, gentle

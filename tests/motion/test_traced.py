@@ -10,9 +10,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY  # fmt: skip
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY  # fmt: skip
 from gbeam.motion import Profile
 from gbeam.motion.profiles.combine import clamped
 

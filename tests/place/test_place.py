@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 from gbeam import AxisLimit, Choice, InputError, MachineLimits, place
-from gbeam.cli import main
 from gbeam.cli.centrifuge import parse
 from gbeam.numerics.minimise import coarse, refine
 from gbeam.results.machine import LimitUse
 from gbeam.results.placement import MEASURES, Candidate, Placement
 
+from ..calling import main
 from ..scenarios import FLIGHT, SPECIMEN, SPIN, model, response
 
 

@@ -14,10 +14,10 @@ import gbeam as gb
 from gbeam import place
 from gbeam.analysis.imitation.accounting import gradients
 from gbeam.analysis.imitation.specimen import Specimen
-from gbeam.cli import main
 from gbeam.questions import QUESTIONS
 from gbeam.report import text as describe
 
+from ..calling import main
 from ..scenarios import FLIGHT, SPIN, response
 from ..solids.bodies import STIFF, block, solid
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.cli import main
 from gbeam.results.comparison import MachinePlan
 from gbeam.scenario import build_machines, loads
+
+from ..calling import main
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "f16_8g_turn.toml"
 # The table's corners are those of 60 ms, which flat and exact can follow.

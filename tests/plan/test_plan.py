@@ -11,11 +11,11 @@ import xarray as xr
 from scipy.io import loadmat
 
 import gbeam as gb
-from gbeam.cli import main
 from gbeam.cli.process import FIGURES
 from gbeam.report.page.result import report_of
 from gbeam.scenario import build_machines, load_environments
 
+from ..calling import main
 from ..report.test_page import plots_of
 from ..scenarios import SPECIMEN, model
 

@@ -45,7 +45,7 @@ def test_one_mesh_of_both_lies_between_a_seat_that_gives_and_a_rigid_one() -> No
     """In its lowest frequencies, its deflection in flight and the stress at the foot of the fixture."""
     whole = of_both()
     soft, stiff = seated(), seated(links={"seat": "top"})
-    low, high = (gb.modes(each).frequency[:3] / whole.frequency[:3] - 1 for each in (soft, stiff))
+    low, high = (gb.modes(each, errors=False).frequency[:3] / whole.frequency[:3] - 1 for each in (soft, stiff))
     assert (low < 0).all() and (high > 0).all() and low.min() > -0.03 and high.max() < 0.01
     flight = gb.Flight(z=gb.trapezoid(78.5, jerk=392, start=0.05, hold=0.1))
     wanted, run = gb.simulate(whole.structure, flight, **OPTIONS), gb.simulate(stiff, flight, **OPTIONS)

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.cli import main
 from gbeam.scenario import ScenarioError
 from gbeam.structure.beam import fibre_strain
 
+from ..calling import main
 from .bodies import STEEL, STIFF, block, solid
 from .test_damage_at_points import HALF, B, H, L, beam, runs
 

@@ -85,7 +85,9 @@ def test_a_body_on_a_solid_converges_to_all_unknowns() -> None:
 )
 def test_a_body_on_a_solid_is_that_on_a_beam(joint: dict[str, Any]) -> None:
     """Bending of the lowest two within what eight elements leave."""
-    of_solid, of_beam = (gb.modes(with_body(*each, **joint)) for each in ((reduced(8), "seat"), (beam(), "tip")))
+    of_solid, of_beam = (
+        gb.modes(with_body(*each, **joint), errors=False) for each in ((reduced(8), "seat"), (beam(), "tip"))
+    )
     np.testing.assert_allclose(of_solid.frequency[:2], of_beam.frequency[:2], rtol=1.5e-3)
 
 
@@ -95,7 +97,7 @@ def test_what_hangs_on_a_solid_stiffens_it(way: float) -> None:
     heavy = gb.RigidBody(2.0, (2e-3, 2e-3, 2e-3))
     changes = []
     for model, on in ((reduced(8), "seat"), (beam(), "tip")):
-        loaded, free = (gb.modes(with_body(model, on, heavy, gravity)) for gravity in ((way, 0, 0), None))
+        loaded, free = (gb.modes(with_body(model, on, heavy, gravity), errors=False) for gravity in ((way, 0, 0), None))
         changes.append(loaded.frequency[:2] - free.frequency[:2])
     assert np.sign(changes[0][0]) == np.sign(way)
     np.testing.assert_allclose(changes[0], changes[1], rtol=3e-3)

@@ -231,6 +231,8 @@ def test_a_weight_beside_the_axis_of_a_spinning_bar_is_that_of_a_tree() -> None:
     system = gb.System({"bar": beam, "weight": weight}, joints)
     shift = []
     for each in (model.structure, system):
-        still, spun = (gb.modes(each, gb.Hub(radius=0.2, rate=rate)).frequency[:2] ** 2 for rate in (0.0, 5.0))
+        still, spun = (
+            gb.modes(each, gb.Hub(radius=0.2, rate=rate), errors=False).frequency[:2] ** 2 for rate in (0.0, 5.0)
+        )
         shift.append(spun - still)
     np.testing.assert_allclose(shift[0], shift[1], rtol=0.01)

@@ -175,7 +175,7 @@ def test_a_box_on_the_f16_flight_is_newtons() -> None:
     case = gb.read_scenario("examples/f16_8g_turn.toml")
     bolts = np.array([(-0.1, -0.08, 0.0), (0.1, -0.08, 0.0), (-0.1, 0.08, 0.0), (0.1, 0.08, 0.0)])
     box = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.01, 0.02, 0.05), bolts=bolts, bolt_axis=(0, 0, 1))
-    response = gb.simulate(box.structure, case.motions["flight"], duration=15.99, step=2e-3)
+    response = gb.simulate(box.structure, case.motions["flight"], duration=15.99, step=2e-3, estimate=False)
     loads, a = response.specimen, response.base.a_WO_B
     assert loads is not None and response.loads is not None
     assert loads.acceleration == pytest.approx(np.broadcast_to(a[:, None], loads.acceleration.shape), abs=1e-12)

@@ -144,7 +144,7 @@ def test_a_strip_is_the_beam_that_it_is(kind: str) -> None:
     beam = gb.assemble(gb.Beam(0.5, gb.Section.rectangle(0.05, 0.003), STIFF), "exact", z=4, y=2, twist=2)
     for rate in (0.0, 60.0):
         hub = gb.Hub(radius=0.1, rate=rate)
-        one, other = (gb.modes(each, hub).frequency for each in (model.structure, beam))
+        one, other = (gb.modes(each, hub, errors=False).frequency for each in (model.structure, beam))
         np.testing.assert_allclose(one[:2], other[:2], rtol=8e-3)
         assert one[0] == pytest.approx(other[0], rel=1e-3)
         if kind == "quad8":
@@ -276,7 +276,7 @@ def test_the_board_of_the_examples_is_that_of_hexahedra() -> None:
     )
     assert (shells < solids).all() and (shells > 0.96 * solids).all()
     file = gb.read_scenario("examples/board.toml")
-    np.testing.assert_allclose(gb.modes(file.subject).frequency[:4], shells, rtol=1e-9)
+    np.testing.assert_allclose(gb.modes(file.subject, errors=False).frequency[:4], shells, rtol=1e-9)
 
 
 def pair(**more: Any) -> meshio.Mesh:

@@ -73,12 +73,12 @@ def test_a_beam_comes_back_with_all_coefficients(tmp_path: Path, how: dict[str, 
     hub = gb.Hub(radius=0.2, rate=gb.SmoothStep(level=8.0, duration=0.1), setting_angle=0.3)
     flight = gb.Flight(acceleration=constant(np.array([3.0, -2.0, 8.0])))
     for motion in (hub, flight):
-        mine, theirs = (gb.simulate(s, motion, duration=0.2, step=1e-3) for s in (read, whole))
+        mine, theirs = (gb.simulate(s, motion, duration=0.2, step=1e-3, estimate=False) for s in (read, whole))
         np.testing.assert_allclose(mine.displacement, theirs.displacement[:, -1:], rtol=1e-9, atol=1e-13)
     # In a tree as well, where the wrench on the root comes back from the same coefficients.
     joints = {"free": gb.Joint("free", "bus"), "root": gb.Joint("fixed", "arm", on="bus.root")}
     bus = gb.RigidBody(1.0, (1e-3, 1e-3, 1e-3))
-    mine, theirs = (gb.modes(gb.System({"arm": s, "bus": bus}, joints)).frequency for s in (read, whole))
+    mine, theirs = (gb.modes(gb.System({"arm": s, "bus": bus}, joints), errors=False).frequency for s in (read, whole))
     np.testing.assert_allclose(mine, theirs, rtol=1e-9)
 
 

@@ -13,7 +13,6 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
-from gbeam.cli import main
 from gbeam.report import text
 from gbeam.report.page.document import viewer
 from gbeam.report.page.parts import Numbers
@@ -24,6 +23,7 @@ from gbeam.solids.elements import chunks, stiffness_matrix
 from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import VERTICES, NodalStress, principal, surface_of
 
+from ..calling import main
 from .bodies import STEEL, STIFF, block, corner, solid
 
 SIZE = (0.2, 0.03, 0.02)

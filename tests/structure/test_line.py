@@ -145,7 +145,7 @@ def test_a_root_that_is_turned_is_a_base_that_is_turned(kind: str) -> None:
     np.testing.assert_allclose(rest.tip, turn.apply(expected.tip), rtol=1e-9, atol=1e-12)
     assert rest.loads is not None and expected.loads is not None
     np.testing.assert_allclose(rest.loads.section_moment, expected.loads.section_moment, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(gb.modes(two).frequency, gb.modes(one).frequency, rtol=1e-9)
+    np.testing.assert_allclose(gb.modes(two, errors=False).frequency, gb.modes(one, errors=False).frequency, rtol=1e-9)
 
 
 def test_a_straight_line_is_the_straight_beam() -> None:
@@ -202,7 +202,7 @@ def test_a_curved_beam_responds_alike_in_foam_and_in_the_exact_model() -> None:
     bow = beam(gb.Line.of_pieces([LENGTH], turn_z=1.2))
     turn = gb.Flight(z=gb.trapezoid(2.0, jerk=40.0, start=0.02, hold=0.2))
     one, two = (
-        gb.simulate(gb.assemble(bow, kind, axial=1, y=3, z=3, twist=2), turn, duration=0.1)
+        gb.simulate(gb.assemble(bow, kind, axial=1, y=3, z=3, twist=2), turn, duration=0.1, estimate=False)
         for kind in ("FOAM", "exact")
     )
     np.testing.assert_allclose(one.tip, two.tip, atol=2e-3 * np.abs(two.tip).max())

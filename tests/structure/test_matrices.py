@@ -36,7 +36,9 @@ def matrices(centre: tuple[float, float] = (0.0, 0.0), angle: float = 0.0) -> tu
 def test_matrices_of_a_rectangle_are_the_rectangle() -> None:
     beam = gb.Beam(LENGTH, gb.Section.of_matrices(*matrices()), rotary_inertia=True)
     one, two = (gb.assemble(each, "exact", **SHAPES) for each in (PLAIN, beam))
-    np.testing.assert_allclose(gb.modes(two).frequency[:8], gb.modes(one).frequency[:8], rtol=1e-9)
+    np.testing.assert_allclose(
+        gb.modes(two, errors=False).frequency[:8], gb.modes(one, errors=False).frequency[:8], rtol=1e-9
+    )
     load = (30.0, 2000.0, -8000.0)
     np.testing.assert_allclose(
         gb.static(two, acceleration=load).tip, gb.static(one, acceleration=load).tip, rtol=1e-8, atol=1e-12

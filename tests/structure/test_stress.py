@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 
 from gbeam import Flight, Section, assemble, compare, simulate, static
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.structure.section import extreme_stresses, worst_fibres
 
 from ..calling import Answer, gbeam

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.constants import g as STANDARD_GRAVITY
 from scipy.interpolate import CubicSpline
 
 import gbeam as gb
-from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report import text
 
 from ..scenarios import FLIGHT, SPECIMEN, model, response

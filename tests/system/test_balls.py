@@ -70,11 +70,11 @@ def test_a_sprung_and_stopped_ball_keeps_its_energy() -> None:
 
 
 def test_dampers_and_drives_by_closed_forms() -> None:
-    slowed = gb.simulate(on_ball(damping={"wz": 0.05}, initial_rate={"wz": 3.0}), duration=2.0)
+    slowed = gb.simulate(on_ball(damping={"wz": 0.05}, initial_rate={"wz": 3.0}), duration=2.0, estimate=False)
     np.testing.assert_allclose(slowed.signal("ball.wz"), 3 * np.exp(-0.05 / 0.25 * slowed.time), rtol=1e-7)
-    rubbed = gb.simulate(on_ball(friction={"wy": 0.1}, initial_rate={"wy": 3.0}), duration=2.0)
+    rubbed = gb.simulate(on_ball(friction={"wy": 0.1}, initial_rate={"wy": 3.0}), duration=2.0, estimate=False)
     np.testing.assert_allclose(rubbed.signal("ball.wy"), 3 - 0.5 * rubbed.time, rtol=1e-6)
-    driven = gb.simulate(on_ball(effort={"wx": 0.2}), duration=1.0)
+    driven = gb.simulate(on_ball(effort={"wx": 0.2}), duration=1.0, estimate=False)
     np.testing.assert_allclose(driven.signal("ball.wx"), 2 * driven.time, atol=1e-9)
 
 

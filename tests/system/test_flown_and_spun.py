@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.cli import main
 from gbeam.questions import QUESTIONS
 from gbeam.report.page.result import report_of
 from gbeam.scenario import ScenarioError
+
+from ..calling import main
 
 STRIP = gb.Beam(
     0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9, yield_strength=270e6), damping_ratio=0.01

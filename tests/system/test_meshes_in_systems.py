@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.cli import main
 from gbeam.report import text
 from gbeam.report.page.result import report_of, shown
 
+from ..calling import main
 from ..solids.test_damage_at_points import HALF, METAL, B, H, L, beam, block, runs, solid
 from ..solids.test_gauges import MACHINE, scenario
 

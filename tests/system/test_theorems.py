@@ -137,7 +137,9 @@ def test_a_beam_cut_in_two_is_the_beam() -> None:
     cut = gb.System(
         {"a": parts[1], "b": parts[2]}, {"clamp": gb.Joint("fixed", "a"), "weld": gb.Joint("fixed", "b", "a.tip")}
     )
-    np.testing.assert_allclose(gb.modes(cut).frequency[:4], gb.modes(whole).frequency[:4], rtol=1e-7)
+    np.testing.assert_allclose(
+        gb.modes(cut, errors=False).frequency[:4], gb.modes(whole, errors=False).frequency[:4], rtol=1e-7
+    )
     load = {"push": gb.PointForce("a.tip", (0.0, 3e3, 2e3))}, {"push": gb.PointForce("b.tip", (0.0, 3e3, 2e3))}
     bent = [gb.static(gb.System(each.bodies, each.joints, f)) for each, f in zip((whole, cut), load, strict=True)]
     np.testing.assert_allclose(bent[0].at("a.tip"), bent[1].at("b.tip"), rtol=1e-6)
@@ -151,8 +153,8 @@ def test_structure_on_a_hub_is_a_system(kind: str) -> None:
     hub = gb.RigidBody(1.0, (4.0, 4.0, 5.0), points={"rim": (0.4, 0, 0)})
     turn = gb.Joint("revolute", "hub", axes=[(0, 0, 1)])
     system = gb.System({"hub": hub, "beam": structure}, {"axis": turn, "clamp": gb.Joint("fixed", "beam", "hub.rim")})
-    modes = gb.modes(structure, gb.Hub(radius=0.4, inertia=5.0))
-    np.testing.assert_allclose(gb.modes(system).frequency, modes.frequency, rtol=1e-9)
+    modes = gb.modes(structure, gb.Hub(radius=0.4, inertia=5.0), errors=False)
+    np.testing.assert_allclose(gb.modes(system, errors=False).frequency, modes.frequency, rtol=1e-9)
     rate = gb.trapezoid(2.0, jerk=4.0, start=0.0, hold=0.3)
     driven = gb.System(
         system.bodies, {**system.joints, "axis": gb.Joint("revolute", "hub", axes=[(0, 0, 1)], rate=rate)}
