@@ -65,8 +65,8 @@ class Samples:
             for name, motion in {"flight": self.still, "machine": self.centrifuge}.items()
         ]
         self.fast, self.slew, self.data = folder / "fast.toml", folder / "hub.toml", folder / "data.csv"
-        self.fast.write_text(FAST, encoding="utf-8")
-        self.slew.write_text(FREE_HUB, encoding="utf-8")
+        self.fast.write_text(FAST + "estimate = false\n", encoding="utf-8")
+        self.slew.write_text(FREE_HUB + "estimate = false\n", encoding="utf-8")
         self.data.write_text("mode,frequency\n1,38\n2,180\n", encoding="utf-8")
         self.matrix = folder / "k.npy"
         np.save(self.matrix, np.eye(2))
