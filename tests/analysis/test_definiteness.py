@@ -100,7 +100,7 @@ def test_the_growth_is_that_of_one_shape() -> None:
 PUSHES = {
     # An axial load at the tip, dead; along the beam; the base's own push; its weight on a shaker that stands.
     "Euler": (lambda p: [gb.Load(LENGTH, force=axial(p))], EULER * EI / LENGTH**2, -1.0),
-    "Greenhill": (lambda p: [gb.Load(None, force=axial(p))], GREENHILL * EI / LENGTH**3, -1.0),
+    "Greenhill": (lambda p: [gb.Load(distributed=axial(p))], GREENHILL * EI / LENGTH**3, -1.0),
     "push": (None, GREENHILL * EI / (LINE * LENGTH**3), 1.0),
 }
 

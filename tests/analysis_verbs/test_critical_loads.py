@@ -65,13 +65,13 @@ def test_becks_two_modes_meet():
 
 
 def test_leipholz():
-    structure = column(MODELS["exact"], gb.Load(None, force=(-1.0, 0.0, 0.0), follower=True))
+    structure = column(MODELS["exact"], gb.Load(distributed=(-1.0, 0.0, 0.0), follower=True))
     critical = gb.critical_load(structure)
     assert critical.value == pytest.approx(LEIPHOLZ, rel=1e-4) and critical.kind == "flutter"
 
 
 def test_a_dead_load_along_the_beam_is_greenhills():
-    critical = gb.critical_load(column(MODELS["FOAM"], gb.Load(None, force=(-1.0, 0.0, 0.0))))
+    critical = gb.critical_load(column(MODELS["FOAM"], gb.Load(distributed=(-1.0, 0.0, 0.0))))
     assert critical.value == pytest.approx(GREENHILL, rel=2e-5)
     assert pytest.approx(7.8373, abs=1e-4) == GREENHILL
 

@@ -30,7 +30,7 @@ BEAM = gb.Beam(
     root=gb.Root(rotation_y=200.0),
     loads=[
         gb.Load(1.5, force=(0.3, 0.1, -0.2), moment=(0.0, 0.05, 0.02), follower=True),
-        gb.Load(None, force=(0.0, 0.1, 0.3)),
+        gb.Load(distributed=(0.0, 0.1, 0.3)),
     ],
     points=[gb.Point("camera", 0.7), gb.Point("end", 2.0)],
 )

@@ -1,5 +1,7 @@
 """Limits and reach: what is used, where the machine cannot follow, and what is refused."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.constants import g as STANDARD_GRAVITY
@@ -46,15 +48,15 @@ def test_jerks_are_the_derivatives_of_the_accelerations() -> None:
 @pytest.mark.parametrize(
     ("limits", "where"),
     [
-        (gb.MachineLimits(gb.AxisLimit(rate=0.0)), "limits.axis1.rate"),
-        (gb.MachineLimits(axis3=gb.AxisLimit(jerk=-1.0)), "limits.axis3.jerk"),
-        (gb.MachineLimits(power=1e3), "limits.power"),
-        (gb.MachineLimits(inertia=0.0), "limits.inertia"),
+        (lambda: gb.AxisLimit(rate=0.0), "rate"),
+        (lambda: gb.AxisLimit(jerk=-1.0), "jerk"),
+        (lambda: Limits(gb.MachineLimits(power=1e3)), "limits.power"),
+        (lambda: gb.MachineLimits(inertia=0.0), "inertia"),
     ],
 )
-def test_impossible_limits_are_refused(limits: gb.MachineLimits, where: str) -> None:
+def test_impossible_limits_are_refused(limits: Callable[[], object], where: str) -> None:
     with pytest.raises(gb.InputError) as caught:
-        Limits(limits)
+        limits()
     assert caught.value.where == where
 
 

@@ -127,7 +127,7 @@ def test_breaks() -> None:
         (lambda: PiecewiseLinear([0, 1], [0, 1, 2]), "values"),
         (lambda: PiecewiseLinear([0, 1], [0, np.nan]), "values[1]"),
         (lambda: PiecewiseLinear([], []), "times"),
-        (lambda: gb.constant(np.inf), "value"),
+        (lambda: gb.constant(np.inf), "level"),
         (lambda: gb.trapezoid(10, jerk=0, start=0, hold=1), "jerk"),
         (lambda: gb.trapezoid(10, jerk=-4, start=0, hold=1), "jerk"),
         (lambda: gb.trapezoid(0, jerk=4, start=0, hold=1), "level"),

@@ -112,10 +112,10 @@ def test_a_spread_load_over_time_is_an_acceleration_of_the_base(model: gb.Model)
     pulse = gb.vector(z=gb.trapezoid(0.4, jerk=2.0, start=0.1, hold=0.5))
     counter = gb.vector(z=gb.trapezoid(-0.4, jerk=2.0, start=0.1, hold=0.5))
     settings = gb.ResponseSettings(1.5, step=0.005)
-    none = gb.Load(force=gb.vector(z=gb.constant(0.0)))  # of the same sizes
+    none = gb.Load(distributed=gb.vector(z=gb.constant(0.0)))  # of the same sizes
     moving = gb.simulate(gb.assemble(beam(1.0, 1.0, none), model), gb.Flight(acceleration=pulse), settings)
     pushed = gb.simulate(
-        gb.assemble(beam(1.0, 1.0, gb.Load(force=counter)), model), gb.Flight(acceleration=gb.vector()), settings
+        gb.assemble(beam(1.0, 1.0, gb.Load(distributed=counter)), model), gb.Flight(acceleration=gb.vector()), settings
     )
     np.testing.assert_allclose(pushed.tip, moving.tip, atol=1e-9 * np.abs(moving.tip).max())
 
@@ -131,7 +131,7 @@ def test_equilibrium_takes_the_loads_at_its_time() -> None:
 
 
 def test_truncated_work_is_the_first_order_of_the_complete_one() -> None:
-    loads = [gb.Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), gb.Load(None, (0.2, 0.3, 0.4), follower=True)]
+    loads = [gb.Load(1.0, (1.0, 2.0, 3.0), (0.4, 0.5, 0.6)), gb.Load(distributed=(0.2, 0.3, 0.4), follower=True)]
     full = gb.assemble(beam(1.0, 1.0, *loads), gb.Model("CFOAM", 1, 2, 2))
     q = np.random.default_rng(1).normal(size=5)
     value, slope = virtual_work(full, 0 * q), rate(lambda t: virtual_work(full, t * q))
