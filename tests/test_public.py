@@ -23,7 +23,7 @@ from gbeam.motion.centrifuge.course import INVERSES
 from gbeam.motion.records.units import UNITS
 from gbeam.questions import QUESTIONS, Options
 from gbeam.results.result import Result
-from gbeam.scenario.schema.scenario import PARAMETERS
+from gbeam.scenario.schema.response import PARAMETERS
 from gbeam.structure.shapes import SHAPES, Dimensions
 
 SOURCE = Path(gbeam.__file__)

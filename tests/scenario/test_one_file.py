@@ -138,7 +138,7 @@ def test_a_parameter_is_declared_in_one_place(widened: Path, tmp_path: Path) -> 
 
 
 def python(folder: Path, code: str) -> str:
-    """What a program prints with the package in a folder."""
+    """Run a program with the package in a folder, and return its output."""
     path = {"PYTHONPATH": str(folder), "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(
         [sys.executable, "-c", code], env=path, cwd=folder, capture_output=True, text=True, check=True

@@ -149,9 +149,9 @@ class Components:
     """Annotation of a vector that is a table of its components in a scenario: what it is, and the words of each."""
 
     about: str
-    x: str
-    y: str
-    z: str
+    x: str = ""
+    y: str = ""
+    z: str = ""
 
 
 Length = Annotated[float, Quantity("length", "positive")]

@@ -187,7 +187,6 @@ def _response(
     differently the times of each motion; None, without a time, or refused.
     """
     from gbeam.analysis.response.settings import ResponseSettings
-    from gbeam.analysis.system.initial import Initial
     from gbeam.integrate.schemes import SCHEMES
     from gbeam.motion import Flight
     from gbeam.motion.arm import extent_of
@@ -232,7 +231,7 @@ def _response(
             fix = f"give a time from {first:g} s on, before {last:g} s"
             parts.errors.append(InputError("response.residual_from", f"is {table.residual_from:g} s", fix))
             break
-    initial = parts.attempt("response.initial", Initial, **table.initial.settings)
+    initial = object_of(parts, "response.initial", table.initial)
     if initial is None:
         return None, spans
     settings = parts.attempt(

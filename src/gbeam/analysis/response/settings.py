@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypedDict
+from typing import Annotated, TypedDict
 
 from gbeam.analysis.system.initial import Initial, begun
 from gbeam.arrays.tree import Value
 from gbeam.constants import Integrator, Parameter, State
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import finite, implausible, positive, possible, refuse_traced
+from gbeam.guards.checks import implausible, refuse_traced
 from gbeam.guards.limits import STEPS, refuse_more
+from gbeam.guards.quantities import Factor, Quantity, Time
 
 FINE = 1e-4
 KEPT = 50_000  # samples of each history that a file holds, unless the settings say how often: 36 MB of the F-16 example
@@ -40,36 +41,6 @@ class Settings(TypedDict, total=False):
 class ResponseSettings(Value):
     """Settings of a response over time.
 
-    Parameters
-    ----------
-    duration : float
-        s.
-    start : float
-        Initial time, s.
-    step : float or None
-        s; None for an automatic one.
-    integrator : str
-        gauss, of fourth order; or newmark, the papers' method, hht or generalized-alpha, of second order.
-    parameters : mapping of str to float
-        The integrator's own: beta and gamma; alpha; rho_inf.
-    tolerance : float
-        Largest total error, of displacement, root loads and stress, that passes without a warning; see :attr:`aim`.
-    residual_from : float or None
-        Time from which the residual vibration is measured, s.
-    initial : Initial
-        State at the start: the relative equilibrium unless given; a name such as ``"undeformed"`` stands for its state.
-    estimate : bool
-        Whether the error is estimated. Without, a given step is run once; an automatic one, which nothing but its own
-        error can choose, is found from several runs all the same, and shapes, model and stress are not judged. The
-        result says so.
-    loads : bool
-        Whether what the sections carry, and the outline for pictures, are computed. The estimate is of loads too, and
-        an automatic step follows the root's in any case.
-    histories : float or None
-        Time between the samples of histories in a file, s, as near as its steps allow; None keeps those of the
-        results' steps, up to 50,000, else every second, third and so on. Peaks are of all steps, and of a system so is
-        xarray.
-
     Raises
     ------
     InputError
@@ -86,33 +57,58 @@ class ResponseSettings(Value):
     'newmark'
     """
 
-    duration: float
-    start: float = 0.0
-    step: float | None = None
-    integrator: Integrator = "gauss"
-    parameters: Mapping[Parameter, float] = field(default_factory=dict)
-    tolerance: float = 1e-2
-    residual_from: float | None = None
-    initial: Initial | State = field(default_factory=Initial)
-    estimate: bool = True
-    loads: bool = True
-    histories: float | None = None
+    duration: Annotated[
+        Annotated[float, Quantity("time", "positive", "duration")], "length of what is computed over time"
+    ]
+    start: Annotated[float, Quantity("time"), "initial time"] = 0.0
+    step: Annotated[
+        Annotated[float, Quantity("time", "positive", "step")] | None, "time step; an automatic one where left out"
+    ] = None
+    integrator: Annotated[
+        Integrator,
+        "time integrator: gauss, of fourth order; or newmark, the papers' method, hht or generalized-alpha, of second "
+        "order, which need more steps",
+    ] = "gauss"
+    parameters: Annotated[Mapping[Parameter, float], "the integrator's own: beta and gamma; alpha; rho_inf"] = field(
+        default_factory=dict
+    )
+    tolerance: Annotated[
+        Factor,
+        "largest total error, of displacement, root loads and stress, without a warning; an automatic step aims at a "
+        "third of it, and at 1e-4 at most",
+    ] = 1e-2
+    residual_from: Annotated[Time | None, "time from which the residual vibration is measured"] = None
+    initial: Annotated[
+        Initial | State,
+        'state at the start, or its name, such as "undeformed"; the relative equilibrium if left out',
+    ] = field(default_factory=Initial)
+    estimate: Annotated[
+        bool,
+        "whether the error is estimated; false: a given step is run once, and the result says that no error is known; "
+        "an automatic one, which nothing but its own error can choose, is found from several runs all the same, and "
+        "only shapes and model are not judged",
+    ] = True
+    loads: Annotated[
+        bool,
+        "whether what the sections carry, and the outline for pictures, are computed; the estimate is of loads, too, "
+        "and an automatic step follows the root's in any case",
+    ] = True
+    histories: Annotated[
+        Annotated[float, Quantity("time", "positive")] | None,
+        "time between the samples of histories in the result file, such as 10 ms, as near as the steps allow; left out "
+        "it keeps those of the results' steps, up to 50,000 of a motion, else every second, third and so on. Peaks are "
+        "of all steps, and of a system so is xarray",
+    ] = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "initial", self.begin)
         for name in ("duration", "start", "step"):
             refuse_traced(name, getattr(self, name), "the number of steps follows from it")
-        possible("duration", "duration", positive("duration", self.duration, "s"))
-        positive("tolerance", self.tolerance, "of the largest")
-        finite("start", self.start)
         if self.estimate and not self.loads:
             raise InputError(
                 "loads", "is false, and the error is estimated of them too", "give estimate = False as well"
             )
-        if self.histories is not None:
-            positive("histories", self.histories, "s")
         if self.step is not None:
-            possible("step", "step", positive("step", self.step, "s"))
             fix = f"give {self.duration / STEPS:.2g} s or more"
             refuse_more("step", "steps", self.duration / self.step, STEPS, 500.0, fix)
 

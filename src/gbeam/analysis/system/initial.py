@@ -4,21 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple, get_args
 
 import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Numbers
 from gbeam.constants import Across, Axis, State
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, finite
+from gbeam.guards.quantities import AccelerationVector, Components, Quantity
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.body_terms import stations_of
 
 _ITERATIONS = 60
+TIP = Components(
+    "A displacement or velocity of the tip across the beam, by components; those left out are free.",
+    y="component along the width",
+    z="component through the thickness",
+)
+POINT = Components(
+    "A displacement or velocity of a point relative to its body's root, by components; those left out are free.",
+    x="component along the body, which needs axial shapes",
+    y="component along the width",
+    z="component through the thickness",
+)
 STATE_WORDS: dict[State, str] = {
     "equilibrium": "in relative equilibrium",
     "undeformed": "undeformed",
@@ -34,27 +45,6 @@ class Initial(Value):
     Joints begin at their own initial values.
     What is given of the displacement takes the place of the equilibrium, of the bodies whose points are displaced; what
     is not given of the velocity is zero.
-
-    Parameters
-    ----------
-    state : str
-        ``equilibrium``: at rest in the relative equilibrium with the base's motion and the loads then, a free hub at
-        rest. The bodies of a system are bent as where joints hold what they move; what floats, held by nothing but a
-        free joint without springs and prescribed rates, is undeformed. The springs of a clamp are bent, too, unless
-        the joint says where they begin; those at the root of a body that deforms let it go at once.
-        ``undeformed``: straight and at rest. ``relief``: inertia relief, bent as what is accelerated by the forces
-        at the start is bent by its inertia, so that they shake no body.
-    acceleration : (3,), optional
-        Released from the static deflection under this acceleration of the ground, or specific force, its axes, m/s²,
-        under the loads then, the joints held where they begin; of one beam, of its root, in base axes.
-    displacement : mapping of str to mapping of str to float, optional
-        Displacements of named points of bodies that deform, relative to the body's root, in its axes, by ``x``, ``y``
-        and ``z``, m, such as ``{"arm.tip": {"z": 2e-3}}``: released from the shape of least strain energy with these,
-        which is that of static forces at the points. Where one body deforms its name may be left out.
-    velocity : mapping of str to mapping of str to float, optional
-        Velocities of points relative to the body's root likewise, m/s, the body moving in the same shape.
-    tip_displacement, tip_velocity : mapping of str to float, optional
-        The same of the tip of the only body that deforms, by ``y`` and ``z``.
 
     Raises
     ------
@@ -72,12 +62,37 @@ class Initial(Value):
     2.000 mm
     """
 
-    state: State = "equilibrium"
-    acceleration: Numbers | None = None
-    tip_displacement: Mapping[Across, float] | None = None
-    tip_velocity: Mapping[Across, float] | None = None
-    displacement: Mapping[str, Mapping[Axis, float]] | None = None
-    velocity: Mapping[str, Mapping[Axis, float]] | None = None
+    state: Annotated[
+        State,
+        "equilibrium: at rest in the relative equilibrium with the base's motion and the loads then, a free hub at "
+        "rest; of a system as where joints hold what they move, and what floats, held by nothing but a free joint "
+        "without springs and prescribed rates, undeformed. Springs of a clamp are bent, too, unless it says where they "
+        "begin; those at the root of a body that deforms let it go at once. undeformed: straight and at rest. relief: "
+        "inertia relief, bent as what the forces at the start accelerate is bent by its inertia",
+    ] = "equilibrium"
+    acceleration: Annotated[
+        AccelerationVector | None,
+        'released from the static deflection under this acceleration of the root, or specific force, [0, 0, "2 g"], '
+        "and under the loads then; of a system under this of its ground, joints held where they begin",
+    ] = None
+    tip_displacement: Annotated[
+        Annotated[Mapping[Across, float], Quantity("length"), TIP] | None,
+        "displacement of the tip of the only body that deforms, in short: { y, z }",
+    ] = None
+    tip_velocity: Annotated[
+        Annotated[Mapping[Across, float], Quantity("speed"), TIP] | None,
+        "velocity of the tip of the only body that deforms, in short: { y, z }",
+    ] = None
+    displacement: Annotated[
+        Mapping[str, Annotated[Mapping[Axis, float], Quantity("length"), POINT]] | None,
+        "released from the static deflection by forces at points that displace these so, relative to their bodies' "
+        'roots: { "arm.tip" = { z = "2 mm" } }; of one body by the names of its points alone',
+    ] = None
+    velocity: Annotated[
+        Mapping[str, Annotated[Mapping[Axis, float], Quantity("speed"), POINT]] | None,
+        "velocities of points relative to their bodies' roots, the bodies moving in the shapes of such deflections: "
+        '{ "arm.tip" = { z = "0.1 m/s" } }',
+    ] = None
 
     def __post_init__(self) -> None:
         choice("state", self.state, STATE_WORDS)
@@ -88,7 +103,7 @@ class Initial(Value):
         if "acceleration" in displaced and len(displaced) > 1:
             raise InputError(displaced[1], f"is given beside {displaced[0]}", "keep one of them")
         if self.acceleration is not None:
-            if np.shape(self.acceleration) != (3,) or not np.isfinite(np.asarray(self.acceleration, dtype=float)).all():
+            if np.shape(self.acceleration) != (3,):
                 fix = "give three finite components, x, y and z"
                 raise InputError("acceleration", f"is {self.acceleration!r}", fix)
             object.__setattr__(self, "acceleration", tuple(float(each) for each in self.acceleration))

@@ -59,15 +59,16 @@ def _specimen(
 
 def _alone(parts: Collector, where: str, table: Table) -> Structure | None:
     """Structure of a rigid specimen alone on its base; None if it is refused."""
-    return _made(parts, where, table, _specimen)
+    return _object(parts, where, table, _specimen)
 
 
 def _in_system(parts: Collector, where: str, table: Table) -> Rigid | Structure | None:
     """Rigid body of a system, a specimen where corners or bolts are asked for; None if it is refused."""
-    return _made(parts, where, table, _specimen if any(getattr(table, key) for key in _ITEM) else _rigid)
+    return _object(parts, where, table, _specimen if any(getattr(table, key) for key in _ITEM) else _rigid)
 
 
-def _made(parts: Collector, where: str, table: Table, make: Any) -> Any:
+def _object(parts: Collector, where: str, table: Table, make: Any) -> Any:
+    """Object of a table by one of the two functions; None if it is refused."""
     before = len(parts.errors)
     arguments = arguments_of(parts, where, table, {"kind", *(() if make is _specimen else _ITEM)})
     return parts.attempt(where, make, **arguments) if len(parts.errors) == before else None

@@ -17,8 +17,8 @@ from gbeam.scenario.schema.motion import Flight as Flight
 from gbeam.scenario.schema.motion import Hub as Hub
 from gbeam.scenario.schema.motion import Limits as Limits
 from gbeam.scenario.schema.motion import Sensor as Sensor
+from gbeam.scenario.schema.response import Response as Response
 from gbeam.scenario.schema.scenario import Environments as Environments
-from gbeam.scenario.schema.scenario import Response as Response
 from gbeam.scenario.schema.scenario import Scenario as Scenario
 
 if TYPE_CHECKING:

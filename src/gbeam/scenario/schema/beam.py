@@ -112,8 +112,8 @@ def _line(
     ] = None,
 ) -> _Line:
     """The line along which a beam lies at rest: by points, by pieces, or straight with a twist at stations."""
-    given = {"points": points, "pieces": pieces, "stations": stations}
-    ways = [name for name, value in given.items() if value is not None]
+    places = {"points": points, "pieces": pieces, "stations": stations}
+    ways = [name for name, value in places.items() if value is not None]
     if len(ways) != 1:
         problem = f"{ways[1]} is given beside {ways[0]}" if ways else "the line is missing"
         raise InputError("", problem, "give one of points, pieces and stations")

@@ -35,14 +35,14 @@ _NUMBER = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 _OURS = (str, Quantity, Count, Shape, Rows, OneOrSome, OfProfile, Components)  # annotations that are not pydantic's
 
 
-class _Object(NamedTuple):
-    """How the object of a table is made: by a class or function, from all keys but that of the `tag`."""
+class _Maker(NamedTuple):
+    """The class or function that makes the object of a table, from all keys but that of the `tag`."""
 
     make: Make
     tag: str
 
 
-_OBJECTS: dict[type, _Object] = {}  # by the table
+_MAKERS: dict[type, _Maker] = {}  # by the table
 _TYPES: dict[type, Any] = {}  # of values in a file, by the class of their objects
 
 
@@ -83,13 +83,13 @@ def table_of(
     table = create_model(title, __base__=base, __module__=module.__name__, __doc__=doc, **fields)
     named = vars(module).setdefault(title, table)  # by which it is pickled
     assert named is table, f"{module.__name__} has another {title}"
-    _OBJECTS[table] = _Object(make, "" if tag is None else tag[0])
+    _MAKERS[table] = _Maker(make, "" if tag is None else tag[0])
     return table
 
 
 def makes(table: type[Table], make: Make) -> type[Table]:
     """Declare the class or function that makes the objects of a table that follows from no signature; return it."""
-    _OBJECTS[table] = _Object(make, "")
+    _MAKERS[table] = _Maker(make, "")
     return table
 
 
@@ -115,10 +115,10 @@ def object_of(parts: Collector, where: str, value: Any) -> Any:
         return {key: object_of(parts, f"{where}.{key}", each) for key, each in value.items()}
     if not isinstance(value, BaseModel):
         return value
-    made = _OBJECTS[type(value)]
+    maker = _MAKERS[type(value)]
     before = len(parts.errors)
-    arguments = arguments_of(parts, where, value, {made.tag})
-    return parts.attempt(where, made.make, **arguments) if len(parts.errors) == before else None
+    arguments = arguments_of(parts, where, value, {maker.tag})
+    return parts.attempt(where, maker.make, **arguments) if len(parts.errors) == before else None
 
 
 def arguments_of(parts: Collector, where: str, table: BaseModel, without: Collection[str] = ()) -> dict[str, Any]:
@@ -145,8 +145,15 @@ def _field(parameter: Parameter, title: str, of: str, factory: Callable[[], Any]
         return written, Field(description=words)
     if factory is not None and isinstance(written, type) and issubclass(written, Table):
         return written, Field(default_factory=written, description=words)
+    if _is_mapping(written):
+        return written, Field(default_factory=dict, description=words)
     default = factory() if factory is not None else parameter.default
     return (written | None if default is None else written), Field(default=default, description=words)
+
+
+def _is_mapping(written: Any) -> bool:
+    """True for the type of values by names that the user gives."""
+    return get_origin(written.__origin__ if get_origin(written) is Annotated else written) is dict
 
 
 def value_type(hint: Any, title: str, of: str = "", quantity: Quantity | None = None) -> Any:
@@ -229,17 +236,19 @@ def _one_or_some(one: Any, depth: int) -> Any:
 
 
 def _by_components(title: str, words: Components, hint: Any, quantity: Quantity) -> Any:
-    """Table of the components of a vector: of a profile each a quantity over time that may be left out."""
-    varies = Profile in get_args(hint)
+    """Table of the components of a vector; those of a profile, and of a mapping by axes, may be left out."""
+    varies, by_axis = Profile in get_args(hint), get_origin(hint) in (Mapping, dict)
     written = over_time(quantity.kind) if varies else Annotated[float, quantity]
+    left_out = varies or by_axis
     fields: dict[str, Any] = {
-        axis: (written | None if varies else written, Field(default=None if varies else ..., description=about))
-        for axis, about in zip("xyz", (words.x, words.y, words.z), strict=True)
+        axis: (written | None if left_out else written, Field(default=None if left_out else ..., description=about))
+        for axis, about in (("x", words.x), ("y", words.y), ("z", words.z))
+        if about
     }
     base = Vector if varies else Table
     table = create_model(title, __base__=base, __module__=__name__, __doc__=words.about, **fields)
     globals()[title] = table  # by which it is pickled
-    _OBJECTS[table] = _Object(vector if varies else _triple, "")
+    _MAKERS[table] = _Maker(vector if varies else dict if by_axis else _triple, "")
     return table
 
 

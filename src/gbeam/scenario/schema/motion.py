@@ -74,7 +74,7 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
 
 
 class _Source(Table):
-    """What a flight flies: a record, or an acceleration."""
+    """Source of a flight: a record, or an acceleration."""
 
     record: RecordOrPart | None = optional(
         "a measured record: { file, time, x, y, z, unit }, or { of, from, to, section }, another part of that of "
@@ -105,7 +105,7 @@ class Commands(Table):
 
 
 class _Imitation(Table):
-    """What a centrifuge imitates, by which machine and how well."""
+    """Keys of an imitation: of which flight, by which machine and how well."""
 
     tracks: str = Field(description="NAME of the flight motion that it imitates")
     machine: MachineName | None = optional(

@@ -10,19 +10,17 @@ from pydantic import (
     AfterValidator,
     Field,
     PrivateAttr,
-    StrictBool,
     ValidationInfo,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
 
-from gbeam.constants import Integrator, Parameter, Sampler, State
-from gbeam.guards.limits import ENTRIES, TITLE
-from gbeam.guards.quantities import Acceleration, Duration, Offset, Position, Quantity, Ratio, Speed, Time
+from gbeam.constants import Sampler
+from gbeam.guards.limits import TITLE
 from gbeam.printable import advise, level_words, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.arm import Arm
-from gbeam.scenario.schema.fields import Loc, Step, Table, by_name, motion_name, optional, refuse, wrong
+from gbeam.scenario.schema.fields import Loc, Table, by_name, motion_name, optional, refuse, wrong
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub
 from gbeam.scenario.schema.record import PartOfRecord, Record
 from gbeam.scenario.text.source import Source
@@ -31,152 +29,16 @@ if TYPE_CHECKING:
     from gbeam.constants import Verb
 
     Beam = Any
+    Response = Any
     Model = Any
     Motion = Any
     Sensor = Any
 else:
     from gbeam.scenario.schema.beam import Beam, Model
     from gbeam.scenario.schema.motion import Motion, Sensor
+    from gbeam.scenario.schema.response import Response
 
     Verb = Literal[tuple(QUESTIONS)]  # with those that are declared elsewhere
-
-
-# Which parameters each integrator takes.
-PARAMETERS: dict[Integrator, tuple[Parameter, ...]] = {
-    "newmark": ("beta", "gamma"),
-    "hht": ("alpha",),
-    "generalized-alpha": ("rho_inf",),
-    "gauss": (),
-}
-
-
-class TipDisplacement(Table):
-    """A displacement of the tip across the beam, by components; those left out are free."""
-
-    y: Offset | None = optional("component along the width")
-    z: Offset | None = optional("component through the thickness")
-
-
-class TipVelocity(Table):
-    """A velocity of the tip across the beam, by components; those left out are free."""
-
-    y: Speed | None = optional("component along the width")
-    z: Speed | None = optional("component through the thickness")
-
-
-class PointDisplacement(Table):
-    """A displacement of a point relative to its body's root, by components; those left out are free."""
-
-    x: Offset | None = optional("component along the body, which needs axial shapes")
-    y: Offset | None = optional("component along the width")
-    z: Offset | None = optional("component through the thickness")
-
-
-class PointVelocity(Table):
-    """A velocity of a point relative to its body's root, by components; those left out are free."""
-
-    x: Speed | None = optional("component along the body, which needs axial shapes")
-    y: Speed | None = optional("component along the width")
-    z: Speed | None = optional("component through the thickness")
-
-
-class Initial(Table):
-    """The state of what deforms, relative to its root, in which a response begins; a machine's with its spin-up."""
-
-    state: State = Field(
-        default="equilibrium",
-        description="equilibrium: at rest in the relative equilibrium with the base's motion and the loads then, a "
-        "free hub at rest; of a system as where joints hold what they move, and what floats, held by nothing but a "
-        "free joint without springs and prescribed rates, undeformed. Springs of a clamp are bent, too, unless it says "
-        "where they begin; those at the root of a body that deforms let it go at once. undeformed: straight and at "
-        "rest. relief: inertia relief, bent as what the forces at the start accelerate is bent by its inertia",
-    )
-    acceleration: tuple[Acceleration, Acceleration, Acceleration] | None = optional(
-        'released from the static deflection under this acceleration of the root, [0, 0, "2 g"], and under '
-        "the loads then; of a system under this of its ground, joints held where they begin"
-    )
-    displacement: dict[str, PointDisplacement] = by_name(
-        "released from the static deflection by forces at points that displace these so, relative to their bodies' "
-        'roots: { "arm.tip" = { z = "2 mm" } }; of one body by the names of its points alone'
-    )
-    velocity: dict[str, PointVelocity] = by_name(
-        "velocities of points relative to their bodies' roots, the bodies moving in the shapes of such deflections: "
-        '{ "arm.tip" = { z = "0.1 m/s" } }'
-    )
-    tip_displacement: TipDisplacement | None = optional(
-        "displacement of the tip of the only body that deforms, in short: { y, z }"
-    )
-    tip_velocity: TipVelocity | None = optional("velocity of the tip of the only body that deforms, in short: { y, z }")
-
-    @property
-    def settings(self) -> dict[str, Any]:
-        """Settings that are written, as keywords of the object."""
-        return {key: value for key, value in self.model_dump(exclude_none=True).items() if value != {}}
-
-
-class Response(Table):
-    """Response over time."""
-
-    duration: Duration | None = optional(
-        "length of what is computed over time; left out beside a record, of which `to` asks for a part, and where "
-        "answers of one time are asked for, such as modes"
-    )
-    step: Step = Field(default="auto", description="time step, or auto")
-    integrator: Integrator = Field(
-        default="gauss",
-        description="time integrator: gauss, of fourth order; or newmark, the papers' method, hht or "
-        "generalized-alpha, of second order, which need more steps",
-    )
-    beta: Ratio | None = optional("parameter of newmark")
-    gamma: Ratio | None = optional("parameter of newmark")
-    alpha: Ratio | None = optional("parameter of hht")
-    rho_inf: Ratio | None = optional("parameter of generalized-alpha: spectral radius at infinite frequency")
-    tolerance: Annotated[float, Quantity("ratio", "positive")] = Field(
-        default=1e-2,
-        description="largest total error, of displacement, root loads and stress, without a warning; an automatic step "
-        "aims at a third of it, and at 1e-4 at most",
-    )
-    estimate: StrictBool = Field(
-        default=True,
-        description="whether the error is estimated; false: a given step is run once, and the result says that no "
-        "error is known; an automatic one, which nothing but its own error can choose, is found from several runs all "
-        "the same, and only shapes and model are not judged",
-    )
-    initial: Initial = Field(
-        default_factory=Initial, description="state at the start; the relative equilibrium if left out"
-    )
-    residual_from: Time | None = optional("time from which the residual vibration is measured")
-    stations: tuple[Position, ...] | None = optional(
-        "positions from the root for the output; the tip if left out", min_length=1, max_length=ENTRIES
-    )
-
-    histories: Step = Field(
-        default="auto",
-        description="time between the samples of histories in the result file, such as 10 ms; auto keeps those of the "
-        "results' steps, up to 50,000 of a motion, else every second, third and so on. Peaks are of all steps",
-    )
-
-    @property
-    def parameters(self) -> dict[Parameter, float]:
-        """Parameters of the integrator that are written."""
-        named = {name: getattr(self, name) for name in PARAMETERS[self.integrator]}
-        return {name: value for name, value in named.items() if value is not None}
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Response:
-        def problems() -> Iterator[tuple[Loc, PydanticCustomError]]:
-            takes = PARAMETERS[self.integrator]
-            for owner, names in PARAMETERS.items():
-                for name in names:
-                    if name not in takes and getattr(self, name) is not None:
-                        hint = f"it takes {' and '.join(takes)}" if takes else f'give integrator = "{owner}" with it'
-                        yield (name,), wrong(f"does not belong to {self.integrator}", hint, mark="key")
-            if self.duration is not None and self.step != "auto" and self.step > self.duration:
-                hint = "give a time before the end, {response.duration}"
-                yield ("step",), wrong("{value} is longer than the computation", hint)
-
-        refuse(problems())
-        return self
 
 
 class Sweep(Table):
