@@ -21,7 +21,7 @@ _COUNT = 128  # windows at most per history
 _STRAIGHT = 1e-150  # of a second derivative: less is none
 _SMOOTH = 0.25  # degree 6 may change degree 4 by this share of what that changed degree 2; corners and jumps: 0.35
 _RESOLVED = 0.5  # share of the squared changes that their difference may have; reached at 2.6 steps a period
-_WIDE = 6  # columns of a history
+WIDE = 6  # columns of a history
 _SHARES = np.arange(_PER_STEP + 1) / _PER_STEP
 # Hermite's polynomials of fifth degree there: of value, first and second derivative at either end.
 _QUINTIC = np.stack(
@@ -227,18 +227,31 @@ def extremes(time: Floats, values: Floats) -> Floats:
     """Highest values (k,) between the samples of a history (t,); or the highest and lowest of columns (t, c), and the
     largest length of a row.
     """
-    if values.ndim == 1:
-        columns = values[:, None]
-    else:
-        columns = np.concatenate([values, -values, np.sqrt((values**2).sum(axis=1, keepdims=True))], axis=1)
-    return column_peaks(time, columns)[0]
+    return _of_windows(time, values[None])
+
+
+def signed_columns(values: Floats) -> Floats:
+    """Columns (..., t, 2 c + 1) of values (..., t, c): with both signs, and the lengths of rows."""
+    return np.concatenate([values, -values, np.sqrt((values**2).sum(axis=-1, keepdims=True))], axis=-1)
+
+
+def _of_windows(time: Floats, values: Floats) -> Floats:
+    """Highest values (k,), as of :func:`extremes`, of a history in windows (w, t, ...) that have their times alike."""
+    columns = values[..., None] if values.ndim == 2 else signed_columns(values)
+    value, _ = _measured(time, np.moveaxis(columns, 2, 0)[..., None], lambda values: values)
+    return np.asarray(value[..., 0].max(axis=1))
 
 
 def peaks_apart(time: Floats, values: Floats, others: Floats) -> float:
     """Largest difference of the highest and lowest values of two histories (t,) or (t, c), whenever each is reached; of
     more columns than vectors have, those alone that reach half of the largest.
     """
-    if values.ndim > 1 and values.shape[1] > _WIDE:
-        most = np.abs(values).max(axis=0)
-        values, others = (each[:, most >= most.max() / 2] for each in (values, others))
-    return float(np.abs(extremes(time, values) - extremes(time, others)).max())
+    return largest_apart(time, values[None], others[None])
+
+
+def largest_apart(time: Floats, values: Floats, others: Floats) -> float:
+    """Largest difference as of :func:`peaks_apart`, of histories in windows (w, t, ...) that have their times alike."""
+    if values.ndim > 2 and values.shape[2] > WIDE:
+        most = np.abs(values).max(axis=(0, 1))
+        values, others = (each[..., most >= most.max() / 2] for each in (values, others))
+    return float(np.abs(_of_windows(time, values) - _of_windows(time, others)).max())

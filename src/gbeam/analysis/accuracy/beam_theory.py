@@ -14,13 +14,13 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import MOVED, Departures, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import MOVED, Correction, Departures, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.looks import Looks
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
-from gbeam.numerics.peaks import peaks_apart
 from gbeam.structure.beam import assumptions
 
 NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
@@ -65,10 +65,11 @@ def beyond(
     theories: Mapping[str, Theory],
     pose: Callable[[Mapping[str, Structure]], Posed],
     begun: Begun,
+    look: Callable[[Floats], Looks],
     again: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
     """Differences between slender and thick beams at a solution `of` the equations `solved`; `pose` returns equations
-    with other beams, `begun` the difference of their initial states.
+    with other beams, `begun` the difference of their initial states, and `look` times to read by sizes of departures.
 
     With `again`, systems with slender and thick beams are run instead, as in a loop, whose controllers answer too: not
     with and without plate action both, where the answers without controllers say that one of them makes a LESSER part
@@ -76,7 +77,7 @@ def beyond(
     """
     compared = _Compared.of(solved, of, theories, pose)
     try:
-        linear = compared.answered(begun)
+        linear = compared.answered(begun, look)
         most = reduce(Lacking.or_larger, linear)
         if again is None:
             return most
@@ -115,7 +116,7 @@ class _Compared(NamedTuple):
         plated = (False, True) if any(plate.any() for plate in plates.values()) else (False,)
         return cls(theories, thin, full, columns, plates, plated)
 
-    def answered(self, begun: Begun) -> list[Lacking]:
+    def answered(self, begun: Begun, look: Callable[[Floats], Looks]) -> list[Lacking]:
         """Differences by the small departures that cancel the residual in thick beams."""
         of, residual = self.full.of, self.full.residual()
         by, added = dict[str, Mapping[str, float]](), np.zeros((of.q.shape[1],) * 2)
@@ -124,35 +125,37 @@ class _Compared(NamedTuple):
             bent = of.q[:, columns]
             by[name] = causes(theory, bent, residual[:, columns], bent @ plate)
             added[np.ix_(columns, columns)] = plate
-        departures, without = self.full.departures(), self.thin.more.read(self.thin.of)
-        answers = list[Lacking]()
+        departures, answers = self.full.departures(), list[Correction]()
         for plated in self.plated:
             plate = plated * added
             stiffer = departures.stiffer(plate)
-            answer = stiffer.answer(residual + of.q @ plate, begun(stiffer, self.full, plate))
-            sizes, peaks = _apart(of.time, without, self.full.moved(answer))
+            answers.append(stiffer.answer(residual + of.q @ plate, begun(stiffer, self.full, plate)))
+        looks = look(np.concatenate([self.full.more.sizes(answer) for answer in answers], axis=1))
+        without, differences = self.thin.read(looks.at), list[Lacking]()
+        for answer in answers:
+            sizes, peaks = _apart(looks, without, self.full.moved(answer, looks.at))
             bodies = dict[str, Floats]()
             for name, theory in self.theories.items():
                 moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, self.columns[name]])
                 bodies[name] = np.linalg.norm(moved, axis=2).max(axis=0)
-            answers.append(Lacking(sizes, by, bodies, peaks))
-        return answers
+            differences.append(Lacking(sizes, by, bodies, peaks))
+        return differences
 
     def run(self, again: Callable[[Mapping[str, Structure]], Reading], plated: Sequence[bool]) -> list[Lacking]:
         """Differences by runs of systems with slender beams and with thick ones, these with plate action as flagged."""
         without, answers = again({name: theory.slender for name, theory in self.theories.items()}), list[Lacking]()
         for flag in plated:
             stiff = {name: theory.variants(self.plates[name])[flag] for name, theory in self.theories.items()}
-            sizes, peaks = _apart(self.full.of.time, without, again(stiff))
+            sizes, peaks = _apart(Looks.at_all(self.full.of.time), without, again(stiff))
             answers.append(Lacking(sizes, peaks=peaks))
         return answers
 
 
-def _apart(time: Floats, without: Reading, truth: Reading) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
+def _apart(looks: Looks, without: Reading, truth: Reading) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
     """Largest differences of readings, and over time those of their peaks."""
     sizes = {key: largest(truth[key] - values) for key, values in without.items()}
-    judged = [key for key in without if len(time) > 1 and key[1] not in MOVED]
-    return sizes, {key: peaks_apart(time, without[key], truth[key]) for key in judged}
+    judged = [key for key in without if len(looks.at) > 1 and key[1] not in MOVED]
+    return sizes, {key: looks.peaks_apart(without[key], truth[key]) for key in judged}
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:

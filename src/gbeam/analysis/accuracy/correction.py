@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.arrays.types import Flags, Floats
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.integrate.driver import integrate
 from gbeam.integrate.equations import LinearEquations, Trajectory, slopes
 from gbeam.integrate.schemes import gauss
@@ -47,13 +47,15 @@ def looked(count: int) -> IntArray:
 
 class Posed(NamedTuple):
     """Equations of motion at the times of a solution: residual(q, q̇, q̈, inputs), the inputs at an index or slice of
-    the times, names of the unknowns (`body.q1` of a body's shapes), and a function that reads a trajectory.
+    the times, names of the unknowns (`body.q1` of a body's shapes), a function that reads a trajectory over those times
+    that are at some indices, and one for the sizes (t, k) that a small departure has to first order.
     """
 
     residual: Any
     inputs: Callable[[Any], Any]
     names: Sequence[str]
-    read: Callable[[Trajectory], Reading]
+    read: Callable[[Trajectory, Indices], Reading]
+    sizes: Callable[[Correction], Floats]
 
     @property
     def bodies(self) -> list[str]:
@@ -71,6 +73,10 @@ class Correction(NamedTuple):
     def less(self, other: Correction) -> Correction:
         """This correction minus another."""
         return Correction(*(a - b for a, b in zip(self, other, strict=True)))
+
+    def at(self, times: Indices) -> Correction:
+        """Return the correction at indices of its times."""
+        return Correction(*(each[times] for each in self))
 
 
 class Vibration(NamedTuple):
@@ -251,7 +257,12 @@ class Within(NamedTuple):
         turned = np.array([ball in faster for ball in balls], dtype=bool)
         return Departures(self.of.time, at.time, k, c, m, elastic, turned)
 
-    def moved(self, by: Correction) -> Reading:
-        """Read the solution with a correction added."""
-        of = self.of
-        return self.more.read(replace(of, q=of.q + by.value, qd=of.qd + by.rate, known=of.qdd + by.acceleration))
+    def read(self, times: Indices) -> Reading:
+        """Read the solution, in the equations `more`, at indices of its times."""
+        return self.more.read(self.of.at(times), times)
+
+    def moved(self, by: Correction, times: Indices) -> Reading:
+        """Read the solution with a correction added, at indices of its times."""
+        of, change = self.of.at(times), by.at(times)
+        moved = replace(of, q=of.q + change.value, qd=of.qd + change.rate, known=of.qdd + change.acceleration)
+        return self.more.read(moved, times)

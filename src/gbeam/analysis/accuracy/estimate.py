@@ -14,11 +14,11 @@ import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, Lacking, largest
 from gbeam.analysis.accuracy.correction import DEFLECTION, MOVED, Quantity, Reading
+from gbeam.analysis.accuracy.looks import Looks
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.plausibility import of_first_order
 from gbeam.mechanics.structure import Structure
-from gbeam.numerics.peaks import peaks_apart
 from gbeam.printable import percent as percent
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.result import NOT_KNOWN
@@ -149,7 +149,7 @@ def unjudged(structure: Structure) -> str:
 class Judgement(NamedTuple):
     """Pairs of readings that differ by too few shapes, by the model and, if known, by the mesh; differences by the beam
     theory, relative errors of the steps, the sizes that others are relative to, and quantities that are rounding. Of a
-    response its times, s, relative errors of peaks by the steps, and those of the law of friction.
+    response the times that are read, relative errors of peaks by the steps, and those of the law of friction.
     """
 
     shapes: tuple[Reading, Reading]
@@ -159,7 +159,7 @@ class Judgement(NamedTuple):
     sizes: Mapping[Quantity, float]
     nothing: Collection[Quantity]
     mesh: tuple[Reading, Reading] | None = None
-    time: Floats | None = None
+    looks: Looks | None = None
     peaks_by_step: Mapping[Quantity, float] = MappingProxyType({})
     friction: Mapping[Quantity, float] = MappingProxyType({})
 
@@ -183,19 +183,19 @@ class Judgement(NamedTuple):
             estimate = estimate.adding(friction=0.0 if key in self.nothing else self.friction[key])
         theory, size = self.theory.sizes.get(key, math.nan), self.sizes[key]
         estimate = estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
-        peaks = self.time is not None and key[1] not in MOVED
+        peaks = self.looks is not None and key[1] not in MOVED
         return replace(estimate, peak=self.peak(key, estimate.total)) if peaks else estimate
 
     def peak(self, key: Quantity, total: float) -> float:
         """Error of the largest values of a quantity over time, whenever they are reached: the sum of the differences
         that shapes and model, mesh, theory, steps and friction make, so none hides another; at most the `total`.
         """
-        if self.time is None or not self.sizes[key] or not math.isfinite(total):
+        if self.looks is None or not self.sizes[key] or not math.isfinite(total):
             return total
         # From what is computed to the exact model with more shapes; what lies between is no solution.
         first, last = (self.model, self.shapes) if self.shapes[0] is self.model[1] else (self.shapes, self.model)
         pairs = [(first[0], last[1]), *([] if self.mesh is None else [self.mesh])]
-        apart = sum(peaks_apart(self.time, less[key], more[key]) for less, more in pairs)
+        apart = sum(self.looks.peaks_apart(less[key], more[key]) for less, more in pairs)
         by_run = self.peaks_by_step.get(key, 0.0), self.friction.get(key, 0.0)
         causes = (apart + self.theory.peaks.get(key, 0.0)) / self.sizes[key], *by_run
         return min(max(float(np.nansum(causes)), ROUNDING), total)

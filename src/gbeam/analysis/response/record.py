@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading
 from gbeam.analysis.outline import assembly_of, ends_of, outline_of
 from gbeam.analysis.response.outcome import effort, ending_of, inaccuracies, stressed_and_bent
 from gbeam.analysis.response.peaks import displacement_peaks, half_ranges, load_peaks, maxima_of
@@ -17,6 +18,8 @@ from gbeam.analysis.response.posed import begun_in_words
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.stepping import LOADS_STEPS, scheme_of
 from gbeam.analysis.system.histories import Carried, deflection, loads_of
+from gbeam.analysis.system.richer import judged_bodies
+from gbeam.analysis.system.solution import reading_of
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats, Indices
 from gbeam.mechanics.fields.basis import FAMILIES
@@ -142,6 +145,19 @@ class Histories:
             **(self._recovered(name, state, peaks) if drawn else {}),
         )
 
+    def reading(self, bodies: Mapping[str, BodyResponse]) -> Reading | None:
+        """Readings over the flight, of the bodies that are judged, for their errors; None without loads."""
+        run = self.run
+        if not run.posed.settings.loads:
+            return None
+        flown = run.flown(run.stride)
+        out: dict[Quantity, Floats] = {PLACE: self.over_time["place"][self.kept][flown]}
+        for name, body in judged_bodies(run.posed.system).items():
+            response = bodies[name]
+            assert response.loads is not None
+            out |= reading_of(name, body, response.q[flown], response.loads.during(flown))
+        return out
+
     def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
         """Loads along a body in a state at times (t,) s, of a beam on a hub with the torque on it."""
         subject = self.run.posed.subject
@@ -246,7 +262,7 @@ def response_of(
         outcome, message, from_run = ending.outcome, ending.message, ending.warnings
         if ending.done:
             from_run += stressed_and_bent(run, bodies)
-            errors, of_bodies = run.errors(step_errors, progress)
+            errors, of_bodies = run.errors(step_errors, read.reading(bodies), progress)
             from_run += of_bodies + inaccuracies(run, errors) + effort(settings, len(run.flight.time) - 1, run.stride)
         root = next((each.base for body, each in bodies.items() if body == subject.body), None)
         inputs = subject.doubts(name, root, span=(time[0], time[-1]))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import largest
-from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity, pieces
+from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity, Reading, pieces
 from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
 from gbeam.analysis.response.contacts import creeping, missed_stop, turned_over
 from gbeam.analysis.response.peaks import peaks_of_coordinates
@@ -182,9 +182,11 @@ class Run:
             by_step |= {(name, "stress"): stress} if _stressed(body) else {}
         return by_step
 
-    def errors(self, of_steps: StepErrors, progress: Progress = None) -> tuple[Errors, tuple[str, ...]]:
-        """Errors of the response over the flight's times, by those of the steps, and warnings of masses off the axis of
-        a beam and of controllers that lose what has more shapes.
+    def errors(
+        self, of_steps: StepErrors, computed: Reading | None, progress: Progress = None
+    ) -> tuple[Errors, tuple[str, ...]]:
+        """Errors of the response over the flight's times, by those of the steps and what is `computed`, which is read
+        if None; and warnings of masses off the axis of a beam and of controllers that lose what has more shapes.
         """
         posed, settings = self.posed, self.posed.settings
         of_steps = StepErrors() if self.missed else of_steps  # unknown where steps may miss a stop
@@ -204,6 +206,7 @@ class Run:
         friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
         more: Any = {"peaks_by_step": dict(zip(of_loads, of_steps.peaks, strict=False)), "friction": friction}
         more |= {"stride": judged.stride, "tolerance": settings.tolerance, "starting": self._starting}
+        more |= {"computed": computed if judged is self else None}
         stated, doubts = system_errors(judged.solution, rerun, by_step, **more)
         if not friction and posed.system.rubbing:
             stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))

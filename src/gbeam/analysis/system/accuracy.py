@@ -20,7 +20,17 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import Lacking, beyond, described, largest
-from gbeam.analysis.accuracy.correction import DEFLECTION, PLACE, RESOLVED, Departures, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import (
+    DEFLECTION,
+    PLACE,
+    RESOLVED,
+    Correction,
+    Departures,
+    Quantity,
+    Reading,
+    State,
+    Within,
+)
 from gbeam.analysis.accuracy.estimate import (
     UNMOVED,
     Judgement,
@@ -30,6 +40,7 @@ from gbeam.analysis.accuracy.estimate import (
     of_bodies,
     percent,
 )
+from gbeam.analysis.accuracy.looks import Looks, times_of_peaks
 from gbeam.analysis.system.richer import (
     coarser,
     judged_bodies,
@@ -39,7 +50,7 @@ from gbeam.analysis.system.richer import (
     theories_of,
     with_beams,
 )
-from gbeam.analysis.system.solution import Solution
+from gbeam.analysis.system.solution import Solution, elastic_accelerations, first_order_sizes
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import Trajectory
@@ -122,15 +133,16 @@ def system_errors(
     start: Floats | None = None,
     friction: Mapping[Quantity, float] = MappingProxyType({}),
     tolerance: float = math.inf,
+    computed: Reading | None = None,
 ) -> tuple[Errors, tuple[str, ...]]:
     """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
     of the beams' deflections, root loads and stress; and warnings of masses that a twist, which the model lacks, moves
     by more than a `tolerance`.
 
-    `every` returns the solution at every so many steps, of which results have every `stride`-th; `steps` has the errors
-    of the time steps, `peaks_by_step` of their peaks, and `friction` those of its law. Richer systems are linearised,
-    beginning as `starting` says, or run by `again` if given (with controllers, at rest). A solution that does not
-    resolve a mode that rings is judged at more steps.
+    `every` returns the solution at every so many steps, of which results have every `stride`-th, `computed` if they are
+    read already; `steps` has the errors of the time steps, `peaks_by_step` of their peaks, and `friction` those of its
+    law. Richer systems are linearised, beginning as `starting` says, or run by `again` if given (with controllers, at
+    rest). A solution that does not resolve a mode that rings is judged at more steps.
     """
     solution = every(stride)
     system, count = solution.system, len(solution.of.time)
@@ -138,7 +150,7 @@ def system_errors(
     by_steps = partial(unjudged, system, steps, friction)
     if not judged or (again is None and count < FEWEST):
         return by_steps(rest=math.nan if note or judged else 0.0, note=note), ()
-    computed = solution.read(judged)
+    computed = solution.read(judged) if computed is None else computed
     place = computed[PLACE]
     sizes = {quantity: largest(values) for quantity, values in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
@@ -151,30 +163,33 @@ def system_errors(
     least = max(1, math.ceil(count * stride / MOST))  # steps from one that is looked at to the next
     skipped = max(1, min(int(period / PER_PERIOD / (stride * interval)), count // MANY)) if again is None else 1
 
-    def judge(solution: Solution, computed: Reading) -> tuple[Errors, float, Lacking]:
+    near = times_of_peaks(solution.of.time, computed)
+
+    def judge(solution: Solution) -> tuple[Errors, float, Lacking]:
         """Errors by a solution at some of the steps, the frequency, rad/s, of a mode that these do not resolve, and
         what the theory of slender beams lacks.
         """
         rerun = None if again is None else _rerun(again, len(solution.of.time))
+        look = partial(Looks.chosen, solution.of.time, near, stride * interval)
         with np.errstate(all="ignore"):
             try:
-                apart = _apart(solution, rerun, bases, computed, starting, straight=straight)
+                if rerun is None:
+                    apart = _departing(solution, bases, look, starting, straight=straight)
+                else:
+                    apart = _rerunning(solution, rerun, bases, computed)
             except (ComputationError, np.linalg.LinAlgError):
                 return by_steps(note=FAR), 0.0, Lacking()
             if not np.isfinite(apart.truth[PLACE]).all():
                 return _bounded(judged, known) or by_steps(note=FAR), 0.0, Lacking()
-            mesh = _by_mesh(solution, rerun, judged, starting)
-            lacking, lost = _beyond(solution, rerun, known, extent, starting)
-        errors = _judged(solution, known, computed, apart, lacking, mesh, lost)
+            lacking, lost = _beyond(solution, rerun, known, extent, look, starting)
+        errors = _judged(system, known, apart, lacking, lost)
         missed = 0.0 if apart.rings is None else _missed(apart.rings, known, errors, RESOLVED / (least * interval))
         return errors, missed, lacking
 
-    some = {quantity: values[::skipped] for quantity, values in computed.items()}
-    errors, rate, lacking = judge(solution if skipped == 1 else every(stride * skipped), some)
+    errors, rate, lacking = judge(solution if skipped == 1 else every(stride * skipped))
     finer = max(least, int(RESOLVED / (rate * interval))) if rate else stride * skipped
     if finer < stride * skipped:
-        solution = every(finer)
-        errors, _, lacking = judge(solution, solution.read(judged))
+        errors, _, lacking = judge(every(finer))
     moved = list[str]()
     for name, body in judged.items():
         causes, distances = lacking.causes.get(name, {}), lacking.bodies.get(name, np.zeros(0))
@@ -204,14 +219,18 @@ class _Rings(NamedTuple):
 
 
 class _Apart(NamedTuple):
-    """Pairs of readings that differ by too few shapes and by the models, readings by the exact models with more shapes
-    and of systems in which one body alone is richer, bounds of ringing, and why models are not judged apart.
+    """Readings, at the times of the `looks`, of what is computed and of exact models with more shapes; pairs that
+    differ by too few shapes and by the models; readings of systems in which one body alone is richer, and of one with
+    coarser meshes; bounds of ringing, and why models are not judged apart.
     """
 
+    looks: Looks
+    computed: Reading
+    truth: Reading
     shapes: tuple[Reading, Reading]
     model: tuple[Reading, Reading]
-    truth: Reading
     alone: list[Reading]
+    mesh: Reading | None
     rings: _Rings | None = None
     note: str = ""
 
@@ -227,20 +246,10 @@ def _negligible(
     return nothing | ({PLACE} if unmoved(sizes[PLACE], place) else set())
 
 
-def _apart(
-    solution: Solution,
-    rerun: Rerun | None,
-    bases: Mapping[str, Base],
-    computed: Reading,
-    starting: Starting | None,
-    *,
-    straight: bool,
-) -> _Apart:
-    """Readings that richer systems have beside the `computed` ones: linearised ones, or by running them."""
+def _rerunning(solution: Solution, rerun: Rerun, bases: Mapping[str, Base], computed: Reading) -> _Apart:
+    """Readings of richer systems, by running them, beside those `computed`."""
     judged = judged_bodies(solution.system)
     exact = all(body.exact for body in judged.values())
-    if rerun is None:
-        return _departing(solution, bases, computed, starting, exact=exact, straight=straight)
     note, same = "", None
     truth = rerun(richer(solution.system, bases, exact=True).system, judged)
     alone = [
@@ -254,24 +263,18 @@ def _apart(
         except ComputationError:
             same, note = computed, TOGETHER
     same = truth if same is None else same
+    rough, looks = coarser(solution.system), Looks.at_all(solution.of.time)
+    mesh = None if rough is None else rerun(rough, judged)
     # The errors of models lie between the system with more shapes of the same models and the exact one.
-    return _Apart((computed, same), (same, truth), truth, alone, note=note)
+    return _Apart(looks, computed, truth, (computed, same), (same, truth), alone, mesh, note=note)
 
 
-def _judged(
-    solution: Solution,
-    known: _Known,
-    computed: Reading,
-    apart: _Apart,
-    lacking: Lacking,
-    mesh: Reading | None,
-    lost: str,
-) -> Errors:
-    """Errors by what richer systems, thick beams and coarser meshes make of the `computed` readings."""
-    judged, time = judged_bodies(solution.system), solution.of.time if len(solution.of.time) > 1 else None
-    by_mesh = None if mesh is None else (mesh, computed)
+def _judged(system: System, known: _Known, apart: _Apart, lacking: Lacking, lost: str) -> Errors:
+    """Errors by what richer systems, thick beams and coarser meshes make of what is computed."""
+    judged, computed = judged_bodies(system), apart.computed
     judgement = Judgement(
-        apart.shapes, apart.model, lacking, dict(known.steps), known.sizes, known.nothing, by_mesh, time,
+        apart.shapes, apart.model, lacking, dict(known.steps), known.sizes, known.nothing,
+        None if apart.mesh is None else (apart.mesh, computed), apart.looks if len(apart.looks.at) > 1 else None,
         known.peaks_by_step, known.friction,
     )  # fmt: skip
 
@@ -376,31 +379,17 @@ def _alone(rerun: Rerun, system: System, truth: Reading) -> Reading:
         return {quantity: np.nan * values for quantity, values in truth.items()}
 
 
-def _by_mesh(
-    solution: Solution, rerun: Rerun | None, bodies: Iterable[str], starting: Starting | None
-) -> Reading | None:
-    """Readings of the system with coarser meshes of its solids; None if no solid has one."""
-    rough = coarser(solution.system)
-    if rough is None:
-        return None
-    if rerun is not None:
-        return rerun(rough, bodies)
-    within = solution.within(rough, bodies)
-    departures = within.departures()
-    return within.moved(departures.answer(within.residual(), _begun(starting, rough, within, departures)))
-
-
 def _departing(
     solution: Solution,
     bases: Mapping[str, Base],
-    computed: Reading,
+    look: Callable[[Floats], Looks],
     starting: Starting | None,
     *,
-    exact: bool,
     straight: bool,
 ) -> _Apart:
     """Readings of linearised richer systems: exact models with more shapes, exact models with the same shapes and, of
-    several bodies, each alone richer; `straight` if departures are from undeformed bodies.
+    several bodies, each alone richer, and of the system with coarser meshes; `straight` if departures are from
+    undeformed bodies.
     """
     along = solution.along(bases)
     rich = richer(solution.system, bases, exact=True, along=along)
@@ -410,13 +399,12 @@ def _departing(
     if linear is not None and not departures.inert:  # light arms on hinges that follow one another
         departures = within.departures()
     begun = _begun(starting, rich.system, within, departures)
-    total = departures.answer(residual, begun)
-    few_shapes, truth = computed, within.moved(total)
-    if not exact:
+    total, of_model = departures.answer(residual, begun), None
+    if not all(solution.system.flexible[name].exact for name in bases):
         same = richer(solution.system, bases, exact=False, along=along).system
         start = _begun(starting, rich.system, within, departures, within.of_new, like=same)
-        few_shapes = within.moved(total.less(departures.answer(within.of_new(residual), start)))
-    alone = list[Reading]()
+        of_model = total.less(departures.answer(within.of_new(residual), start))
+    alone = list[Correction]()
     for name in bases if len(bases) > 1 else ():
         # The residual of a system in which it alone is exact; the others feel it only through the joints.
         one_richer = richer(solution.system, {name: bases[name]}, exact=True, along=along)
@@ -425,9 +413,30 @@ def _departing(
         onto = np.zeros((len(one.more.names), residual.shape[1]))
         onto[kept, [within.more.names.index(one.more.names[k]) for k in kept]] = 1.0
         start = _begun(starting, one_richer.system, one, departures, lambda left: left @ onto, rich.system)  # noqa: B023
-        alone.append(within.moved(departures.answer(one.residual() @ onto, start)))
-    rings = _rings(rich.system, bases, within, *departures.shaken(residual, begun))
-    return _Apart((few_shapes, truth), (computed, few_shapes), truth, alone, rings)
+        alone.append(departures.answer(one.residual() @ onto, start))
+    rough = _rougher(solution, bases, starting)
+    parts = [total, *([] if of_model is None else [of_model, total.less(of_model)]), *alone]
+    sizes = [within.more.sizes(part) for part in parts]
+    sizes += [] if rough is None else [rough[0].more.sizes(rough[1])]
+    looks = look(np.concatenate(sizes, axis=1))
+    computed, truth = solution.at(looks.at).read(bases), within.moved(total, looks.at)
+    few_shapes = computed if of_model is None else within.moved(of_model, looks.at)
+    return _Apart(
+        looks, computed, truth, (few_shapes, truth), (computed, few_shapes),
+        [within.moved(each, looks.at) for each in alone],
+        None if rough is None else rough[0].moved(rough[1], looks.at),
+        _rings(rich.system, bases, within, *departures.shaken(residual, begun)),
+    )  # fmt: skip
+
+
+def _rougher(solution: Solution, bodies: Iterable[str], starting: Starting | None) -> tuple[Within, Correction] | None:
+    """The solution in the system with coarser meshes of its solids, and its departure; None if no solid has one."""
+    rough = coarser(solution.system)
+    if rough is None:
+        return None
+    within = solution.within(rough, bodies)
+    departures = within.departures()
+    return within, departures.answer(within.residual(), _begun(starting, rough, within, departures))
 
 
 def _rings(system: System, bodies: Iterable[str], within: Within, rate: Floats, amplitude: Floats) -> _Rings:
@@ -435,10 +444,8 @@ def _rings(system: System, bodies: Iterable[str], within: Within, rate: Floats, 
     sizes = dict[Quantity, Floats]()
     for name in bodies:
         body, columns = system.flexible[name], [k for k, of in enumerate(within.more.bodies) if of == name]
-        c, q = body.coefficients, amplitude[columns]
-        inertia = np.linalg.solve(c.mass, c.stiffness @ q)
-        vectors = body.displacement(q.T)[:, -1], (c.f_a @ inertia).T, (c.f_al @ inertia).T
-        lengths = (np.linalg.norm(vector, axis=1) for vector in vectors)
+        q = amplitude[columns].T
+        lengths = first_order_sizes(body, q, elastic_accelerations(body, q))
         sizes |= {(name, what): each for what, each in zip((DEFLECTION, "force", "moment"), lengths, strict=True)}
     return _Rings(rate, sizes)
 
@@ -448,6 +455,7 @@ def _beyond(
     rerun: Rerun | None,
     known: _Known,
     extent: float,
+    look: Callable[[Floats], Looks],
     starting: Starting | None,
 ) -> tuple[Lacking, str]:
     """Differences to thick beams: by runs of these in a loop, else by the residual in their equations, bent as the
@@ -475,6 +483,7 @@ def _beyond(
         theories,
         lambda beams: solution.posed(theories, bent(beams)),
         begun,
+        look,
         None if loop is None else lambda beams: loop(bent(beams), theories),
     )
     if lacking.sizes.get(PLACE, math.nan) <= LOST * max(known.sizes[PLACE], extent):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from gbeam.analysis.accuracy.correction import (
     DEFLECTION,
     PLACE,
+    Correction,
     IntArray,
     Posed,
     Quantity,
@@ -23,7 +24,7 @@ from gbeam.analysis.accuracy.correction import (
 )
 from gbeam.analysis.system.histories import Carried, carried, deflections, loads_of
 from gbeam.analysis.system.richer import Directions
-from gbeam.arrays.types import Floats
+from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
@@ -33,7 +34,7 @@ from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import System
-from gbeam.results.parts import Base
+from gbeam.results.parts import Base, Loads
 
 SCAN = 200  # samples at which to look for directions without shapes that are moved
 IDLE = 1e-9  # of the largest force: a direction with a smaller one gets no shapes
@@ -57,8 +58,13 @@ class Solution:
             system.tree,
             partial(self.inputs, system),
             system.unknown_coordinates,
-            lambda of: replace(self, system=system, of=of).read(bodies),
+            lambda of, times: Solution(system, of, self.at(times).inputs).read(bodies),
+            partial(departure_sizes, system, bodies),
         )
+
+    def at(self, times: Indices) -> Solution:
+        """Return the solution at indices of its times."""
+        return Solution(self.system, self.of.at(times), lambda system, part: self.inputs(system, times[part]))
 
     def within(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
         """The solution put into the equations of another system, where its unknowns have the same names or the indices
@@ -88,15 +94,8 @@ class Solution:
         places, states = self.states(bodies)
         out: dict[Quantity, Floats] = {PLACE: places}
         for name, moved in states.items():
-            body, q = self.system.flexible[name], moved.q
-            loads = loads_of(body, moved, self.of.time)
-            sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
-            stress = loads.stress.max(axis=1)
-            if body.recovery is not None:
-                stress = body.recovery.felt(q)
-            out[name, DEFLECTION] = deflections(body, q)
-            out |= {(name, "force"): loads.root_force, (name, "moment"): loads.root_moment}
-            out |= {(name, "stress"): stress, (name, "sheared"): sheared.max(axis=1)}
+            body = self.system.flexible[name]
+            out |= reading_of(name, body, moved.q, loads_of(body, moved, self.of.time))
         return out
 
     def turning(self) -> Floats:
@@ -169,6 +168,46 @@ class Solution:
         warnings = [(name, unstiffened(flexible[name], base, "its motion")) for name, base in bases.items()]
         warnings += [(name, bent_far(flexible[name], share)) for name, share in self.bends.items()]
         return tuple(f"{name}: {warning}" for name, of_body in warnings for warning in of_body)
+
+
+def reading_of(name: str, body: Structure, q: Floats, loads: Loads) -> Reading:
+    """Quantities of one body, as :meth:`Solution.read` reads them, by its coordinates (t, n) and its loads."""
+    sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
+    return {
+        (name, DEFLECTION): deflections(body, q),
+        (name, "force"): loads.root_force,
+        (name, "moment"): loads.root_moment,
+        (name, "stress"): loads.stress.max(axis=1) if body.recovery is None else body.recovery.felt(q),
+        (name, "sheared"): sheared.max(axis=1),
+    }
+
+
+def first_order_sizes(body: Structure, q: Floats, accelerations: Floats) -> tuple[Floats, Floats, Floats]:
+    """Sizes (t,), to first order, of the displacement of a body's end by coordinates (t, n), and of the force and the
+    moment at its root by accelerations of the coordinates (t, n).
+    """
+    c = body.coefficients
+    vectors = q @ body.station_places.first[-1].T, accelerations @ c.f_a.T, accelerations @ c.f_al.T
+    deflection, force, moment = (np.linalg.norm(vector, axis=1) for vector in vectors)
+    return deflection, force, moment
+
+
+def elastic_accelerations(body: Structure, q: Floats) -> Floats:
+    """Accelerations (t, n) whose inertia balances the elastic forces by coordinates (t, n)."""
+    return np.asarray(np.linalg.solve(body.coefficients.mass, body.coefficients.stiffness @ q.T).T)
+
+
+def departure_sizes(system: System, bodies: Iterable[str], by: Correction) -> Floats:
+    """Sizes (t, k) of a small departure: of all coordinates and their accelerations, and of `bodies` the deflections,
+    the root loads by inertia and by elastic forces, and the elastic energy.
+    """
+    names, sizes = system.unknown_coordinates, list[Floats]([*np.abs(by.value).T, *np.abs(by.acceleration).T])
+    for name in bodies:
+        columns, body = deforming(names, name), system.flexible[name]
+        q, qdd = by.value[:, columns], by.acceleration[:, columns]
+        sizes += [*first_order_sizes(body, q, qdd), *first_order_sizes(body, q, elastic_accelerations(body, q))[1:]]
+        sizes.append(np.einsum("ti,ij,tj->t", q, body.coefficients.stiffness, q))
+    return np.stack(sizes, axis=1)
 
 
 def _moved_along(body: Structure, root: Frame, q: Floats, qd: Floats, qdd: Floats, loads: Floats | None) -> Directions:
