@@ -88,7 +88,7 @@ def test_tables_are_added_filled_and_removed(site: Site) -> None:
     assert {"motion.slew.radius"} <= {each["field"] for each in built["errors"]}
     built = _added(site, built["text"], "motion.slew.rate", "trapezoid")
     missing = {each["field"] for each in built["errors"] if each["field"].startswith("motion.slew.rate")}
-    assert missing == {f"motion.slew.rate.{key}" for key in ("level", "jerk", "start", "hold")}
+    assert missing == {f"motion.slew.rate.{key}" for key in ("level", "jerk", "hold")}
 
 
 def test_another_kind_keeps_what_both_have(site: Site) -> None:

@@ -79,8 +79,8 @@ def typed(function: F) -> F:
     """
     declared = parameters_of(function)
     function.__doc__ = with_parameters(function.__doc__ or "", declared)
-    quantities = {name: each.quantity.kind for name, each in declared.items() if each.quantity is not None}
-    kinds(**quantities)(function)
+    told = {name: each.quantity for name, each in declared.items() if each.words or each.quantity is not None}
+    kinds(**{name: "" if quantity is None else quantity.kind for name, quantity in told.items()})(function)
     if isinstance(function, type):
         function.__init__ = _typed(function.__init__)  # type: ignore[misc]
         return typed_methods(function)

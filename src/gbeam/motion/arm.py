@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Annotated, Any, get_args
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.constants import STANDARD_GRAVITY, Along
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import positive, vector
+from gbeam.guards.checks import vector
+from gbeam.guards.quantities import Duration, Jerk, Length, PositionVector, Quantity
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.combine import Sum
 from gbeam.motion.profiles.pulse import SmoothStep
@@ -25,49 +26,35 @@ SAMPLES = 2001  # between corners of the rate
 @typed
 def plain_arm(
     *,
-    radius: float,
-    control_point: Numbers = (0.0, 0.0, 0.0),
-    load: Along | Numbers,
-    up: Along | Numbers,
-    level: float,
-    onset: float | None = None,
-    ramp: float | None = None,
-    dwell: float,
-    down: float | None = None,
-    gravity: bool = True,
-    standard: str = "",
+    radius: Annotated[Length, "from the arm's axis to the control point"],
+    control_point: Annotated[
+        PositionVector, "point of the specimen at which the level holds, from the root: along x, or [x, y, z]"
+    ] = (0.0, 0.0, 0.0),
+    load: Annotated[
+        Along | Numbers,
+        "direction of the specimen that points to the arm's axis: the level accelerates it that way, and it "
+        'is felt to be pressed against it, such as "+x", or a vector',
+    ],
+    up: Annotated[
+        Along | Numbers,
+        'direction of the specimen that is up: "+z", or a vector; what it has along load does not count',
+    ],
+    level: Annotated[
+        Annotated[float, Quantity("acceleration", "positive")],
+        "centripetal acceleration at the control point; gravity comes on top, across it",
+    ],
+    onset: Annotated[Jerk | None, "largest rate at which the level rises; or ramp"] = None,
+    ramp: Annotated[Duration | None, "time T from rest to the level, 2.5212 level/onset; or onset"] = None,
+    dwell: Annotated[Duration, "time at the level"],
+    down: Annotated[Duration | None, "time from the level to rest; as long as that up where it is left out"] = None,
+    gravity: Annotated[bool, "false to leave out the weight, which a test on the ground always has"] = True,
+    standard: Annotated[str, "test of a standard that this is, in words: results have it among their notes"] = "",
 ) -> Hub:
     """Hub that turns up from rest to a level, holds it and stops: a centrifuge of one axis, with a fixed mounting.
 
     The arm's rate is Ω s(t/T) on the way up, Ω = √(level/radius), s(x) = x − sin(2πx)/2π, and the mirror image on the
     way down, so that neither rate nor angular acceleration jumps. Besides level·s² along `load` the control point has
     the tangential acceleration radius·Ω s'/T on the way, at most 2 √(level·radius)/T.
-
-    Parameters
-    ----------
-    radius : float
-        From the arm's axis to the control point, m.
-    control_point : (3,)
-        Point of the specimen at which the level holds, from the root, m.
-    load : str or (3,)
-        Direction of the specimen, base axes, in which the level accelerates it: it points to the arm's axis, and the
-        specimen is felt to be pressed against it. "+x", or a vector.
-    up : str or (3,)
-        Direction of the specimen that is up, likewise; what it has along `load` does not count.
-    level : float
-        Centripetal acceleration at the control point, m/s². Gravity comes on top, across it.
-    onset : float, optional
-        Largest rate at which the level rises, m/s³; or `ramp`.
-    ramp : float, optional
-        T, time from rest to the level, s: 2.5212 level/onset.
-    dwell : float
-        Time at the level, s.
-    down : float, optional
-        Time from the level to rest, s; as long as that up where it is left out.
-    gravity : bool
-        False to leave out the specimen's weight.
-    standard : str
-        Test of a standard that this is, in words: results have it among their notes.
 
     Raises
     ------
@@ -82,16 +69,16 @@ def plain_arm(
     >>> arm.rate.extent
     (0.0, 100.0)
     """
-    size = positive("level", level, "m/s²")
-    if (onset is None) == (ramp is None):
-        problem = "is missing" if onset is None else "is given beside ramp"
-        raise InputError("onset", problem, 'give one of onset, such as "0.5 g/s", and ramp, such as "20 s"')
+    size = float(level)
+    fix = 'give one of onset, such as "0.5 g/s", and ramp, such as "20 s"'
+    if onset is not None and ramp is not None:
+        raise InputError("onset", "is given beside ramp", fix)
+    if onset is not None:
+        ramp = STEEPEST * size / onset
     if ramp is None:
-        ramp = STEEPEST * size / positive("onset", onset, "m/s³")
-    rising, held = positive("ramp", ramp, "s"), positive("dwell", dwell, "s")
-    falling = rising if down is None else positive("down", down, "s")
-    rate = float(np.sqrt(size / positive("radius", radius, "m")))
-    steps = SmoothStep(rate, rising), SmoothStep(-rate, falling, start=rising + held)
+        raise InputError("onset", "is missing", fix)
+    rate = float(np.sqrt(size / radius))
+    steps = SmoothStep(rate, ramp), SmoothStep(-rate, ramp if down is None else down, start=ramp + dwell)
     return Hub(
         radius=radius,
         rate=Sum(steps),

@@ -134,7 +134,7 @@ class ImportedModel(Value):
             "places of the nodes (k, 3), in the unit of length, where no file has them: then three or six rows are of "
             "each",
         ] = None,
-        length_unit: Annotated[str, "unit of length of the program, such as mm; of time it is s"] = "m",
+        length_unit: Annotated[str, "unit of length of the program, such as mm; of time it is the second"] = "m",
         mass_unit: Annotated[str, "unit of mass of the program, such as Mg"] = "kg",
     ) -> ImportedModel:
         """Read the matrices of a model in the files of other programs.

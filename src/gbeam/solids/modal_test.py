@@ -49,8 +49,7 @@ class ModalTest(Value):
     ]
     shapes: Annotated[
         Any,
-        "displacements (k, 3, m) of the nodes in each mode, along the base axes; of complex modes the part in phase is "
-        "taken",
+        "displacements (nodes, 3, modes) along the base axes; of complex modes the part in phase is taken",
     ]
     nodes: Annotated[ArrayLike, Quantity("length"), Rows(3), "places (k, 3) of the nodes from the root, base axes"]
     modal_mass: Annotated[

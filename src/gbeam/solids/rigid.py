@@ -74,6 +74,7 @@ class RigidSpecimen(Value):
     ] = None
     points: Annotated[
         Mapping[str, Numbers],
+        Quantity("length"),
         "places of output by name, from the root, at which accelerations and spectra are given; ``tip`` is the corner "
         "farthest from the root where it is not given",
     ] = field(default_factory=dict)

@@ -297,8 +297,8 @@ class Section(Value):
             str | os.PathLike[str], "file of VABS (.K) or BECAS (.out) with both matrices, or one per station"
         ],
         stations: Stations = (),
-        length_unit: Annotated[str, "unit of length in the file, such as mm; m where left out. Of time it is s"] = "m",
-        mass_unit: Annotated[str, "unit of mass in the file, such as Mg; kg where left out"] = "kg",
+        length_unit: Annotated[str, "unit of length in the file, such as mm; of time it is the second"] = "m",
+        mass_unit: Annotated[str, "unit of mass in the file, such as Mg"] = "kg",
     ) -> Section:
         """Read a section's matrices from a file of VABS (.K) or BECAS (.out).
 

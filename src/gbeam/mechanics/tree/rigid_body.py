@@ -13,6 +13,7 @@ from gbeam.arrays.tree import Value, assign
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, vector
+from gbeam.guards.kinds import kinds
 from gbeam.guards.quantities import Mass, PositionVector, Quantity, RotationVector
 from gbeam.mechanics.tree.bodies import (
     Rigid,
@@ -44,6 +45,7 @@ class Place(Value):
         vector("at", self.at), vector("turn", self.turn)
 
 
+@kinds(points="length")
 @typed
 @dataclass(frozen=True, eq=False)
 class RigidBody(Value):

@@ -146,7 +146,9 @@ class Centrifuge:
             "of planned: weight of gentle motion of the axes beside the tracking error, times the usual one; with "
             "less, quick loads are followed better, and the axes move more",
         ] = 1.0,
-        span: Annotated[tuple[float, float] | None, "first and last time of the flight to prepare for, s"] = None,
+        span: Annotated[
+            tuple[float, float] | None, Quantity("time"), "first and last time of the flight to prepare for"
+        ] = None,
     ) -> None:
         if not isinstance(flight, Flight):
             raise InputError("flight", f"is of type {type(flight).__name__}", "give the Flight whose load is tracked")

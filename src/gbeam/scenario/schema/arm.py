@@ -18,13 +18,14 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from gbeam.constants import Along, PresetName
-from gbeam.guards.quantities import Duration, Jerk, Length, Quantity
+from gbeam.guards.quantities import Quantity
+from gbeam.motion.arm import plain_arm
 from gbeam.scenario.presets import PRESETS, preset_of
+from gbeam.scenario.schema.declared import table_of
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
     ControlPoint,
     Loc,
-    Table,
     by_name,
     missing_one_of,
     motion_name,
@@ -57,24 +58,26 @@ _Up = Annotated[
 ]
 
 
-class _Held(Table):
-    """Keys of a plain arm that a direction may have of its own."""
+_UP = (
+    'direction of the specimen that is up: "+z", a vector, or several such as ["+z", "+x"], of which the first that is '
+    "not along load is taken"
+)
+_POINT = "point of the specimen at which the level holds, from the root: along x, or [x, y, z]"
+_KEYS = frozenset({"level", "up", "onset", "ramp", "dwell", "down", "radius", "control_point"})
+_Direction = table_of(
+    plain_arm,
+    name="_Direction",
+    without={"load", "gravity", "standard"},
+    optional=_KEYS,
+    changed={
+        "up": (_Up | None, Field(default=None, description=_UP)),
+        "control_point": (ControlPoint | None, Field(default=None, description=_POINT)),
+    },
+)
 
-    level: Annotated[float, Quantity("acceleration", "positive")] | None = optional(
-        "centripetal acceleration at the control point; gravity comes on top, across it"
-    )
-    up: _Up | None = optional(
-        'direction of the specimen that is up: "+z", a vector, or several such as ["+z", "+x"], of which the first '
-        "that is not along load is taken"
-    )
-    onset: Jerk | None = optional("largest rate at which the level rises; or ramp")
-    ramp: Duration | None = optional("time from rest to the level; or onset")
-    dwell: Duration | None = optional("time at the level")
-    down: Duration | None = optional("time from the level to rest; as long as that up where it is left out")
-    radius: Length | None = optional("from the arm's axis to the control point")
-    control_point: ControlPoint | None = optional(
-        "point of the specimen at which the level holds, from the root: along x, or [x, y, z]"
-    )
+
+class _Held(_Direction):  # type: ignore[misc, valid-type]
+    """Keys of a plain arm that a direction may have of its own."""
 
     @model_validator(mode="after")
     def _one_way_up(self) -> Self:
@@ -85,7 +88,7 @@ class _Held(Table):
     @property
     def held(self) -> dict[str, Any]:
         """Keys that are written, by name."""
-        return {key: value for key in _Held.model_fields if (value := getattr(self, key)) is not None}
+        return {key: value for key in _Direction.model_fields if (value := getattr(self, key)) is not None}
 
 
 class TestDirection(_Held):
