@@ -434,7 +434,7 @@ def test_what_is_missing_is_said(scenario: Path, tmp_path: Path, capsys: pytest.
     text = PLAN.replace('arm = "3.3 m"\n', "")
     file = tmp_path / "other.toml"
     file.write_text(text, encoding="utf-8")
-    assert main(["plan", str(file)]) == 2 and "arm is missing" in capsys.readouterr().err
+    assert main(["plan", str(file)]) == 2 and "motion.spin.arm: is missing" in capsys.readouterr().err
     file.write_text(
         text.replace('tracks = "flight"\n', 'tracks = "flight"\nmachine = "human-7.6m"\n'), encoding="utf-8"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from gbeam.scenario.schema.profile import OVER_TIME as OVER_TIME  # before the tables whose values change over time
+from gbeam.scenario.schema.profile import Smoothed as Smoothed  # before tables whose values change over time
 
 # isort: split
 from gbeam.scenario.schema.arm import Arm as Arm

@@ -44,6 +44,7 @@ class _Maker(NamedTuple):
 
 _MAKERS: dict[type, _Maker] = {}  # by the table
 _TYPES: dict[type, Any] = {}  # of values in a file, by the class of their objects
+OVER_TIME: dict[str, Any] = {}  # types of quantities over time by their kinds: gbeam.scenario.schema.profile
 
 
 def table_of(
@@ -72,10 +73,12 @@ def table_of(
     title = name or make.__name__
     for each in declaring or (make,):
         for key, parameter in parameters_of(each).items():
-            if key not in without:
-                given_later = replace(parameter, default=None) if key in optional else parameter
-                own_title = f"{title}{key.title().replace('_', '')}"
-                fields[key] = _field(given_later, own_title, of, _factories(each).get(key))
+            if key in without:
+                continue
+            if key in optional:
+                parameter = replace(parameter, default=None)
+            own_title = f"{title}{key.title().replace('_', '')}"
+            fields[key] = _field(parameter, own_title, of, _factories(each).get(key))
     fields |= changed or {}
     module = sys.modules[sys._getframe(1).f_globals["__name__"]]
     about = (getdoc(make) or "").partition("\n\n")[0].partition("  #")[0].removeprefix("Return ")
@@ -202,15 +205,10 @@ def _number(quantity: Quantity | None) -> Any:
 def _alternatives(parts: Sequence[Any], title: str, of: str, quantity: Quantity | None) -> Any:
     """Type of a value that has one of several types: of a number or a profile, a profile of its quantity."""
     if Profile in parts and quantity is not None:
-        return over_time(quantity.kind)
+        return OVER_TIME[quantity.kind]
     listed = any(get_origin(each) in _LISTS for each in parts)  # and so are arrays of NumPy, in a file
     kinds = [value_type(each, title, of, quantity) for each in parts if not (listed and get_origin(each) is ndarray)]
     return reduce(or_, dict.fromkeys(kinds))
-
-
-def over_time(kind: str) -> Any:
-    """Type of a quantity over time: a bare one, which is constant, or a profile."""
-    return _TYPES[Profile][kind]
 
 
 def _array(number: Any, sizes: tuple[int, ...]) -> Any:
@@ -238,7 +236,7 @@ def _one_or_some(one: Any, depth: int) -> Any:
 def _by_components(title: str, words: Components, hint: Any, quantity: Quantity) -> Any:
     """Table of the components of a vector; those of a profile, and of a mapping by axes, may be left out."""
     varies, by_axis = Profile in get_args(hint), get_origin(hint) in (Mapping, dict)
-    written = over_time(quantity.kind) if varies else Annotated[float, quantity]
+    written = OVER_TIME[quantity.kind] if varies else Annotated[float, quantity]
     left_out = varies or by_axis
     fields: dict[str, Any] = {
         axis: (written | None if left_out else written, Field(default=None if left_out else ..., description=about))

@@ -16,9 +16,8 @@ from pydantic import ConfigDict, Field, create_model
 from gbeam.guards.quantities import Quantity, Sign
 from gbeam.mechanics.tree.equations import SLIP, SLIPS
 from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Joint, Kind, kind_of_value
-from gbeam.scenario.schema.declared import chosen, makes
+from gbeam.scenario.schema.declared import OVER_TIME, chosen, makes
 from gbeam.scenario.schema.fields import Direction, Place3, Table, Turn3, fields_of, optional
-from gbeam.scenario.schema.profile import OVER_TIME
 
 
 def _number(kind: str, sign: Sign = "any") -> Any:

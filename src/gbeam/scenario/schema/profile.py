@@ -11,7 +11,7 @@ from pydantic import Field
 from gbeam import motion
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.quantities import Quantity, Time
-from gbeam.scenario.schema.declared import chosen, read_as, table_of
+from gbeam.scenario.schema.declared import OVER_TIME, chosen, table_of
 from gbeam.scenario.schema.fields import Table
 
 _BY_WORD: dict[str, tuple[str, Callable[..., motion.Profile]]] = {
@@ -71,4 +71,4 @@ def _over_time(kind: str) -> Any:
     return chosen("profile", {"one": Annotated[float, Quantity(kind)], **tables}, _tag)
 
 
-OVER_TIME = read_as(motion.Profile, {kind: _over_time(kind) for kind, each in KINDS.items() if each.rate})
+OVER_TIME |= {kind: _over_time(kind) for kind, each in KINDS.items() if each.rate}
