@@ -12,7 +12,7 @@ from fuzz.cases import Case
 from fuzz.judge import judge
 from fuzz.worker import Answer
 from gbeam.scenario.schema.fields import fields_of
-from gbeam.scenario.schema.profile import Record
+from gbeam.scenario.schema.record import Record
 from gbeam.scenario.text.revise import with_entry, without_entry
 
 CALLS = 16  # of a case: a few mistakes have dozens of orders in which they can be mended

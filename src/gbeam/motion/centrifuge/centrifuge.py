@@ -158,7 +158,9 @@ class Centrifuge:
             arm, idle = limits.arm if arm is None else arm, limits.idle if idle is None else idle
             limits = limits.limits
         if arm is None:
-            raise InputError("arm", "is missing", 'give arm = "3.3 m", from the main axis to the control point, or a machine')
+            raise InputError(
+                "arm", "is missing", 'give arm = "3.3 m", from the main axis to the control point, or a machine'
+            )
         radius = as_array(arm)
         if gravity and flight.record is not None and flight.record.quantity == "acceleration":
             problem = "is true, and the record of its flight holds acceleration, not specific force"

@@ -188,7 +188,7 @@ Ratios = OneOrSome[Ratio]
 
 
 def quantities(table: BaseModel) -> dict[str, tuple[float, str]]:
-    """Value in SI and kind, a key of ``KINDS``, of every quantity of a scenario, by its path."""
+    """Value in SI and kind, a key of ``KINDS``, of every quantity that a scenario gives, by its path."""
     numbers = ((path, value, _kind_in(parts)) for path, value, parts in _leaves(table) if type(value) in (int, float))
     return {path_text(path): (float(value), kind) for path, value, kind in numbers if kind}
 
@@ -201,10 +201,11 @@ def files(tables: Any, path: Path) -> Iterator[tuple[str, str]]:
 
 
 def _leaves(node: Any, path: Path = (), parts: tuple[Any, ...] = ()) -> Iterator[tuple[Path, Any, tuple[Any, ...]]]:
-    """Yield path and value of all values below a node, with the parts of the annotation of the value's key."""
+    """Yield path and value of all values that are written below a node, with the annotation's parts of each key."""
     if isinstance(node, BaseModel):
         for (key, field), name in zip(fields_of(type(node)).items(), type(node).model_fields, strict=True):
-            yield from _leaves(getattr(node, name), (*path, key), parts_of(field))
+            if name in node.model_fields_set:
+                yield from _leaves(getattr(node, name), (*path, key), parts_of(field))
     elif isinstance(node, (Mapping, tuple)):
         for step, value in node.items() if isinstance(node, Mapping) else enumerate(node):
             yield from _leaves(value, (*path, step), parts)
