@@ -11,8 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
+import numpy as np
+
 from gbeam.arrays.namespace import is_jax
 from gbeam.arrays.types import Numbers
+from gbeam.errors import InputError
 from gbeam.guards.checks import finite, positive, possible
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import LARGEST, SMALLEST
@@ -43,6 +46,8 @@ class Quantity:
         if isinstance(value, Mapping):
             for key, each in value.items():
                 self.check(f"{where}.{key}", each)
+        elif isinstance(value, np.ndarray) and value.ndim and value.dtype.kind in "fiuc":
+            self._check_array(where, value)
         elif isinstance(value, (list, tuple)) or (hasattr(value, "ndim") and value.ndim > 0):
             for i, each in enumerate(value):
                 self.check(f"{where}[{i}]", each)
@@ -52,6 +57,23 @@ class Quantity:
             positive(where, value, self.unit or "(a number)", zero=self.sign == "zero or more")
             if self.span:
                 possible(where, self.span, value)
+
+    def _check_array(self, where: str, values: Any) -> None:
+        """Check the first number of an array that is wrong, and the least and the largest size, if there are any.
+
+        Of complex numbers, such as modal masses of complex modes, only that they are finite is asked.
+        """
+        size = np.abs(values)
+        suspects = ~np.isfinite(size)
+        if values.dtype.kind == "c":
+            if suspects.any():
+                raise InputError(where, "is not finite", "give finite numbers")
+            return
+        if self.sign != "any":
+            suspects |= (values < 0) | (values == 0 if self.sign == "positive" else False)
+        chosen = [np.argmax(suspects)] if suspects.any() else [np.argmin(size), np.argmax(size)] if size.size else []
+        for index in (np.unravel_index(each, values.shape) for each in chosen):
+            self.check(where + "".join(f"[{i}]" for i in index), float(values[index]))
 
     @property
     def unit(self) -> str:

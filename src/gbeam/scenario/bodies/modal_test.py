@@ -68,6 +68,7 @@ _FILE = (
     "modal_mass. Relative to the folder of the scenario file"
 )
 _SHAPES = "displacements of the nodes in each mode, without a file: [ [ [x, y, z], ... ], ... ]"
+_MODAL_MASS = "that goes with the shapes, of every mode, or a list; beside a file in place of its own"
 _SHARES = "share of the specimen's mass at the nodes, in the order of their numbers: a list, or one that all have"
 _POINTS = "numbers of nodes of output by name; without a file from 0"
 BODY = BodyKind(
@@ -78,7 +79,7 @@ BODY = BodyKind(
         tag=("kind", "modal-test"),
         known=True,
         without={"numbers"},
-        optional={"damping_ratio", "nodes", "modal_mass"},
+        optional={"damping_ratio", "nodes"},
         changed={
             "modal_test": (File | None, Field(default=None, description=_FILE)),
             "frequency": (
@@ -86,6 +87,7 @@ BODY = BodyKind(
                 Field(default=None, description="natural frequencies, without a file"),
             ),
             "shapes": (_Shapes | None, Field(default=None, description=_SHAPES)),
+            "modal_mass": (_Masses | None, Field(default=None, description=_MODAL_MASS)),
             "masses": (_Masses, Field(description=_SHARES)),
             "points": (NodePoints, Field(default_factory=dict, description=_POINTS)),
         },
