@@ -77,11 +77,11 @@ def by_statics(beam: gb.Beam, gauge: gb.Gauge, a: np.ndarray) -> np.ndarray:
         force = force + f
         moment = moment + np.cross(np.array([x - gauge.at, 0.0, 0.0]) + offset, f) + m
 
-    spread = beam.loads[2]
+    pull, twist = beam.loads[2].acting
     for low, high in zip(np.maximum(corners[:-1], gauge.at), np.maximum(corners[1:], gauge.at), strict=True):
         for x, w in zip((low + high) / 2 + (high - low) / 2 * xi, (high - low) / 2 * weight, strict=True):
             b, t = (np.interp(x, beam.section.stations, beam.section.dimensions[n]) for n in ("width", "thickness"))
-            act(x, w * (spread.force - beam.material.density * b * t * a), w * np.asarray(spread.moment))
+            act(x, w * (pull - beam.material.density * b * t * a), w * np.asarray(twist))
     for load in beam.loads[:2]:
         if load.at >= gauge.at:
             act(load.at, load.force, 0.0 if load.moment is None else load.moment)
