@@ -28,8 +28,8 @@ def _body(
 ) -> Structure:
     """A structure by the matrices of a finite-element program."""
     files = (matrices,) if isinstance(matrices, str) else matrices
-    keys = {name: f"{name}_matrix" if written else "matrices" for name, written in
-            (("mass", mass_matrix), ("stiffness", stiffness_matrix))}  # fmt: skip
+    names = {"mass": mass_matrix, "stiffness": stiffness_matrix}
+    keys = {argument: f"{argument}_matrix" if name else "matrices" for argument, name in names.items()}
     with naming(keys | {"paths": "matrices", "path": "matrices"}):
         imported = ImportedModel.read(
             *files,

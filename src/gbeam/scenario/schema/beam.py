@@ -62,8 +62,10 @@ def _shape(section: Any) -> str | None:
 
 
 _Files = OneOrSome[File]
-_FILE = "file of VABS (.K) or BECAS (.out) with both matrices instead, or one per station; relative to the folder of " \
-    "the scenario file"  # fmt: skip
+_FILE = (
+    "file of VABS (.K) or BECAS (.out) with both matrices instead, or one per station; relative to the folder of the "
+    "scenario file"
+)
 Rectangle = table_of(_Section.rectangle, name="Rectangle", tag=("shape", "rectangle"))
 Circle = table_of(_Section.circle, name="Circle", tag=("shape", "circle"))
 Tube = table_of(_Section.tube, name="Tube", tag=("shape", "tube"))
@@ -79,20 +81,17 @@ ByMatrices = table_of(
     changed={"file": (_Files | None, Field(default=None, description=_FILE))},
 )
 Drawn = table_of(_drawn, _Section.drawn, name="Drawn", tag=("shape", "drawn"), without={"material"})
+_SECTIONS = {
+    "rectangle": Rectangle,
+    "circle": Circle,
+    "tube": Tube,
+    "general": General,
+    "matrices": ByMatrices,
+    "drawn": Drawn,
+}
 Section = read_as(
     _Section,
-    chosen(
-        "shape",
-        {
-            "rectangle": Rectangle,
-            "circle": Circle,
-            "tube": Tube,
-            "general": General,
-            "matrices": ByMatrices,
-            "drawn": Drawn,
-        },
-        _shape,
-    ),
+    chosen("shape", _SECTIONS, _shape),
 )
 
 
