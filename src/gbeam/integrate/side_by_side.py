@@ -179,14 +179,6 @@ class Run:
         times = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
         return self.equations.drive(np.append(steps.first[:1], np.stack(times, axis=1)))
 
-    @property
-    def at_times(self) -> Any:
-        """Inputs at the times of the result; None where they jump at the start, as `inputs` begin just after that."""
-        if self.steps.first[0] != self.steps.begin[0]:
-            return None
-        kept = np.append(True, self.steps.kept)
-        return jax.tree.map(lambda leaf: leaf[:: stage_count(self.scheme)][kept], self.inputs)
-
     @cached_property
     def features(self) -> Array:
         """Features of the inputs of linear equations, (1 + t s, k)."""

@@ -20,6 +20,18 @@ from gbeam.motion.profiles.profile import Profile
 from gbeam.printable import shortened
 
 TIP = "tip"
+FORCE = Components(
+    "A force, or one per length, by components, each a quantity or a profile; those left out are zero.",
+    x="component along the beam",
+    y="component along the width",
+    z="component through the thickness",
+)
+MOMENT = Components(
+    "A moment, or one per length, by components, each a quantity or a profile; those left out are zero.",
+    x="moment about x, along the beam",
+    y="moment about y: positive bends the tip to -z",
+    z="moment about z: positive bends the tip to +y",
+)
 _NAME = re.compile(r"[A-Za-z_]\w*")
 # Of quantities that stand where a point's name may stand.
 _TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
@@ -164,48 +176,18 @@ class Load(Value):
     """
 
     at: Annotated[Position | None, "position of force and moment from the root, along the beam"] = None
-    force: Annotated[
-        Numbers | Profile | None,
-        Quantity("force"),
-        Components(
-            "A force by components, each a quantity or a profile; those left out are zero.",
-            x="component along the beam",
-            y="component along the width",
-            z="component through the thickness",
-        ),
-        "force at the station: { x, y, z }",
-    ] = None
-    moment: Annotated[
-        Numbers | Profile | None,
-        Quantity("torque"),
-        Components(
-            "A moment by components, each a quantity or a profile; those left out are zero.",
-            x="moment about x, along the beam",
-            y="moment about y: positive bends the tip to -z",
-            z="moment about z: positive bends the tip to +y",
-        ),
-        "moment at the station: { x, y, z }",
-    ] = None
+    force: Annotated[Numbers | Profile | None, Quantity("force"), FORCE, "force at the station: { x, y, z }"] = None
+    moment: Annotated[Numbers | Profile | None, Quantity("torque"), MOMENT, "moment at the station: { x, y, z }"] = None
     distributed: Annotated[
         Numbers | Profile | None,
         Quantity("force per length"),
-        Components(
-            "A force per length by components, each a quantity or a profile; those left out are zero.",
-            x="component along the beam",
-            y="component along the width",
-            z="component through the thickness",
-        ),
+        FORCE,
         "force per length over the whole beam: { x, y, z }; instead of at, force and moment",
     ] = None
     distributed_moment: Annotated[
         Numbers | Profile | None,
         Quantity("force"),
-        Components(
-            "A moment per length by components, each a quantity or a profile; those left out are zero.",
-            x="moment about x, along the beam",
-            y="moment about y",
-            z="moment about z",
-        ),
+        MOMENT,
         "moment per length over the whole beam, in N m/m: { x, y, z }",
     ] = None
     follower: Annotated[bool, "true if the components turn with the section; false if they keep to the base axes"] = (
