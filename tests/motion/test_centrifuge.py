@@ -132,7 +132,7 @@ def test_sharp_corners_only_for_quasi_static_and_a_load_that_does_not_turn() -> 
         ({"arm": 0.0}, "arm", "positive"),
         ({"control_point": -0.1}, "control_point", "non-negative"),
         ({"mounting": "sideways"}, "mounting", "upright, inverted"),
-        ({"arm": None}, "arm", "a machine as limits"),
+        ({"arm": None}, "arm", "or a machine"),
         ({"idle": -1.0}, "idle", "positive"),
     ],
 )
