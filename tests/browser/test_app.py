@@ -76,7 +76,7 @@ def test_a_person_runs_compares_and_downloads(browser: Any, address: str, tmp_pa
     page.locator('details[data-of="beam"] > summary').click()
     page.get_by_role("button", name="Add loads").click()
     head = page.locator('[data-table="beam.loads[0]"] > .bad')
-    head.get_by_text("the load is missing").wait_for()
+    head.get_by_text("has neither force nor moment").wait_for()
     page.get_by_role("button", name="Add force").click()
     page.locator('[data-path="beam.loads[0].force.y"]').fill("5 N")
     page.keyboard.press("Tab")
