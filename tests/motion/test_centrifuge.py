@@ -9,6 +9,7 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
+import gbeam.arrays.jax_setup  # JAX knows the records, in whatever order modules were imported
 from gbeam.motion.centrifuge.histories import axis_angles
 from gbeam.motion.rigid import moved
 
