@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -109,73 +108,38 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
     if not (1 - 1e-5) / length <= cutoff < 0.5 / step:  # as the fix prints it, rounded
         problem = f"is {cutoff:g} Hz, with samples {step:g} s apart over {length:g} s"
         raise InputError("cutoff", problem, f"give {1 / length:g} Hz or more, below {0.5 / step:g} Hz")
+    import scipy.signal
+
+    sections = scipy.signal.butter(ORDER, cutoff, fs=1 / step, output="sos")
     beyond = min(len(values) - 1, math.ceil(1 / (cutoff * step)))
-    rows = _rows(values)
-    before, after = 2 * rows[:, :1] - rows[:, beyond:0:-1], 2 * rows[:, -1:] - rows[:, -2 : -2 - beyond : -1]
-    rows = np.concatenate([before, rows, after], axis=1)
-    tangent = math.tan(math.pi * cutoff * step)
-    for _ in ("forwards", "backwards"):
-        start = rows[:, :1]
-        changes = rows - start
-        for k in range(ORDER // 2):
-            damping = 2 * math.sin((2 * k + 1) * math.pi / (2 * ORDER)) * tangent
-            whole = 1 + damping + tangent**2
-            denominator = 2 * (tangent**2 - 1) / whole, (1 - damping + tangent**2) / whole
-            changes = _filtered(tangent**2 / whole * np.array([1.0, 2.0, 1.0]), denominator, changes)
-        rows = (start + changes)[:, ::-1]
-    return np.asarray(rows[:, beyond : len(rows[0]) - beyond].T.reshape(np.shape(values)))
-
-
-def _filtered(numerator: ArrayLike, denominator: tuple[float, float], rows: Floats) -> Floats:
-    """Rows (k, t) after a recursive filter of second order, from rest: b (3,), and a₁ and a₂ after a₀ = 1.
-
-    It is a triangular system of three bands, by LAPACK: SciPy's signal processing takes a second to import.
-    """
-    from scipy.linalg.lapack import dtbtrs
-
-    count = rows.shape[1]
-    driven = np.zeros((len(rows), count + 2))
-    for delay, weight in enumerate(np.asarray(numerator)):
-        driven[:, delay : delay + count] += weight * rows
-    bands = np.repeat([[1.0], *([each] for each in denominator)], count, axis=1)
-    solution, _ = dtbtrs(bands, driven[:, :count].T, uplo="L")
-    return np.asarray(solution.T)
+    return np.asarray(scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=beyond))
 
 
 def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
     """η (f, t, ...) of η̈ + 2ζω η̇ + ω² η = load (t, ...), from rest under the first load; (f,) rad/s, or one."""
-    rows = _rows(load)
-    histories = [_response(rows, omega, damping, step, 1.0, 0.0, 1 / omega**2).T for omega in np.ravel(frequency)]
+    histories = [_response(load, omega, damping, step, 1.0, 0.0, 1 / omega**2) for omega in np.ravel(frequency)]
     return np.reshape(histories, (*np.shape(frequency), *np.shape(load)))
 
 
 def riding_acceleration(base: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
     """Absolute accelerations (f, t, ...) of oscillators (f,) rad/s, from rest on a base with acceleration (t, ...)."""
-    histories = [each.T for each in _riding(base, np.ravel(frequency), damping, step)]
+    omegas = np.ravel(frequency)
+    histories = [_response(base, omega, damping, step, omega**2, 2 * damping * omega, 1.0) for omega in omegas]
     return np.reshape(histories, (*np.shape(frequency), *np.shape(base)))
 
 
 def largest_riding_acceleration(base: Floats, frequency: Floats, damping: float, step: float, covered: Flags) -> Floats:
     """Largest :func:`riding_acceleration` at samples `covered` (t,): a shock response spectrum, (f, k)."""
-    one_by_one = _riding(base, frequency, damping, step)  # all need memory
-    return np.stack([np.abs(each[:, covered]).max(axis=1, initial=0.0) for each in one_by_one])
-
-
-def _riding(base: Floats, frequency: Floats, damping: float, step: float) -> Iterator[Floats]:
-    """Absolute acceleration (k, t) of one oscillator after the other on a base with acceleration (t, ...)."""
-    rows = _rows(base)
-    return (_response(rows, omega, damping, step, omega**2, 2 * damping * omega, 1.0) for omega in frequency)
-
-
-def _rows(histories: Floats) -> Floats:
-    """Histories (t, ...) as rows (k, t), each in one piece of memory."""
-    return np.ascontiguousarray(np.reshape(histories, (len(histories), -1)).T)
+    one_by_one = (riding_acceleration(base, omega, damping, step)[covered] for omega in frequency)  # all need memory
+    return np.stack([np.abs(each).max(axis=0, initial=0.0) for each in one_by_one])
 
 
 def _response(
     load: Floats, omega: float, damping: float, step: float, by_place: float, by_rate: float, steady: float
 ) -> Floats:
-    """Output by_place η + by_rate η̇ (k, t) of one oscillator, rad/s, whose output at rest is `steady` · load."""
+    """Output by_place η + by_rate η̇ (t, ...) of one oscillator, rad/s, whose output at rest is `steady` · load."""
+    from scipy.signal import lfilter
+
     damping = damping if damping != 1 else 1 - 1e-9  # one pole for two
     # η = Im w/ω_d of ẇ = λ w + load; after a step h under a load that is straight from u to v, of z = λ h,
     # w e^z + h (φ₁ u + φ₂ (v − u)) with φ₁ = (e^z − 1)/z and φ₂ = (φ₁ − 1)/z.
@@ -184,10 +148,6 @@ def _response(
     z = pole * step
     phi1 = np.expm1(z) / z
     phi2 = (phi1 - 1) / z
-    read, kept = (by_place + by_rate * pole) / damped * step, np.exp(z)
-    now, before = read * phi2, read * (phi1 - phi2)
-    # Im of (now + before z⁻¹)/(1 − e^z z⁻¹), widened by the conjugate, has real coefficients.
-    numerator = now.imag, (before - now * kept.conjugate()).imag, -(before * kept.conjugate()).imag
-    first, denominator = load[:, :1], (-2 * kept.real, abs(kept) ** 2)
     # The change is filtered: it starts at rest, without a history.
-    return _filtered(numerator, denominator, load - first) + steady * first
+    w = lfilter([step * phi2, step * (phi1 - phi2)], [1.0, -np.exp(z)], load - load[0], axis=0)
+    return np.asarray(((by_place + by_rate * pole) * w).imag / damped + steady * load[0])
