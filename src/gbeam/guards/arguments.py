@@ -7,12 +7,13 @@ import os
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from inspect import Parameter, signature
-from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints, is_typeddict
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints, is_typeddict
 
 from gbeam.arrays.namespace import has_unit, holds_jax, looks_at_traced
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.kinds import kind_of_argument, kinds
-from gbeam.guards.parameters import parameters_of, resolved_hints, with_parameters
+from gbeam.guards.parameters import Parameter as Declared
+from gbeam.guards.parameters import alternatives, declares, parameters_of, resolved_hints, with_parameters
 from gbeam.guards.units import BEGINNING, in_si
 from gbeam.printable import shortened
 from gbeam.progress import Bar
@@ -77,14 +78,14 @@ def typed(function: F) -> F:
     Numbers whose quantity is declared in the signature have its sign and range, and parameters that are declared with
     words are told in the docstring (`gbeam.guards.parameters`).
     """
-    declared = parameters_of(function)
+    declared = parameters_of(function) if declares(function) else {}
     function.__doc__ = with_parameters(function.__doc__ or "", declared)
     told = {name: each.quantity for name, each in declared.items() if each.words or each.quantity is not None}
     kinds(**{name: "" if quantity is None else quantity.kind for name, quantity in told.items()})(function)
     if isinstance(function, type):
-        function.__init__ = _typed(function.__init__)  # type: ignore[misc]
+        function.__init__ = _typed(function.__init__, declared)  # type: ignore[misc]
         return typed_methods(function)
-    return _typed(function)
+    return _typed(function, declared)
 
 
 def typed_methods(cls: C) -> C:
@@ -98,11 +99,11 @@ def typed_methods(cls: C) -> C:
         code = method.__code__
         names = code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount]
         if not hasattr(method, "__wrapped__") and any(kind_of_argument(name, each, {}) for each in names):
-            setattr(cls, name, _typed(method, method=True))
+            setattr(cls, name, _typed(method, {}, method=True))
     return cls
 
 
-def _typed(function: F, method: bool = False) -> F:
+def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) -> F:
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     of = owner if method else ""
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
@@ -113,7 +114,6 @@ def _typed(function: F, method: bool = False) -> F:
     def named(args: tuple[Any, ...]) -> list[tuple[str, Any]]:
         return [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
 
-    declared = {name: each for name, each in parameters_of(function).items() if each.quantity is not None}
     generates = str(signature(function).return_annotation).startswith("Iterator")  # and shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
@@ -195,20 +195,9 @@ def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
     return hints | dict.fromkeys(numbers, ArrayLike)
 
 
-def _alternatives(hint: Any) -> tuple[Any, ...]:
-    """Types of a union; ArrayLike, which is a union too, stays one type."""
-    from numpy.typing import ArrayLike
-
-    if get_origin(hint) is Annotated:
-        return _alternatives(hint.__origin__)
-    parts = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
-    of_arrays = set(get_args(ArrayLike)) & set(parts)
-    return (*(each for each in parts if each not in of_arrays), ArrayLike) if len(of_arrays) > 1 else parts
-
-
 def _test(hint: Any, texts: bool) -> Test:
     """Return a test of values for a type hint; with `texts` it lets texts pass as numbers."""
-    tests = [_single(each, texts) for each in _alternatives(hint)]
+    tests = [_single(each, texts) for each in alternatives(hint)]
     return tests[0] if len(tests) == 1 else lambda value: any(test(value) for test in tests)
 
 
@@ -298,7 +287,7 @@ def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
 
 def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
     """Error of an argument, or of its first wrong element."""
-    for kind in _alternatives(hint):
+    for kind in alternatives(hint):
         if is_typeddict(kind) and isinstance(value, Mapping):
             for key, entry in get_type_hints(kind).items():
                 if key in value and not _test(entry, texts)(value[key]):
@@ -320,7 +309,7 @@ def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
 
 
 def _described(hint: Any) -> str:
-    kinds = [each for each in _alternatives(hint) if each is not type(None)]
+    kinds = [each for each in alternatives(hint) if each is not type(None)]
     words = dict.fromkeys(_word(each) for each in kinds)
     listed = any(word.endswith(" numbers") for word in words)
     return " or ".join(word for word in words if word != "numbers" or not listed)

@@ -17,7 +17,7 @@ from gbeam.guards.quantities import OneOrSome, Quantity, Rows, Shape
 SECTION = "Parameters\n----------\n"
 _FOLLOWING = re.compile(r"^(Returns|Yields|Attributes|Raises|Notes|See Also|References|Examples)\n-+$", re.MULTILINE)
 _WIDTH = 112
-_NUMERIC = (float, int, complex, bool, str, bytes, Any)  # what numbers may be given as
+_NUMERIC = (float, int, Any)  # types of numbers
 _PLAIN = {float: "float", int: "int", bool: "bool", str: "str", Any: "object"}
 _LISTS = {list: "list", tuple: "tuple", collections.abc.Sequence: "sequence", collections.abc.Iterable: "iterable"}
 
@@ -30,20 +30,16 @@ class Parameter:
     hint: Any  # its type, with all annotations
     words: str  # what it is, beginning with a small letter and without a full stop; empty if it says nothing
     default: Any  # inspect.Parameter.empty where it must be given
+    quantity: Quantity | None  # that its numbers are; None if they are none
 
     @property
     def required(self) -> bool:
         """True if it must be given."""
         return self.default is Argument.empty
 
-    @property
-    def quantity(self) -> Quantity | None:
-        """The quantity that its numbers are; None if they are none."""
-        return next((part for part in annotations_in(self.hint) if isinstance(part, Quantity)), None)
-
     def check(self, value: Any) -> None:
         """Raise InputError unless a value that is a number, or numbers, has the quantity's sign and range."""
-        kinds = (kind for kind in alternatives_in(self.hint) if kind not in _NUMERIC)
+        kinds = (kind for kind in alternatives(self.hint) if kind not in _NUMERIC)
         if isinstance(value, tuple(kind for kind in kinds if isinstance(kind, type))):  # None, or a profile over time
             return
         if self.quantity is not None:
@@ -53,12 +49,30 @@ class Parameter:
 def parameters_of(declaring: Callable[..., Any]) -> dict[str, Parameter]:
     """Parameters of a class or function by name; names that only type checkers import are Any."""
     declaring = unwrap(declaring)
-    hints = resolved_hints(declaring.__init__ if isinstance(declaring, type) else declaring)  # type: ignore[misc]
+    hints = resolved_hints(_annotated(declaring))
     return {
-        name: Parameter(name, hints.get(name, Any), _words(hints.get(name)), each.default)
+        name: _parameter(name, hints.get(name, Any), each.default)
         for name, each in signature(declaring).parameters.items()
         if each.kind is not Argument.VAR_KEYWORD and name not in ("self", "cls")
     }
+
+
+def declares(function: Callable[..., Any]) -> bool:
+    """True if an annotation of a class or function says more than a type, which takes no evaluating to see."""
+    return any("Annotated[" in str(each) for each in _annotated(function).__annotations__.values())
+
+
+def _annotated(declaring: Callable[..., Any]) -> Callable[..., Any]:
+    """The function that has the annotations: of a class its constructor."""
+    return declaring.__init__ if isinstance(declaring, type) else declaring  # type: ignore[misc]
+
+
+def _parameter(name: str, hint: Any, default: Any) -> Parameter:
+    """A parameter by the annotations of its type."""
+    marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
+    words = next((mark for mark in marks if isinstance(mark, str)), "")
+    quantity = next((mark for mark in _annotations(hint) if isinstance(mark, Quantity)), None)
+    return Parameter(name, hint, words, default, quantity)
 
 
 def resolved_hints(function: Callable[..., Any]) -> dict[str, Any]:
@@ -71,29 +85,25 @@ def resolved_hints(function: Callable[..., Any]) -> dict[str, Any]:
             unknown[str(error.name)] = Any
 
 
-def annotations_in(hint: Any) -> Iterator[Any]:
+def _annotations(hint: Any) -> Iterator[Any]:
     """Annotations of a type at any depth, outer ones first."""
     if get_origin(hint) is Annotated:
         yield from hint.__metadata__
-        yield from annotations_in(hint.__origin__)
+        yield from _annotations(hint.__origin__)
         return
     for part in get_args(hint) if get_origin(hint) is not Literal else ():
-        yield from annotations_in(part)
+        yield from _annotations(part)
 
 
-def alternatives_in(hint: Any) -> tuple[Any, ...]:
-    """Types among which a type lets choose."""
+def alternatives(hint: Any) -> tuple[Any, ...]:
+    """Types among which a type lets choose; ArrayLike, which is a union too, stays one type."""
+    from numpy.typing import ArrayLike
+
     if get_origin(hint) is Annotated:
-        return alternatives_in(hint.__origin__)
-    if get_origin(hint) not in (Union, types.UnionType):
-        return (hint,)
-    return tuple(kind for part in get_args(hint) for kind in alternatives_in(part))
-
-
-def _words(hint: Any) -> str:
-    """Words of a type's own annotation."""
-    marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
-    return next((mark for mark in marks if isinstance(mark, str)), "")
+        return alternatives(hint.__origin__)
+    parts = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
+    of_arrays = set(get_args(ArrayLike)) & set(parts)
+    return (*(each for each in parts if each not in of_arrays), ArrayLike) if len(of_arrays) > 1 else parts
 
 
 def with_parameters(docstring: str, parameters: Mapping[str, Parameter]) -> str:
@@ -153,9 +163,8 @@ def type_words(hint: Any) -> str:
         return "array_like"
     origin, parts = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
-        if len(set(parts) & set(get_args(ArrayLike))) > 1:
-            parts = (*(each for each in parts if each not in get_args(ArrayLike)), ArrayLike)
-        return " or ".join(dict.fromkeys(type_words(each) for each in parts if each is not type(None)))
+        kinds = (each for each in alternatives(hint) if each is not type(None))
+        return " or ".join(dict.fromkeys(map(type_words, kinds)))
     if origin is Literal:
         return f"{{{', '.join(map(repr, parts))}}}"
     if origin in _LISTS:

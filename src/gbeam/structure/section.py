@@ -34,10 +34,10 @@ def _listed(name: str, value: Any) -> tuple[Any, ...]:
     return tuple(float(x) for x in np.atleast_1d(values))
 
 
-Lengths = Annotated[ArrayLike, Quantity("length", "positive", "section"), OneOrSome()]
-Areas = Annotated[ArrayLike, Quantity("area", "positive", "area"), OneOrSome()]
-SecondMoments = Annotated[ArrayLike, Quantity("second moment of area", "positive", "second moment"), OneOrSome()]
-ShearCoefficients = Annotated[ArrayLike, Quantity("ratio", "positive", "shear coefficient"), OneOrSome()]
+Lengths = Annotated[ArrayLike, Quantity("length", "positive"), OneOrSome()]
+Areas = Annotated[ArrayLike, Quantity("area", "positive"), OneOrSome()]
+SecondMoments = Annotated[ArrayLike, Quantity("second moment of area", "positive"), OneOrSome()]
+ShearCoefficients = Annotated[ArrayLike, Quantity("ratio", "positive"), OneOrSome()]
 SectionMatrices = Annotated[ArrayLike, OneOrSome((6, 6))]
 Corners = Annotated[ArrayLike, Quantity("length"), Rows(2)]
 Stations = Annotated[

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Discriminator, Field, StrictInt, Tag
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.guards.quantities import MomentOfInertia, Quantity
+from gbeam.guards.quantities import MODAL_DAMPING, MomentOfInertia, Quantity
 from gbeam.mechanics.tree.rigid_body import Place
 from gbeam.scenario.schema.declared import chosen, object_of, table_of
 from gbeam.scenario.schema.fields import Place3, Ratios, Table
@@ -73,9 +73,7 @@ class Reduced(Table):
     """Keys of what is reduced to modes."""
 
     modes: _Count = Field(default=10, description="number of modes; up to twelve static shapes come on top")
-    damping_ratio: Ratios = Field(
-        description="of critical damping, of all, or a list with one for each mode; static shapes have the last one's"
-    )
+    damping_ratio: Ratios = Field(description=MODAL_DAMPING)
 
 
 def inertia_of(moments: Any) -> Any:

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from gbeam.errors import InputError, naming, placing_within
-from gbeam.guards.quantities import Length, Mass, Quantity
+from gbeam.errors import InputError, naming
+from gbeam.guards.quantities import Factor, Length, Mass, Quantity
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.scenario.bodies.common import BodyKind, Inertia, PlaceOfBody, Reduced, placed
 from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.beam import Material
-from gbeam.scenario.schema.declared import chosen, object_of, table_of
+from gbeam.scenario.schema.declared import chosen, makes, object_of, table_of
 from gbeam.scenario.schema.fields import (
     ONE_OR_LIST,
-    Exponent,
     File,
     Place3,
     Table,
@@ -31,7 +31,6 @@ from gbeam.structure.material import Orthotropic as _Orthotropic
 
 if TYPE_CHECKING:
     from gbeam.mechanics.structure import Structure
-    from gbeam.mechanics.tree.rigid_body import RigidBody
     from gbeam.solids.mesh import SolidMesh
     from gbeam.solids.model import SolidModel
 
@@ -149,7 +148,7 @@ class SolidBody(Reduced):
     turn: Turn3 = Field(
         default=(0.0, 0.0, 0.0), description="rotation vector of the mesh's axes in those of the base: [x, y, z]"
     )
-    scale: tuple[Exponent, Exponent, Exponent] = Field(
+    scale: tuple[Factor, Factor, Factor] = Field(
         default=(1.0, 1.0, 1.0),
         description="factors of the mesh's coordinates, such as [1, 1, 1.25] for a board a quarter thicker",
     )
@@ -177,20 +176,14 @@ def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
     from gbeam.solids.mesh import SolidMesh
     from gbeam.solids.model import SolidModel
 
+    before = len(parts.errors)
     key = "materials" if table.material is None else "material"
-    laws = object_of(parts, f"{where}.{key}", getattr(table, key))
-    placed_parts = parts.attempt(
-        where,
-        lambda: {
-            "points": object_of(parts, f"{where}.points", table.points),
-            "carried": {name: _carried(name, each) for name, each in table.carried.items()},
-        },
-    )
-    if placed_parts is None or laws is None or (isinstance(laws, dict) and None in laws.values()):
+    keys = {"materials": key, "points": "points", "carried": "carried"}
+    objects = {argument: object_of(parts, f"{where}.{key}", getattr(table, key)) for argument, key in keys.items()}
+    if len(parts.errors) > before:
         return None
 
     mesh_options: dict[str, Any] = {
-        "materials": laws,
         "clamp": table.clamp,
         "unit": table.unit,
         "thickness": table.thicknesses or table.thickness,
@@ -202,7 +195,7 @@ def _body(parts: Collector, where: str, table: SolidBody) -> Structure | None:
         "turn": table.turn,
         "scale": table.scale,
         "mass_unit": table.mass_unit,
-        **placed_parts,
+        **objects,
     }
     options: dict[str, Any] = {"modes": table.modes, "damping_ratio": table.damping_ratio}
 
@@ -249,12 +242,5 @@ def _of_coarser() -> Iterator[None]:
         raise InputError("coarser", f"{error.where} {error.problem}", error.fix) from None
 
 
-def _carried(name: str, table: Carried) -> RigidBody:
-    """A body on a rigid link."""
-    from gbeam.mechanics.tree.rigid_body import RigidBody
-
-    with placing_within(f"carried.{name}"):
-        return RigidBody(table.mass, table.inertia, table.centre)
-
-
+makes(Carried, RigidBody)
 BODY = BodyKind(SolidBody, _body, known_by="mesh")

@@ -11,8 +11,8 @@ import sys
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import reduce
-from inspect import getdoc
+from functools import cache, reduce
+from inspect import getdoc, unwrap
 from operator import or_
 from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
 
@@ -42,6 +42,7 @@ class _Maker(NamedTuple):
     tag: str
 
 
+_parameters = cache(parameters_of)  # of a profile for each of its quantities
 _MAKERS: dict[type, _Maker] = {}  # by the table
 _TYPES: dict[type, Any] = {}  # of values in a file, by the class of their objects
 OVER_TIME: dict[str, Any] = {}  # types of quantities over time by their kinds: gbeam.scenario.schema.profile
@@ -72,13 +73,14 @@ def table_of(
         fields[tag[0]] = (Literal[tag[1]], Field(default=default, description=f"name of the {tag[0]}"))
     title = name or make.__name__
     for each in declaring or (make,):
-        for key, parameter in parameters_of(each).items():
+        factories = _factories(each)
+        for key, parameter in _parameters(unwrap(each)).items():
             if key in without:
                 continue
             if key in optional:
                 parameter = replace(parameter, default=None)
             own_title = f"{title}{key.title().replace('_', '')}"
-            fields[key] = _field(parameter, own_title, of, _factories(each).get(key))
+            fields[key] = _field(parameter, own_title, of, factories.get(key))
     fields |= changed or {}
     module = sys.modules[sys._getframe(1).f_globals["__name__"]]
     about = (getdoc(make) or "").partition("\n\n")[0].partition("  #")[0].removeprefix("Return ")

@@ -21,7 +21,7 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from gbeam.guards.limits import ENTRIES, NAME, existing
-from gbeam.guards.quantities import Angle, Area, Length, Offset, Position, Quantity, Ratio, SecondMoment
+from gbeam.guards.quantities import Angle, Offset, Position, Quantity, Ratio
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.printable import closest, shortened
 from gbeam.scenario.values import Path, path_text
@@ -168,8 +168,6 @@ def inside(annotation: Any) -> Iterator[Any]:
         yield from inside(part)
 
 
-Exponent = Annotated[float, Quantity("ratio", "positive")]
-Pressure = Annotated[float, Quantity("pressure", "positive")]
 Moment = Annotated[float | str, ClockTime("time")]
 Step = Annotated[float | Literal["auto"], Quantity("time", "positive", words=("auto",))]
 Place3 = tuple[Offset, Offset, Offset]
@@ -181,9 +179,6 @@ _SOME = Field(min_length=1, max_length=ENTRIES)
 _T = TypeVar("_T")
 ControlPoint = Annotated[Annotated[Position, Tag("one")] | Annotated[Place3, Tag("list")], ONE_OR_LIST]
 OneOrSome = Annotated[Annotated[_T, Tag("one")] | Annotated[tuple[_T, ...], _SOME, Tag("list")], ONE_OR_LIST]
-Lengths = OneOrSome[Length]
-Areas = OneOrSome[Area]
-SecondMoments = OneOrSome[SecondMoment]
 Ratios = OneOrSome[Ratio]
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, Tag, create_model, model_validator
 from gbeam import motion
 from gbeam.constants import MachineName, ToleranceOf
 from gbeam.errors import InputError
-from gbeam.guards.quantities import Duration, Quantity, Time
+from gbeam.guards.quantities import Duration, Factor, Quantity, Time
 from gbeam.results.criteria import RULES
 from gbeam.results.sensors import Sensor as _Sensor
 from gbeam.scenario.schema.arm import Arm
@@ -27,12 +27,10 @@ from gbeam.scenario.schema.fields import (
 from gbeam.scenario.schema.profile import rounded
 from gbeam.scenario.schema.record import RecordOrPart
 
-Share = Annotated[float, Quantity("ratio", "positive")]
-Ratio = Annotated[float, Quantity("ratio", "positive")]
 Level = Annotated[float, Quantity("amplitude ratio", "positive")]
-Ratios = Annotated[Annotated[Ratio, Tag("one")] | Annotated[tuple[Ratio, Ratio], Tag("list")], ONE_OR_LIST]
+Ratios = Annotated[Annotated[Factor, Tag("one")] | Annotated[tuple[Factor, Factor], Tag("list")], ONE_OR_LIST]
 Levels = Annotated[Annotated[Level, Tag("one")] | Annotated[tuple[Level, Level], Tag("list")], ONE_OR_LIST]
-_TYPES: dict[str, Any] = {"most": Share, "least": Share, "ratio": Ratios, "level": Levels}
+_TYPES: dict[str, Any] = {"most": Factor, "least": Factor, "ratio": Ratios, "level": Levels}
 _FIELDS: dict[str, Any] = {rule.name: (_TYPES[rule.kind] | None, optional(rule.words)) for rule in RULES.values()}
 _Limits = create_model("_Limits", __base__=Table, **_FIELDS)
 
@@ -40,7 +38,7 @@ _Limits = create_model("_Limits", __base__=Table, **_FIELDS)
 class Accept(_Limits):  # type: ignore[misc, valid-type]
     """Limits of the differences from flight; one that is not kept ends in exit status 1."""
 
-    tolerance: Share | None = optional(
+    tolerance: Factor | None = optional(
         "difference from the flight's load within which it counts as followed, and of a peak from its own size within "
         "which that counts as reproduced, as a share; 5 % if left out"
     )
@@ -52,7 +50,7 @@ class Accept(_Limits):  # type: ignore[misc, valid-type]
         'point whose displacement is that of the tip, and whose spectra srs is of: "camera", or of a '
         'system "arm.tip"; left out, the tip, and of a system the point that moves farthest in flight'
     )
-    control: dict[str, Share] = by_name(
+    control: dict[str, Factor] = by_name(
         "weights of control points by the names of points: srs is of the weighted mean of the spectra "
         "there, in place of the tip's"
     )
