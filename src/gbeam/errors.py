@@ -63,11 +63,15 @@ class InputError(GbeamError, ValueError):
 
 @contextmanager
 def naming(where: str | Mapping[str, str]) -> Iterator[None]:
-    """Give InputErrors raised inside another place; a mapping gives new places by the old ones."""
+    """Give InputErrors raised inside another place; a mapping gives new places, or their beginnings, by the old."""
     try:
         yield
     except InputError as error:
-        raise error.at(where if isinstance(where, str) else where.get(error.where, error.where)) from None
+        if isinstance(where, str):
+            raise error.at(where) from None
+        first = error.where.partition(".")[0].partition("[")[0]
+        place = where.get(error.where) or where.get(first, first) + error.where[len(first) :]
+        raise error.at(place) from None
 
 
 @contextmanager

@@ -13,7 +13,8 @@ import pytest
 from gbeam import Flight, InputError
 from gbeam.motion.flight import body_rates
 from gbeam.motion.records.conditioning import dropout, flat_tops, spikes
-from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.parameters import Conditioning, Rates
+from gbeam.motion.records.record import FlightRecord, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 NAMES = ("time_s", "n_x_g", "-n_y_g", "-n_z_g")

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 from gbeam import InputError, read_record
 from gbeam.arrays.types import Floats
 from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.record import FlightRecord, Rates, read_flight
+from gbeam.motion.records.parameters import Rates
+from gbeam.motion.records.record import FlightRecord, read_flight
 
 G = 9.80665
 TIME = np.arange(1201) / 100  # s

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from gbeam import InputError
-from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.parameters import Conditioning, Rates
+from gbeam.motion.records.record import FlightRecord, read_flight
 from gbeam.motion.records.units import unit_in_name
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

@@ -13,13 +13,14 @@ from gbeam import Flight, InputError, read_record
 from gbeam.arrays.types import Floats
 from gbeam.motion.protocol import notes_on
 from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, read_flight
+from gbeam.motion.records.parameters import Conditioning, Rates
+from gbeam.motion.records.record import FlightRecord, read_flight
 from gbeam.motion.records.rest import Rest
 
 G = 9.80665
 TIME = np.arange(1201) / 100  # s
 RATES = Rates("p", "q", "r", "deg/s")
-ENDS = Rest((0.0, 1.5)), Rest((10.5, 12.0))
+ENDS = Rest(0.0, 1.5), Rest(10.5, 12.0)
 
 
 def written(path: Path, load: Floats, rates: Floats | None = None) -> Path:
@@ -90,7 +91,7 @@ def test_the_drift_of_several_stretches_lies_on_straight_lines(tmp_path: Path) -
     load = np.tile([0.0, 0.0, G], (len(TIME), 1))
     path = written(tmp_path / "x.csv", load + off[:, None] * [1, 0, 0])
     # Means of a bend are off it by a little: the middle stretch is short.
-    rests = Rest((10.5, 11.5)), Rest((0.5, 1.5)), Rest((4.95, 5.05))
+    rests = Rest(10.5, 11.5), Rest(0.5, 1.5), Rest(4.95, 5.05)
     record = read(path, *rests, rates=None)
     np.testing.assert_allclose(record.acceleration.values, load, atol=3e-3)
 
@@ -103,7 +104,7 @@ def test_a_rate_table_gives_the_load_that_is_known(tmp_path: Path, turned: bool)
     load, rates = np.tile([-(spin**2) * arm, 0.0, G], (len(TIME), 1)), np.tile([0.0, 0.0, spin], (len(TIME), 1))
     off, gyro = np.array([0.05, -0.02, 0.01]) * G, np.radians([0.5, 0.0, -1.0])
     path = written(tmp_path / "x.csv", block.inv().apply(load) + off, block.inv().apply(rates) + gyro)
-    known = Rest((2.0, 4.0), (-(spin**2) * arm, 0.0, G), (0.0, 0.0, float(spin)))
+    known = Rest(2.0, 4.0, (-(spin**2) * arm, 0.0, G), (0.0, 0.0, float(spin)))
     record = read(path, known, turn=tuple(block.as_rotvec()))
     np.testing.assert_allclose(record.acceleration.values, load, atol=1e-12)
     (offset,) = record.summary.offsets
@@ -150,7 +151,7 @@ def test_the_stretches_of_a_part_may_be_outside_it(tmp_path: Path) -> None:
 def test_a_drift_that_is_carried_on_far_is_warned_of(tmp_path: Path) -> None:
     load = np.tile([0.0, 0.0, G], (len(TIME), 1))
     path = written(tmp_path / "x.csv", load)
-    rests = Rest((0.0, 1.0)), Rest((2.0, 3.0))
+    rests = Rest(0.0, 1.0), Rest(2.0, 3.0)
     (note,) = read(path, *rests, rates=None).summary.notes
     assert note.startswith("the offsets' drift, found within 2 s, is carried on for 9.5 s")
     assert not read(path, *rests, rates=None, span=(0.0, 4.0)).summary.notes
@@ -173,12 +174,11 @@ def _missing(load: Floats) -> Floats:
         (lambda f: f + [0.4, 0, 0] * (TIME > 0.75)[:, None], ENDS[:1], "rest", "drifts by 0.0403 g from 0 to 1.5 s"),
         (lambda f: f + np.array([0, 0, 0.3 * G]), ENDS, "rest[0]", "z = 'az' is 0.3 g off what is known from 0 to"),
         (_missing, ENDS, "rest[0]", "has cells from 0 to 1.5 s that hold no number"),
-        (lambda f: f, (Rest((0.0, 1.5)), Rest((1.0, 1.8))), "rest", "overlap: 0 to 1.5 s, 1 to 1.8 s"),
-        (lambda f: f, (Rest((0.0, 30.0)),), "rest[0].to", "is 30 s, and the record lasts 0 to 12 s"),
-        (lambda f: f, (ENDS[0], Rest((11.99, 12.0))), "rest[1].to", "leaves 2 row"),
-        (lambda f: f, (Rest((3.0, 9.0)),), "rest", "is no stretch at rest: the load spreads by "),
-        (lambda f: f, (Rest((0.0, 1.5), rates=(0.0, 0.0, 1.0)),), "rest.rates", "the record has no rates"),
-        (lambda f: f, (Rest((0.0, 1.5), (0.0, np.nan, 1.0)),), "rest.load", "nan"),
+        (lambda f: f, (Rest(0.0, 1.5), Rest(1.0, 1.8)), "rest", "overlap: 0 to 1.5 s, 1 to 1.8 s"),
+        (lambda f: f, (Rest(0.0, 30.0),), "rest[0].to", "is 30 s, and the record lasts 0 to 12 s"),
+        (lambda f: f, (ENDS[0], Rest(11.99, 12.0)), "rest[1].to", "leaves 2 row"),
+        (lambda f: f, (Rest(3.0, 9.0),), "rest", "is no stretch at rest: the load spreads by "),
+        (lambda f: f, (Rest(0.0, 1.5, rates=(0.0, 0.0, 1.0)),), "rest.rates", "the record has no rates"),
     ],
 )
 def test_what_is_no_rest_is_refused_at_its_place(
@@ -201,6 +201,11 @@ def test_a_body_that_turns_is_not_at_rest(tmp_path: Path) -> None:
         read(path, ENDS[0])
 
 
+def test_a_known_load_is_of_numbers() -> None:
+    with pytest.raises(InputError, match=r"load\[1\] is nan"):
+        Rest(0.0, 1.5, (0.0, np.nan, 1.0))
+
+
 def test_both_fixes_of_an_offset_that_is_too_large_work(tmp_path: Path) -> None:
     load, rates = manoeuvre(np.random.default_rng(10))
     path = written(tmp_path / "x.csv", load + np.array([0, 0, 0.3 * G]), rates)
@@ -209,5 +214,5 @@ def test_both_fixes_of_an_offset_that_is_too_large_work(tmp_path: Path) -> None:
     assert 'load = ["0 g", "0 g", "1.3 g"]; if sensors are that far off' in caught.value.fix
     trusted = read(path, ENDS[0], rates=None, conditioning=Conditioning(skip_checks=("rest",)))
     np.testing.assert_allclose(trusted.acceleration.values, load, atol=1e-12)
-    known = read(path, Rest((0.0, 1.5), (0.0, 0.0, 1.3 * G)), rates=None)
+    known = read(path, Rest(0.0, 1.5, (0.0, 0.0, 1.3 * G)), rates=None)
     np.testing.assert_allclose(known.acceleration.values, load + np.array([0, 0, 0.3 * G]), atol=1e-12)

@@ -63,7 +63,7 @@ def test_flights_of_a_recording_are_those_that_are_read_one_by_one(tmp_path: Pat
     recording = Recording.read(path, **OPTIONS)
     path.unlink()  # what has been read is not read again
     for span, record in zip(spans, alone, strict=True):
-        flown = recording.flight(span).acceleration
+        flown = recording.flight(*span).acceleration
         np.testing.assert_array_equal(flown.values, record.values)
         assert flown.record is not None and record.record is not None
         assert flown.record.span == record.record.span and flown.record.done == record.record.done

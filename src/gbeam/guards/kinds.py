@@ -130,8 +130,6 @@ _BY_OWNER: dict[str, dict[str, Declared]] = {
     "linearize": {"at": ""},
     "optimise": {"at": "time", "bounds": WRITTEN, "options": WRITTEN},
     "plan": {"envelope": "length"},
-    "read": {"element_size": "length", "origin": "length", "turn": "angle", "point_masses": "mass"},
-    "read_record": {"time": "", "x": "", "turn": "angle", "level": "time"},
     "sensitivity": {"at": "time", "options": WRITTEN},
     "shape_command": {"distance": "length"},
     "shape_hub_command": {"distance": "length"},

@@ -188,6 +188,7 @@ Ratio = Annotated[float, Quantity("ratio")]
 Factor = Annotated[float, Quantity("ratio", "positive")]
 Duration = Annotated[float, Quantity("time", "positive")]
 Time = Annotated[float, Quantity("time", "zero or more")]
+Frequency = Annotated[float, Quantity("frequency", "positive")]
 Speed = Annotated[float, Quantity("speed")]
 Acceleration = Annotated[float, Quantity("acceleration")]
 Jerk = Annotated[float, Quantity("jerk", "positive")]
@@ -203,4 +204,5 @@ RotationVector = Annotated[Numbers, Quantity("angle"), Shape((3,))]
 AccelerationVector = Annotated[Numbers, Quantity("acceleration"), Shape((3,))]
 
 ModalDamping = Annotated[float | Numbers, Quantity("ratio"), OneOrSome()]
+MODES_KEPT = "number of modes; up to twelve static shapes come on top"
 MODAL_DAMPING = "of critical damping, of all, or a list with one for each mode; static shapes have the last one's"

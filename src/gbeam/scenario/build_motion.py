@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 from gbeam import motion
 from gbeam.errors import InputError
+from gbeam.guards.parameters import parameters_of
 from gbeam.motion.arm import across, direction
 from gbeam.motion.flight import body_rates
 from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.record import Conditioning, FlightRecord, Rates, Recording
-from gbeam.motion.records.rest import Rest
+from gbeam.motion.records.parameters import Conditioning, Rates
+from gbeam.motion.records.record import FlightRecord, Recording
 from gbeam.scenario import schema
 from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.declared import arguments_of, object_of
 from gbeam.scenario.schema.profile import rounded
-from gbeam.scenario.schema.record import PartOfRecord, Record
+from gbeam.scenario.schema.record import GROUPS, PART, PartOfRecord, Record
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -33,8 +34,8 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
             built |= _arms(parts, name, table)
         elif table.kind == "flight" and table.record is not None:
             source = table.record.of if isinstance(table.record, PartOfRecord) else name
-            recording, span = recordings.get(source), (table.record.begin, table.record.to)
-            record = recording and parts.attempt(where, recording.flight, span, table.record.section)
+            recording, part = recordings.get(source), {key: getattr(table.record, key) for key in PART}
+            record = recording and parts.attempt(where, recording.flight, **part)
             built[name] = _recorded(record, table) if record else None
             if record and record.summary.is_part:
                 partly[source] = None
@@ -110,31 +111,26 @@ def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: A
 def _recordings(parts: Collector, scenario: schema.Environments) -> dict[str, Recording]:
     """Read the files of records, each once, by the name of their flight; without refused ones."""
     tables = {name: each.record for name, each in scenario.motion.items() if each.kind == "flight"}
-    read = {
-        name: parts.attempt(f"motion.{name}", _recording, table)
-        for name, table in tables.items()
-        if isinstance(table, Record)
-    }
-    return {name: each for name, each in read.items() if each is not None}
+    recordings = dict[str, Recording]()
+    for name, table in tables.items():
+        if isinstance(table, Record):
+            written = arguments_of(parts, f"motion.{name}.record", table, PART)
+            recording = parts.attempt(f"motion.{name}", _recording, **written)
+            recordings |= {} if recording is None else {name: recording}
+    return recordings
 
 
-def _recording(table: Record) -> Recording:
-    """Read the columns of a record from its file."""
-    rates = None
-    if table.p is not None and table.q is not None and table.r is not None and table.rate_unit is not None:
-        rates = Rates(table.p, table.q, table.r, table.rate_unit)
-    conditions = {key: getattr(table, key) for key in ("cutoff", "resample", "despike", "bridge", "skip_checks")}
-    mounting = "turn", "level", "arm", "rest"
-    columns = values_of(table, *conditions, *mounting, "file", "time", "p", "q", "r", "rate_unit", "begin", "to",
-                        "section")  # fmt: skip
-    rests = tuple(Rest((each.begin, each.to), each.load, each.rates) for each in table.rest)
+def _recording(*, time: str | None = None, **written: Any) -> Recording:
+    """Read the columns of a record from its file, by all keys of its table."""
+    rates, instrument, conditioning = (
+        {key: written.pop(key) for key in parameters_of(group) if key in written} for group in GROUPS
+    )
     return Recording.read(
-        table.file,
-        table.time,
-        **columns,
-        rates=rates,
-        conditioning=Conditioning(**conditions),
-        instrument=Instrument(table.turn, table.level, table.arm, rests),
+        time=time,
+        **written,
+        rates=Rates.together(**rates),
+        instrument=Instrument(**instrument),
+        conditioning=Conditioning(**conditioning),
     )
 
 

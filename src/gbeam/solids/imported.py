@@ -16,7 +16,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
 from gbeam.guards.limits import MODES
-from gbeam.guards.quantities import MODAL_DAMPING, Count, Mass, ModalDamping, PositionVector, Quantity
+from gbeam.guards.quantities import MODAL_DAMPING, MODES_KEPT, Count, Mass, ModalDamping, PositionVector, Quantity
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
@@ -180,7 +180,7 @@ class ImportedModel(Value):
     def reduced(
         self,
         *,
-        modes: Annotated[int, Count(1, MODES), "number of modes; up to twelve static shapes come on top"] = 10,
+        modes: Annotated[int, Count(1, MODES), MODES_KEPT] = 10,
         damping_ratio: Annotated[ModalDamping, MODAL_DAMPING],
         clamp: Annotated[
             Sequence[int] | Indices,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -13,6 +13,18 @@ from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import Kinds, kinds
+from gbeam.guards.limits import MODES
+from gbeam.guards.quantities import (
+    MODAL_DAMPING,
+    MODES_KEPT,
+    Count,
+    Length,
+    Mass,
+    ModalDamping,
+    PositionVector,
+    Quantity,
+    Shape,
+)
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
@@ -89,76 +101,85 @@ class SolidMesh(Mesh):
     @typed
     def read(
         cls,
-        source: Any,
+        source: Annotated[
+            Any,
+            "file of Gmsh, Nastran bulk data, Abaqus, CalculiX, VTK, Exodus or another format of meshio, in a scenario "
+            'relative to the folder of its file; or of STEP, which Gmsh meshes, with pip install "gbeam[gmsh]"; or a '
+            "meshio.Mesh",
+        ],
         *,
-        materials: Material | Orthotropic | Mapping[str, Material | Orthotropic],
-        clamp: str | Sequence[str],
-        unit: str | None = None,
-        thickness: float | Mapping[str, float] | None = None,
-        element_size: float | None = None,
-        points: Mapping[str, Any] | None = None,
-        point_masses: Mapping[str, float] | None = None,
-        interfaces: Mapping[str, str] | None = None,
-        links: Mapping[str, str | Sequence[str]] | None = None,
-        carried: Mapping[str, RigidBody] | None = None,
-        springs: Mapping[str, LinkSpring] | None = None,
-        origin: Numbers = (0.0, 0.0, 0.0),
-        turn: Numbers = (0.0, 0.0, 0.0),
-        scale: Numbers = (1.0, 1.0, 1.0),
-        mass_unit: str | None = None,
+        materials: Annotated[
+            Material | Orthotropic | Mapping[str, Material | Orthotropic],
+            "of all elements, or of the elements of each group: a physical group of Gmsh, a property's number, an "
+            "element set. Poisson's ratio is needed",
+        ],
+        clamp: Annotated[
+            str | Sequence[str],
+            "name of the group whose nodes follow the base or the joint, or a list of them. A number that surfaces and "
+            'volumes have is refused: it is written "surface 1" or "volume 1"',
+        ],
+        unit: Annotated[str | None, 'unit of the coordinates in the mesh, such as "mm"; STEP files say theirs'] = None,
+        mass_unit: Annotated[
+            str | None,
+            'unit of mass in a file of Nastran, Abaqus or CalculiX, such as "Mg" beside mm, N and s: with it the '
+            "file's masses, rigid links and springs are read, which are left out otherwise, with a warning",
+        ] = None,
+        thickness: Annotated[
+            Length | Mapping[str, Length] | None,
+            "of all triangles and quadrilaterals of a mesh without solids, which are shells by it and have the mesh as "
+            "their middle surface, or of the shells of each group; in a mesh with solids other surfaces only name "
+            "groups",
+        ] = None,
+        element_size: Annotated[
+            Length | None,
+            "largest edge of the elements by which STEP files are meshed; 12 are around a full circle. The error of a "
+            "group that is not there says where each solid and each surface is",
+        ] = None,
+        point_masses: Annotated[
+            Mapping[str, Mass] | None,
+            "masses by the name of a point, or of a group over whose nodes each is spread evenly",
+        ] = None,
+        points: Annotated[
+            Mapping[str, Any] | None,
+            "points of output by name: the place [x, y, z] from the root for the nearest node, of shells on the face "
+            "on whose side it is, or a group of one node, or with axes of stress and strain { at, turn }; tip is the "
+            "free node farthest from the root where it is not given",
+        ] = None,
+        interfaces: Annotated[
+            Mapping[str, str] | None,
+            "groups by the name of a point that moves and turns as their nodes do on average: other bodies hang on it, "
+            "and it is put out",
+        ] = None,
+        links: Annotated[
+            Mapping[str, str | Sequence[str]] | None,
+            "rigid links by name: a group, or a list of them, whose nodes move together as one rigid body",
+        ] = None,
+        carried: Annotated[
+            Mapping[str, RigidBody] | None,
+            "bodies by the name of the rigid link that carries each, its root in the middle of the link's nodes: "
+            "{ mass, centre, inertia }",
+        ] = None,
+        springs: Annotated[
+            Mapping[str, LinkSpring] | None,
+            "springs by name, between two rigid links or one and the base: { between, stiffness }, in the middle of "
+            "the first link's nodes and along the axes of the base",
+        ] = None,
+        origin: Annotated[PositionVector, "the root in the mesh, whose acceleration the motion gives: [x, y, z]"] = (
+            0.0,
+            0.0,
+            0.0,
+        ),
+        turn: Annotated[
+            Annotated[Numbers, Quantity("angle"), Shape((3,))],
+            "rotation vector of the mesh's axes, and of those of its materials, in those of the base: [x, y, z]",
+        ] = (0.0, 0.0, 0.0),
+        scale: Annotated[
+            Annotated[Numbers, Quantity("ratio", "positive"), Shape((3,))],
+            "factors of the mesh's coordinates, before everything else, such as [1, 1, 1.25] for a board a quarter "
+            "thicker",
+        ] = (1.0, 1.0, 1.0),
     ) -> SolidMesh:
         """Read a mesh of solid elements, of shells, or of both.
-
-        Parameters
-        ----------
-        source : path or meshio.Mesh
-            A file of Gmsh, Nastran bulk data, Abaqus or CalculiX, VTK, Exodus or another format of meshio.
-            Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27 and wedges of 6 and 15 are read, and as shells
-            triangles of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other surfaces and
-            lines only name groups. Nodes without such elements are left out. Or a file of STEP, which Gmsh
-            meshes by tetrahedra of 10 nodes; needs the extra ``gmsh``.
-        materials : Material, Orthotropic or dict
-            Of all elements, or by group: a physical group of Gmsh, a property's number, an element set. Poisson's
-            ratio is needed.
-        clamp : str or sequence of str
-            Groups whose nodes follow the base. A number that surfaces and volumes have is refused: it is written
-            "surface 1" or "volume 1".
-        unit : str
-            Of the mesh's coordinates, such as ``mm``; STEP files say theirs.
-        thickness : float or dict of float, optional
-            Of shells, m: of all triangles and quadrilaterals, or by group. The mesh is their middle surface. Shells
-            carry transverse shear (Mindlin and Reissner), meet at any angle, and share nodes with solids.
-        element_size : float
-            Largest edge of the elements by which STEP files are meshed, m; 12 are around a full circle. The error of
-            a group that is not there says where each solid and each surface is.
-        points : dict, optional
-            Places of output by name: (x, y, z) in m and base axes, for the nearest node, or a group of one node, of
-            shells on the face on whose side the place is, or on that to which the normal of the first element points; a
-            :class:`gbeam.Place` has axes too, in which stress and strain there are put out. The ``tip`` is the
-            free node farthest from the root where it is not given.
-        point_masses : dict, optional
-            Masses by the name of a point, or of a group over whose nodes it is spread evenly, kg.
-        interfaces : dict of str, optional
-            Groups of nodes or elements by the name of a point that moves and turns as their nodes do on average: bodies
-            of a :class:`gbeam.System` hang on it by joints, and it is put out.
-        links : dict of str or of sequence of str, optional
-            Rigid links by name: groups of nodes that move together as one rigid body.
-        carried : dict of RigidBody, optional
-            Bodies by the name of the rigid link that carries each: its root is in the middle of the link's nodes, its
-            axes are those of the base.
-        springs : dict, optional
-            Springs by name: ``between``, the names of two rigid links or of one that a spring holds to the base, and
-            ``stiffness``, a dict of ``x``, ``y`` and ``z`` in N/m and of ``rx``, ``ry`` and ``rz`` in N m/rad, in the
-            middle of the first link's nodes and along the axes of the base.
-        origin : (3,)
-            Root in the mesh's coordinates, m: the point whose acceleration the motion gives.
-        turn : (3,)
-            Rotation vector of the mesh's axes, and of those of its materials, in the base axes, rad.
-        scale : (3,)
-            Factors of the mesh's coordinates, before everything else.
-        mass_unit : str, optional
-            Unit of mass of a file of Nastran, Abaqus or CalculiX, such as ``Mg`` beside mm, N and s: with it the
-            file's masses, rigid links and springs are read, which are left out otherwise, with a warning.
 
         Raises
         ------
@@ -166,6 +187,13 @@ class SolidMesh(Mesh):
             If the file cannot be read, has no elements or one that is folded, a group is not there, elements have no
             material or thickness or two, a part of the mesh is not held by the clamp, or the factors would not fit into
             memory.
+
+        Notes
+        -----
+        Tetrahedra of 4 and 10 nodes, hexahedra of 8, 20 and 27 and wedges of 6 and 15 are read, and as shells triangles
+        of 3 and 6 nodes and quadrilaterals of 4, 8 and 9, whose middle is left out; other surfaces and lines only name
+        groups. Nodes without such elements are left out. Shells carry transverse shear (Mindlin and Reissner), meet at
+        any angle, and share nodes with solids.
 
         Examples
         --------
@@ -190,23 +218,22 @@ class SolidMesh(Mesh):
 
     @typed
     def reduced(
-        self, *, modes: int, damping_ratio: Any, kind: str = "solid", coarser: SolidModel | None = None
+        self,
+        *,
+        modes: Annotated[int, Count(1, MODES), MODES_KEPT] = 10,
+        damping_ratio: Annotated[ModalDamping, MODAL_DAMPING],
+        kind: Annotated[str, "name of the model in results"] = "solid",
+        coarser: Annotated[
+            SolidModel | None,
+            "of a coarser mesh of the same solid, with as many modes and the same points: by the differences of its "
+            "answers to those of the finer one the mesh's error is estimated, which is unknown without one",
+        ] = None,
     ) -> SolidModel:
         """Reduce the solid to its lowest modes and its static answers to unit inertial loads.
 
-        Parameters
-        ----------
-        modes : int
-            Number of modes; up to twelve static shapes come on top, so that any steady acceleration and rotation of
-            the base deforms the solid as all of its elements would, and six for each interface, so that forces and
-            moments there do (attachment modes: a reduction by Craig and Bampton about the clamp).
-        damping_ratio : float or sequence
-            Of critical damping, of all coordinates, or one for each mode, of which static shapes have the last one's.
-        kind : str
-            Name of the model in results.
-        coarser : SolidModel, optional
-            Of a coarser mesh of the same solid, with as many modes and the same points, by which the mesh's error is
-            estimated: its answers' differences to those of the finer one. Without one it is unknown.
+        Six static answers of each interface come on top, to forces and moments there (attachment modes: a reduction by
+        Craig and Bampton about the clamp). So any steady acceleration and rotation of the base deforms the solid as all
+        of its elements would, and so do loads of other bodies.
 
         Returns
         -------

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -12,10 +13,11 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.checks import vector
+from gbeam.guards.quantities import Quantity, Shape
 from gbeam.motion.flight import body_rates
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.rest import STILL, Rest, mean_of
-from gbeam.motion.records.times import Span, Times
+from gbeam.motion.records.times import Moment, Times
 from gbeam.motion.rigid import moved, rotation_of
 from gbeam.results.parts import Base
 
@@ -24,27 +26,36 @@ _TILT = math.radians(45)  # beyond that the shortest way is not the block's
 _REST = f"{STILL} and level"
 
 
+TurnOfBlock = Annotated[
+    Annotated[Numbers, Quantity("angle"), Shape((3,))],
+    "rotation vector of the axes that x, y and z name in base axes, where the instrument's block sits askew",
+]
+LevelStretch = Annotated[
+    tuple[Moment, Moment] | None,
+    "first and last time of a stretch at rest and level, on the record's own clock: the block is turned on by the "
+    "shortest way, so that the specific force there points along z",
+]
+KnownLoads = Annotated[
+    Sequence[Rest],
+    "stretches at rest, or of another known load: what the sensors of x, y, z, p, q and r read there besides is their "
+    "offset, and is subtracted; of several stretches it drifts on straight lines from one to the next, and on",
+]
+
+
 @dataclass(frozen=True)
 class Instrument:
     """Accelerometers and gyros of a record on one block.
 
-    Parameters
-    ----------
-    turn : (3,)
-        Rotation vector of the block's axes in base axes, rad.
-    level : tuple or None
-        First and last time of a stretch at rest, as of a record's span. The block is turned by the shortest way on, so
-        that the mean specific force there points along z. A turn about the vertical is not found.
-    arm : (3,)
-        From the block to the specimen's root, base axes, m.
-    rest : tuple of Rest
-        Stretches in which the load is known, by which offsets of the sensors are found and subtracted.
+    The level stretch tells no turn about the vertical.
     """
 
-    turn: Numbers = (0.0, 0.0, 0.0)
-    level: Span | None = None
-    arm: Numbers = (0.0, 0.0, 0.0)
-    rest: tuple[Rest, ...] = ()
+    turn: TurnOfBlock = (0.0, 0.0, 0.0)
+    level: LevelStretch = None
+    rest: KnownLoads = ()
+    arm: Annotated[
+        Annotated[Numbers, Quantity("length"), Shape((3,))],
+        "from the instrument to the specimen's root, base axes: by p, q and r it adds α × r + ω × (ω × r)",
+    ] = (0.0, 0.0, 0.0)
 
     def axes(
         self, times: Times, load: Floats, rates: Floats, counted: Callable[[int], str], *, specific: bool

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from gbeam.arrays.types import Flags, Floats, Indices, Numbers
-from gbeam.constants import Check, RecordQuantity, Vehicle
+from gbeam.arrays.types import Flags, Floats, Indices
+from gbeam.constants import RecordQuantity, Vehicle
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
@@ -27,15 +27,32 @@ from gbeam.motion.records.columns import (
     upended,
 )
 from gbeam.motion.records.conditioning import FEWEST, LEAST_TURN, filtered, spikes, without_spikes
-from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.rest import Offsets, Rest, offsets_of
+from gbeam.motion.records.instrument import Instrument, KnownLoads, LevelStretch, TurnOfBlock
+from gbeam.motion.records.parameters import (
+    Conditioning,
+    From,
+    LoadUnitOf,
+    QuantityOf,
+    Rates,
+    RecordFile,
+    SampleRate,
+    SectionFlown,
+    SectionsBy,
+    TimeColumn,
+    TimeUnitOf,
+    To,
+    VehicleOf,
+    XColumn,
+    YColumn,
+    ZColumn,
+)
+from gbeam.motion.records.rest import Offsets, offsets_of
 from gbeam.motion.records.sections import Sections
-from gbeam.motion.records.soundness import CHECKS, Samples, curves, level, oddities, refuse_unlevel, refuse_unsound
+from gbeam.motion.records.soundness import Samples, curves, level, oddities, refuse_unlevel, refuse_unsound
 from gbeam.motion.records.text import read_text
 from gbeam.motion.records.times import Span, Timeline, Times, check_interval
 from gbeam.motion.records.units import Unit, unit_of
 from gbeam.numerics.samples import true_runs
-from gbeam.printable import advise
 from gbeam.results.description import Channels, RecordSummary
 
 
@@ -58,59 +75,6 @@ def columns_of_text(path: str, most: int) -> tuple[list[tuple[str, str]], list[f
 
 
 @dataclass(frozen=True)
-class Rates:
-    """Columns of a record that hold the body's rates about the base axes, with their signs, and their unit."""
-
-    p: str
-    q: str
-    r: str
-    unit: str  # rad/s, deg/s, rpm, or the size of a count
-
-
-@dataclass(frozen=True)
-class Conditioning:
-    """Steps that are taken on a record.
-
-    Parameters
-    ----------
-    cutoff : float or None
-        Of a zero-phase low-pass (fourth-order Butterworth forwards and backwards, −6 dB), Hz.
-    resample : float or None
-        New sampling rate, Hz. With it, or with a cut-off, times may jitter, repeat, come late and have gaps to bridge.
-    despike : bool
-        Replace spikes, runs of up to five samples between two jumps far off what is around them, by straight lines.
-    bridge : float or None
-        Longest gap that is bridged, s: lost samples are put on straight lines, before the low-pass and resampling.
-    skip_checks : bool or tuple of str
-        Checks to leave out, of ``sampling``, ``spikes``, ``unit``, ``sign``, ``dropouts``, ``columns`` and ``rest``;
-        True leaves out all.
-    """
-
-    cutoff: float | None = None
-    resample: float | None = None
-    despike: bool = False
-    bridge: float | None = None
-    skip_checks: bool | tuple[Check, ...] = False
-
-    @property
-    def evened(self) -> bool:
-        """True if the samples are evened out: times may jitter, repeat and come late then."""
-        return self.cutoff is not None or self.resample is not None
-
-    @property
-    def skipped(self) -> tuple[Check, ...]:
-        """Names of the checks that are left out."""
-        if isinstance(self.skip_checks, bool):
-            return CHECKS if self.skip_checks else ()
-        for name in self.skip_checks:
-            if name not in CHECKS:
-                raise InputError(
-                    "record.skip_checks", f"names no check {name!r}", advise(name, CHECKS, listed="choose of")
-                )
-        return self.skip_checks
-
-
-@dataclass(frozen=True)
 class FlightRecord:
     """A record ready to be flown."""
 
@@ -126,67 +90,26 @@ class FlightRecord:
 
 @typed
 def read_record(
-    path: str | os.PathLike[str],
-    time: str | None,
-    x: str,
-    y: str,
-    z: str,
-    unit: str,
-    conditioning: Conditioning = Conditioning(),
+    path: RecordFile,
+    time: TimeColumn,
+    x: XColumn,
+    y: YColumn,
+    z: ZColumn,
+    unit: LoadUnitOf,
+    conditioning: Annotated[Conditioning, "what is done to the record: nothing if left out"] = Conditioning(),
     *,
-    time_unit: str | None = None,
-    sample_rate: float | None = None,
-    quantity: RecordQuantity = "specific-force",
-    vehicle: Vehicle = "aircraft",
-    turn: Numbers = (0.0, 0.0, 0.0),
-    level: Span | None = None,
-    rest: Sequence[Rest] = (),
-    span: Span = (None, None),
-    sections: str | None = None,
-    section: str | None = None,
+    time_unit: TimeUnitOf = None,
+    sample_rate: SampleRate = None,
+    quantity: QuantityOf = "specific-force",
+    vehicle: VehicleOf = "aircraft",
+    turn: TurnOfBlock = (0.0, 0.0, 0.0),
+    level: LevelStretch = None,
+    rest: KnownLoads = (),
+    span: Annotated[Span, "first and last time of the part that is flown, on the record's own clock"] = (None, None),
+    sections: SectionsBy = None,
+    section: SectionFlown = None,
 ) -> PiecewiseLinear:
     """Read an acceleration (or specific-force) record.
-
-    Parameters
-    ----------
-    path : path
-        Of text (commas, semicolons, tabs or white space; decimal point or comma), or by its suffix a MAT file
-        (``.mat``), HDF5 or netCDF (``.h5``, ``.hdf5``, ``.nc``) or a universal file (``.uff``, ``.unv``).
-    time : str or None
-        Name of the column of times: numbers, or times of day such as ``12:34:56.789`` and ``2024-05-03T12:34:56Z``,
-        which count from the first, as do seconds since 1970; None with a sample rate.
-    x, y, z : str
-        Names of the columns that hold the components in base axes; a leading ``-`` changes the sign (aircraft
-        records have z down), ``0`` stands for a component that is zero.
-    unit : str
-        ``g`` (9.80665 m/s²), ``mg``, ``m/s^2``, ``cm/s^2``, ``mm/s^2``, ``ft/s^2`` or ``in/s^2``, or the size of a
-        count, such as ``1 g / 2048`` or ``1 g / 100 mV``.
-    conditioning : Conditioning
-        Of :class:`gbeam.motion.records.record.Conditioning`; by default nothing is done to the record.
-    time_unit : str, optional
-        ``s``, ``ms``, ``us``, ``ns``, ``min``, ``h`` or ``day``; what the file says if left out, or else s.
-    sample_rate : float, optional
-        In place of times, Hz; the first sample is at 0 s.
-    quantity : str
-        ``specific-force``, 1 g upwards in level flight, which is checked; or ``acceleration``.
-    vehicle : str
-        ``aircraft``, which flies level somewhere, 1 g upwards along z; ``rocket``, whose axes say nothing of up; or
-        ``other``, of which nothing is asked but a possible size.
-    turn : (3,)
-        Rotation vector, rad, of the axes of the columns in base axes, where the instrument's block sits askew.
-    level : tuple, optional
-        First and last time of a stretch at rest, on the record's own clock: the block is turned on by the shortest
-        way, so that the mean specific force there points along z.
-    rest : sequence of Rest
-        Stretches of :class:`gbeam.motion.records.rest.Rest` in which the load is known: what the accelerometers read
-        besides is subtracted, of several stretches on straight lines from one to the next.
-    span : tuple
-        First and last time of the part that is flown, s on the record's own clock, or a time of day where it has these;
-        None is the record's end. What is outside is not checked, but for level flight.
-    sections : str, optional
-        Name of a column that numbers or names the sections of the file, such as an event marker.
-    section : str, optional
-        The section that is flown: what that column holds through it.
 
     Returns
     -------
@@ -230,7 +153,7 @@ def read_flight(
     :meth:`Recording.read` for the options.
     """
     recording = Recording.read(path, time, x, y, z, unit, **options)
-    flight = recording.flight(span, section)
+    flight = recording.flight(*span, section)
     if flight.summary.is_part:
         recording.refuse_unlevel()
     return flight
@@ -266,21 +189,21 @@ class Recording:
     @np.errstate(all="ignore")  # numbers beyond a float's are refused by their row, without a warning before
     def read(
         cls,
-        path: str | os.PathLike[str],
-        time: str | None,
-        x: str,
-        y: str,
-        z: str,
-        unit: str,
+        file: RecordFile,
+        time: TimeColumn,
+        x: XColumn,
+        y: YColumn,
+        z: ZColumn,
+        unit: LoadUnitOf,
         *,
         rates: Rates | None = None,
         conditioning: Conditioning = Conditioning(),
-        time_unit: str | None = None,
-        sample_rate: float | None = None,
-        quantity: RecordQuantity = "specific-force",
-        vehicle: Vehicle = "aircraft",
+        time_unit: TimeUnitOf = None,
+        sample_rate: SampleRate = None,
+        quantity: QuantityOf = "specific-force",
+        vehicle: VehicleOf = "aircraft",
         instrument: Instrument = Instrument(),
-        sections: str | None = None,
+        sections: SectionsBy = None,
     ) -> Recording:
         """Read the columns that are named; arguments as of :func:`read_record`."""
         skip, trust = conditioning.skipped, "unit" in conditioning.skipped
@@ -292,7 +215,7 @@ class Recording:
             fix = 'name the columns of the body\'s rates, p, q and r ("0" for none), and rate_unit'
             raise InputError("record.arm", "is given without the rates that the body turns at", fix)
         columns = [*names.values(), *turns.values()]
-        table = read_table(path, [*columns, *(each for each in (time, sections) if each is not None)])
+        table = read_table(file, [*columns, *(each for each in (time, sections) if each is not None)])
         if "columns" not in skip:
             refuse_other_kinds(table, names)
             if turns:
@@ -300,13 +223,13 @@ class Recording:
                 refuse_other_axes(table, names, turns)
         units = [_unit(table, "unit", "acceleration", unit, names, trust=trust)]
         if rates is not None:
-            units.append(_unit(table, "rate_unit", "rate", rates.unit, turns, trust=trust))
+            units.append(_unit(table, "rate_unit", "rate", rates.rate_unit, turns, trust=trust))
         stated = {} if "sampling" in skip else table.rates(columns)
         times = _times(table, time, time_unit, sample_rate, names, stated, trust=trust)
         count, fewer = len(times.values), "cut the record, or export it at a lower rate"
         refuse_more("record.file", "samples", count, SAMPLES, 200.0, fewer)
         if count < FEWEST:
-            raise InputError("record.file", f"{path} has {table.counted(count)}", f"give {FEWEST} samples or more")
+            raise InputError("record.file", f"{file} has {table.counted(count)}", f"give {FEWEST} samples or more")
         nowhere = slice(0, 0)  # each flight refuses what is no number in its part
         read = [table.vector(each, count, nowhere) for each in (names, turns) if each]
         sound = np.logical_and.reduce([(np.abs(each) <= LARGEST).all(axis=1) for each in read])
@@ -316,7 +239,7 @@ class Recording:
         axes, mounted, levelled = instrument.axes(times, load, rate, table.counted, specific=specific)
         said = time_unit is None and times.unit.size != 1
         return cls(
-            path=os.fspath(path),
+            path=os.fspath(file),
             table=table,
             times=times,
             stated=stated,
@@ -375,13 +298,13 @@ class Recording:
         refuse_unlevel(samples, self.conditioning.skipped)
 
     @np.errstate(all="ignore")
-    def flight(self, span: Span = (None, None), section: str | None = None) -> FlightRecord:
-        """Return the part within a span and a section, conditioned and judged, and say what was done to it."""
+    def flight(self, from_: From = None, to: To = None, section: SectionFlown = None) -> FlightRecord:
+        """Return a part of the record, conditioned and judged, and say what was done to it."""
         conditioning, skip, evened = self.conditioning, self.conditioning.skipped, self.conditioning.evened
         table, times, clock, stated = self.table, self.times, self.times.values, self.stated
         names, turns, load, turning = self.names, self.turns, self.load, self.rates
         load_unit, vehicle, instrument = self.units[0], self.vehicle, self.instrument
-        (part, of), axes, offsets = self.part(span, section), self.axes, self.offsets
+        (part, of), axes, offsets = self.part((from_, to), section), self.axes, self.offsets
 
         def judge(time: Floats) -> None:
             if "sampling" not in skip:
@@ -476,9 +399,13 @@ def _times(
 ) -> Times:
     """Times of the samples, of the column `name`, or at a rate in place of it."""
     if name is None or rate is not None:
-        if name is not None or rate is None:
-            problem = "is given beside time" if name is not None else "is missing, and so is time"
-            raise InputError("record.sample_rate", problem, "give one of them")
+        if name is not None:
+            raise InputError("record.sample_rate", "is given beside time", "give one of them")
+        if rate is None:
+            fix = 'give the column of times, or sample_rate = "100 Hz"'
+            raise InputError("record", "has neither time nor sample_rate", fix)
+        if unit is not None:
+            raise InputError("record.time_unit", "is given without time", "leave it out")
         interval = 1 / positive("record.sample_rate", rate, "Hz")
         return Times(interval * np.arange(table.count(columns)), Unit("s", 1.0), key="sample_rate")
     try:

@@ -6,15 +6,18 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
+from gbeam.guards.quantities import Quantity, Shape
 from gbeam.io.table import NO_COLUMN
-from gbeam.motion.records.times import Span, Times
+from gbeam.motion.records.times import Moment, Times
 from gbeam.results.description import Offset
 
 _SPREAD, _DRIFT = 0.05, 0.02  # g: of a steady load about its mean, and between the means of both halves
@@ -25,24 +28,27 @@ _TRUST = 'if sensors are that far off, add skip_checks = ["rest"]'
 _UP = (0.0, 0.0, STANDARD_GRAVITY)
 
 
+@typed
 @dataclass(frozen=True)
 class Rest:
-    """Stretch of a record in which the load is known: what the sensors read beside it is their offset.
+    """Stretch of a record in which the vehicle rests, or its load is known.
 
-    Parameters
-    ----------
-    span : tuple
-        First and last time, as of a record's span.
-    load : (3,), optional
-        The known load, base axes, m/s². Left out, the vehicle rests: 1 g upwards, along z, of a specific force, none
-        of an acceleration.
-    rates : (3,)
-        The known rates, about base axes, rad/s.
+    What the sensors read beside the known load is their offset.
     """
 
-    span: Span
-    load: Numbers | None = None
-    rates: Numbers = (0.0, 0.0, 0.0)
+    from_: Annotated[
+        Moment | None, "first time of the stretch, on the record's own clock; the record's first if left out"
+    ] = None
+    to: Annotated[Moment | None, "last time of the stretch; the record's last if left out"] = None
+    load: Annotated[
+        Annotated[Numbers, Quantity("acceleration"), Shape((3,))] | None,
+        'the load there, base axes, such as ["0 g", "0 g", "1 g"], which specific force is at rest if left out; '
+        "acceleration is none then",
+    ] = None
+    rates: Annotated[
+        Annotated[Numbers, Quantity("angular rate"), Shape((3,))],
+        "the body's rates there, about base axes, such as of a rate table",
+    ] = (0.0, 0.0, 0.0)
 
 
 def mean_of(key: str, load: Floats, rates: Floats, span: str, still: str) -> tuple[Floats, Floats]:
@@ -116,7 +122,7 @@ def offsets_of(
     offsets: list[tuple[float, Offset, Floats]] = []
     for i, rest in enumerate(rests):
         key = f"rest[{i}]" if len(rests) > 1 else "rest"
-        stretch = times.part(rest.span, counted, (f"rest[{i}].from", f"rest[{i}].to"))
+        stretch = times.part((rest.from_, rest.to), counted, (f"rest[{i}].from", f"rest[{i}].to"))
         clock = times.values[stretch]
         start, end = float(clock.min()), float(clock.max())
         span = f"from {start:.6g} to {end:.6g} s"

@@ -6,18 +6,34 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Annotated, Any
 
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.limits import SAMPLES, refuse_more
-from gbeam.io.table import Clock
+from gbeam.guards.quantities import Quantity
+from gbeam.io.table import Clock, is_clock
 from gbeam.motion.records.conditioning import FEWEST, UNEVEN
 from gbeam.motion.records.units import UNITS, Unit
 from gbeam.results.description import Gap
 
-Span = tuple[float | str | None, float | str | None]
+
+@dataclass(frozen=True)
+class ClockTime(Quantity):
+    """Annotation of a time on a record's own clock, which may be a time of day."""
+
+    def accepts(self, text: str) -> bool:
+        return is_clock(text)
+
+    @property
+    def accepted(self) -> list[dict[str, Any]]:
+        return [{"type": "string", "description": "a time of day", "examples": ["12:34:56.7"]}]
+
+
+Moment = Annotated[float | str, ClockTime("time")]
+Span = tuple[float | str | None, float | str | None]  # moments, of which each may be left out
 Place = Callable[[int], str]
 
 SLOWEST = 5.0  # Hz

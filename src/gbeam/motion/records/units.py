@@ -6,9 +6,11 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
+from gbeam.guards.units import UnitError
 from gbeam.printable import advise, shortened
 
 # Per quantity, the units that a record may be in and their size in SI.
@@ -85,6 +87,36 @@ class Unit:
     def instead(self, key: str, unit: str) -> str:
         """Advice to write another unit at a key of the record, which a file that states this one would contradict."""
         return f'write {key} = "{unit}"' + (' and skip_checks = ["unit"]' if self.stated else "")
+
+
+@dataclass(frozen=True)
+class UnitOfRecord:
+    """Annotation of a unit in a record's file: one of a quantity's words, another spelling, or the size of a count."""
+
+    quantity: str  # a key of UNITS
+    example: str
+
+    def read(self, text: str) -> str:
+        """Return the text; UnitError, with the fix, if it is no unit."""
+        try:
+            sized("unit", self.quantity, text)
+        except InputError as error:
+            raise UnitError(error.problem, error.fix) from None
+        return text
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        """Validate with :meth:`read`, after text."""
+        function = {"type": "no-info", "function": self.read}
+        return {"type": "function-after", "schema": handler(str), "function": function}
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Describe it as one of the words, or as text."""
+        return {"anyOf": [{"enum": [*UNITS[self.quantity]]}, {"type": "string", "examples": [self.example]}]}
+
+
+LoadUnit = Annotated[str, UnitOfRecord("acceleration", "1 g / 2048")]
+RateUnit = Annotated[str, UnitOfRecord("rate", "1 deg/s / 16.4")]
+TimeUnit = Annotated[str, UnitOfRecord("time", "1 s / 32768")]
 
 
 def words_of(name: str) -> list[str]:

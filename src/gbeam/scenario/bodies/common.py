@@ -9,10 +9,10 @@ import numpy as np
 from pydantic import Discriminator, Field, StrictInt, Tag
 
 from gbeam.guards.limits import ENTRIES
-from gbeam.guards.quantities import MODAL_DAMPING, MomentOfInertia, Quantity
+from gbeam.guards.quantities import MomentOfInertia, Quantity
 from gbeam.mechanics.tree.rigid_body import Place
 from gbeam.scenario.schema.declared import chosen, object_of, table_of
-from gbeam.scenario.schema.fields import Place3, Ratios, Table
+from gbeam.scenario.schema.fields import Place3, Table
 
 
 class BodyKind(NamedTuple):
@@ -34,7 +34,6 @@ class BodyKind(NamedTuple):
         return str(get_args(self.table.model_fields["kind"].annotation)[0])
 
 
-_Count = Annotated[StrictInt, Field(ge=1, le=1000)]
 _Row = tuple[
     Annotated[float, Quantity("moment of inertia")],
     Annotated[float, Quantity("moment of inertia")],
@@ -67,13 +66,6 @@ if TYPE_CHECKING:  # type checkers make no tables
 else:
     Point = chosen("kind", {"list": Place3, "table": PlaceOfBody}, placed)
 NodePoints = Annotated[dict[str, StrictInt], Field(max_length=ENTRIES)]
-
-
-class Reduced(Table):
-    """Keys of what is reduced to modes."""
-
-    modes: _Count = Field(default=10, description="number of modes; up to twelve static shapes come on top")
-    damping_ratio: Ratios = Field(description=MODAL_DAMPING)
 
 
 def inertia_of(moments: Any) -> Any:

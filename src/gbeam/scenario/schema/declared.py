@@ -26,7 +26,7 @@ from gbeam.guards.quantities import Components, Count, OfProfile, OneOrSome, Qua
 from gbeam.motion import vector
 from gbeam.motion.profiles.profile import Profile
 from gbeam.scenario.collector import Collector
-from gbeam.scenario.schema.fields import Table, Vector, fields_of
+from gbeam.scenario.schema.fields import ONE_OR_LIST, Table, Vector, fields_of
 
 Make = Callable[..., Any]
 _LISTS = (Sequence, Iterable, list, tuple)
@@ -56,21 +56,26 @@ def table_of(
     known: bool = False,
     without: Collection[str] = (),
     optional: Collection[str] = (),
+    types: Mapping[str, Any] | None = None,
     changed: Mapping[str, tuple[Any, Any]] | None = None,
     base: type[Table] = Table,
     of: str = "",
+    about: str = "",
 ) -> Any:
     """Return the table of the parameters of what makes its objects, or of the classes and functions `declaring` them.
 
     `tag` is a key with the word that tells the table from others in its place, such as shape and rectangle; it may be
     left out where the table is `known` by its other keys. Parameters `without` a key are left to who makes the object,
-    and those that are `optional` follow from others; types and declarations of keys that a signature cannot say are
-    `changed`. `of` is the kind of quantity of which a profile is.
+    and those that are `optional` follow from others. A key has one of the `types` where a file has others than Python;
+    types and declarations of keys that a signature cannot say are `changed`. A parameter called as a word of Python
+    with an underscore, such as ``from_``, is that word in the file. `of` is the kind of quantity of which a profile is;
+    `about` describes the table in place of the docstring's first sentence.
     """
     fields: dict[str, Any] = {}
+    tagged: dict[str, Any] = {}
     if tag is not None:
         default = tag[1] if known else ...
-        fields[tag[0]] = (Literal[tag[1]], Field(default=default, description=f"name of the {tag[0]}"))
+        tagged[tag[0]] = (Literal[tag[1]], Field(default=default, description=f"name of the {tag[0]}"))
     title = name or make.__name__
     for each in declaring or (make,):
         factories = _factories(each)
@@ -80,10 +85,12 @@ def table_of(
             if key in optional:
                 parameter = replace(parameter, default=None)
             own_title = f"{title}{key.title().replace('_', '')}"
-            fields[key] = _field(parameter, own_title, of, factories.get(key))
-    fields |= changed or {}
+            written = (types or {}).get(key) or value_type(parameter.hint, own_title, of)
+            fields[key] = _field(parameter, written, factories.get(key))
+    of_file = dict(changed or {})
+    fields = tagged | {key: each for key, each in of_file.items() if key not in fields} | fields | of_file
     module = sys.modules[sys._getframe(1).f_globals["__name__"]]
-    about = (getdoc(make) or "").partition("\n\n")[0].partition("  #")[0].removeprefix("Return ")
+    about = about or (getdoc(make) or "").partition("\n\n")[0].partition("  #")[0].removeprefix("Return ")
     doc = about[:1].upper() + about[1:]
     table = create_model(title, __base__=base, __module__=module.__name__, __doc__=doc, **fields)
     named = vars(module).setdefault(title, table)  # by which it is pickled
@@ -142,23 +149,34 @@ def _factories(make: Make) -> dict[str, Callable[[], Any]]:
     return {each.name: each.default_factory for each in fields if each.default_factory is not dataclasses.MISSING}
 
 
-def _field(parameter: Parameter, title: str, of: str, factory: Callable[[], Any] | None) -> tuple[Any, Any]:
-    """Type and declaration of a key."""
-    written = value_type(parameter.hint, title, of)
-    words = parameter.words
+def _field(parameter: Parameter, written: Any, factory: Callable[[], Any] | None) -> tuple[Any, Any]:
+    """Type, and declaration, of a key whose values are `written` in a file."""
+    about: dict[str, Any] = {"description": parameter.words}
+    if parameter.name.endswith("_"):
+        about["alias"] = parameter.name.removesuffix("_")
     if parameter.required:
-        return written, Field(description=words)
+        return written, Field(**about)
     if factory is not None and isinstance(written, type) and issubclass(written, Table):
-        return written, Field(default_factory=written, description=words)
+        return written, Field(default_factory=written, **about)
     if _is_mapping(written):
-        return written, Field(default_factory=dict, description=words)
+        return written, Field(default_factory=dict, **about)
     default = factory() if factory is not None else parameter.default
-    return (written | None if default is None else written), Field(default=default, description=words)
+    return (written | None if default is None else written), Field(default=default, **about)
 
 
 def _is_mapping(written: Any) -> bool:
     """True for the type of values by names that the user gives."""
-    return get_origin(written.__origin__ if get_origin(written) is Annotated else written) is dict
+    return _origin(written) is dict
+
+
+def _is_list(written: Any) -> bool:
+    """True for the type of a list."""
+    return _origin(written) is tuple
+
+
+def _origin(written: Any) -> Any:
+    """The generic class of a type without its annotations, such as tuple; None of others."""
+    return get_origin(written.__origin__ if get_origin(written) is Annotated else written)
 
 
 def value_type(hint: Any, title: str, of: str = "", quantity: Quantity | None = None) -> Any:
@@ -172,6 +190,8 @@ def value_type(hint: Any, title: str, of: str = "", quantity: Quantity | None = 
         return _TYPES[hint]
     if origin is Literal:
         return hint
+    if origin is tuple and Ellipsis not in parts:
+        return tuple.__class_getitem__(tuple(value_type(each, title, of, quantity) for each in parts))
     if origin in _LISTS:
         return _list_of(value_type(parts[0], title, of, quantity))
     if origin in (Mapping, dict):
@@ -183,7 +203,9 @@ def value_type(hint: Any, title: str, of: str = "", quantity: Quantity | None = 
 def _annotated(hint: Any, metadata: tuple[Any, ...], title: str, of: str, quantity: Quantity | None) -> Any:
     """Type of values by the annotations of a parameter's type; those of pydantic are kept."""
     marks: dict[type, Any] = {type(mark): mark for mark in metadata}
-    quantity = marks[OfProfile].quantity(of) if OfProfile in marks else marks.get(Quantity, quantity)
+    quantity = next((mark for mark in metadata if isinstance(mark, Quantity)), quantity)
+    if OfProfile in marks:
+        quantity = marks[OfProfile].quantity(of)
     if Components in marks:
         assert quantity is not None
         return _by_components(title, marks[Components], hint, quantity)
@@ -195,6 +217,8 @@ def _annotated(hint: Any, metadata: tuple[Any, ...], title: str, of: str, quanti
         return _array(_number(quantity), marks[Shape].sizes)
     if Rows in marks:
         return _list_of(_array(_number(quantity), (marks[Rows].size,)))
+    if quantity is not None and str in get_args(hint):  # texts that the quantity keeps, such as times of day
+        return Annotated[hint, quantity]
     others = (mark for mark in metadata if not isinstance(mark, _OURS))
     return reduce(lambda each, mark: Annotated[each, mark], others, value_type(hint, title, of, quantity))
 
@@ -209,8 +233,14 @@ def _alternatives(parts: Sequence[Any], title: str, of: str, quantity: Quantity 
     if Profile in parts and quantity is not None:
         return OVER_TIME[quantity.kind]
     listed = any(get_origin(each) in _LISTS for each in parts)  # and so are arrays of NumPy, in a file
-    kinds = [value_type(each, title, of, quantity) for each in parts if not (listed and get_origin(each) is ndarray)]
-    return reduce(or_, dict.fromkeys(kinds))
+    kinds = dict.fromkeys(
+        value_type(each, title, of, quantity) for each in parts if not (listed and get_origin(each) is ndarray)
+    )
+    if len(kinds) == 2 and listed:
+        one, some = sorted(kinds, key=_is_list)
+        if not _is_list(one):  # by tags, or a value that is neither would be refused twice
+            return Annotated[Annotated[one, Tag("one")] | Annotated[some, Tag("list")], ONE_OR_LIST]
+    return reduce(or_, kinds)
 
 
 def _array(number: Any, sizes: tuple[int, ...]) -> Any:

@@ -129,19 +129,6 @@ class Vector(Table):
         return self
 
 
-class ClockTime(Quantity):
-    """Annotation of a time that may be a time of day."""
-
-    def accepts(self, text: str) -> bool:
-        from gbeam.io.table import is_clock  # not needed, nor imported, where there is no such key
-
-        return is_clock(text)
-
-    @property
-    def accepted(self) -> list[dict[str, Any]]:
-        return [{"type": "string", "description": "a time of day", "examples": ["12:34:56.7"]}]
-
-
 def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
     """Fields of a table by their keys in the file, which may be words of Python such as ``from``."""
     return {field.alias or name: field for name, field in table.model_fields.items()}
@@ -168,7 +155,6 @@ def inside(annotation: Any) -> Iterator[Any]:
         yield from inside(part)
 
 
-Moment = Annotated[float | str, ClockTime("time")]
 Step = Annotated[float | Literal["auto"], Quantity("time", "positive", words=("auto",))]
 Place3 = tuple[Offset, Offset, Offset]
 Turn3 = tuple[Angle, Angle, Angle]

@@ -153,7 +153,7 @@ class Environments(Titled):
                 wrong("duration is missing", 'no record gives one: add duration = "16 s"', mark="key"),
             )
 
-    def _part(self, name: str, part: PartOfRecord) -> Iterator[tuple[Loc, PydanticCustomError]]:
+    def _part(self, name: str, part: Any) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Errors of a record that is part of another flight's."""
         flights = {key: each for key, each in self.motion.items() if isinstance(each, Flight)}
         whole = [key for key, each in flights.items() if isinstance(each.record, Record)]
@@ -163,8 +163,7 @@ class Environments(Titled):
             hint = advise(part.of, whole) if whole else "give the record itself: file, time, x, y, z and unit"
             yield (*where, "of"), wrong(f"{{value}} {message}", hint)
             return
-        record = flights[part.of].record
-        if part.section is not None and isinstance(record, Record) and record.sections is None:
+        if part.section is not None and flights[part.of].record.sections is None:
             hint = f'name the column that numbers them, such as sections = "event" in [motion.{part.of}.record]'
             yield (*where, "section"), wrong("is given, and its record has no sections", hint, mark="key")
 
