@@ -226,8 +226,19 @@ class HubBeam:
             done = self.system.SolveDynamic(settings, solverType=getattr(exudyn.DynamicSolverType, setting.method))
         except exudyn.SolverError:
             done = False
-        if not done:
-            return np.zeros(0), np.zeros(0)
+        return self._tip() if done else (np.zeros(0), np.zeros(0))
+
+    def solve_by_default(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times and the tip's displacement as of `solve`, by Exudyn's own settings: an end is all that is given."""
+        settings = exudyn.SimulationSettings()
+        settings.timeIntegration.endTime = self.drive.end
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = self.drive.end / settings.timeIntegration.numberOfSteps
+        self.system.SolveDynamic(settings)
+        return self._tip()
+
+    def _tip(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times, and the tip's displacement across the beam in hub axes, m, as the sensors have stored them."""
         tip, hub = (self.system.GetSensorStoredData(sensor) for sensor in self._sensors)
         x, y = HUB_RADIUS + LENGTH + tip[:, 1], tip[:, 2]
         if self.setting.hub == "rigid":

@@ -34,7 +34,7 @@ import space_beams  # likewise
 
 sys.path.insert(0, str(HERE))
 import numpy as np
-from exudyn_choices import PROBLEMS, Choice
+from exudyn_choices import PROBLEMS, Choice, Setting
 
 import gbeam as gb
 
@@ -49,6 +49,7 @@ Settings = dict[str, Call]  # by words
 RECORD, WITHIN = HERE / "reach.json", 1e-4
 TURNS, FEW = 5, 8  # of the quickest settings in a plane, where a run takes milliseconds: the least time counts
 SPELL = 0.25  # s of each code in a turn
+DEFAULTS, ELEMENTS = ", all defaults", 8  # of a row where nothing is set; of Exudyn's beam there, as one may guess
 SPACE = {  # goal; gbeam's reference, its settings and Exudyn's: numbers of shapes, of elements, and steps, s
     "driven": (10, "driven base in space, torsion", (7, 0.02), [(5, 0.04), (6, 0.02)], [(64, 0.005), (128, 0.0025)]),
     "free hub in space": (
@@ -224,6 +225,31 @@ def in_plane(name: str) -> dict[str, Any]:
     return {"figure": name, "goal": goal, **compared(ours, theirs, errors, WITHIN, TURNS)}
 
 
+def by_default(name: str) -> dict[str, Any]:
+    """The hub-beam of 2009 as both codes compute it where nothing is set but the model, its size and the end."""
+    problem = PROBLEMS[name.removesuffix(DEFAULTS)]
+    drive, finest = problem.drive, comparison.Reference(problem.drive, "exact")
+    section, material = gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), gb.Material(2766.7, 6.8952e10)
+    beam = gb.assemble(gb.Beam(8.0, section, material, [], 0.0), problem.model, y=3)
+    hub_beam = comparison.HubBeam(drive, Setting("rigid", ELEMENTS, 0))
+    motion = comparison.motion_of(drive)
+
+    def ours() -> gb.Response:
+        return gb.simulate(beam, motion, duration=drive.end)
+
+    response = ours()
+    reached = [
+        abs(finest.errors(answer).peak)
+        for answer in ((np.asarray(response.time), np.asarray(response.tip[:, 1])), hub_beam.solve_by_default())
+    ]
+    times = [(seconds(ours, SPELL), seconds(hub_beam.solve_by_default, SPELL)) for _ in range(TURNS)]
+    quick, slow = (min(each) for each in zip(*times, strict=True))
+    words = f"{problem.model}, 3 shapes, {response.steps} steps, stated error {response.error_estimate:.1e}"
+    rows = {"gbeam": [words, quick, reached[0]], "Exudyn": [f"{ELEMENTS} elements, 100 steps", slow, reached[1]]}
+    measured = round(slow / quick, 2)
+    return {"figure": name, "goal": None, "measured": measured, "unit": "times Exudyn", **rows, "profile": {}}
+
+
 def in_loop(_: str) -> dict[str, Any]:
     """The satellite under a sampled controller: errors of the hub's angle from each code's converged run."""
     settings: tuple[Settings, Settings] = (
@@ -250,6 +276,7 @@ def first_calls(_: str) -> dict[str, Any]:
 
 
 FIGURES = {name: in_space for name in SPACE} | {name: in_plane for name in PLANE}
+FIGURES |= {name + DEFAULTS: by_default for name in PLANE}
 FIGURES |= {"closed loop": in_loop, "first calls": first_calls}
 
 

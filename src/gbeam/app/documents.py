@@ -257,17 +257,24 @@ def load_curves(text: str, folder: Path) -> dict[str, Any]:
     """Return the acceleration (or specific force) of every flight over the response's time, s, in g, base axes."""
     case = build(loads(text, folder=folder))
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
-    settings = {} if case.response is None else {name: case.settings_of(name) for name in flights}
-    spans = {name: (each.start, each.start + each.duration) for name, each in settings.items()}
-    firsts, lasts = zip(*spans.values(), strict=True) if spans else ((0.0,), (0.0,))
-    time = np.linspace(min(firsts), max(lasts), SAMPLES)
+    spans: dict[str, tuple[float, float]] = {}
+    if case.response is not None:
+        for name in flights:
+            settings = case.settings_of(name)
+            spans[name] = settings.start, settings.start + settings.duration
+    start = min((first for first, _ in spans.values()), default=0.0)
+    end = max((last for _, last in spans.values()), default=0.0)
+    time = np.linspace(start, end, SAMPLES)
 
     def load(name: str, flight: Flight) -> list[list[float | None]]:
         """Components over time, None where the flight is not flown."""
         first, last = spans.get(name, (-np.inf, np.inf))
         flown = (time >= first) & (time <= last)
         in_g = np.asarray(flight.over(first, last).base(time).a_WO_B) / STANDARD_GRAVITY
-        return [[float(each) if inside else None for each, inside in zip(axis, flown, strict=True)] for axis in in_g.T]
+        return [
+            [float(value) if inside else None for value, inside in zip(component, flown, strict=True)]
+            for component in in_g.T
+        ]
 
     return {"time": time.tolist(), "flights": {name: load(name, flight) for name, flight in flights.items()}}
 

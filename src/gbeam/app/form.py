@@ -98,17 +98,17 @@ def _entry(schema: Node, parent: Any, path: Path, *, required: bool) -> Node:
     node: Node = {"path": path_text(path), "key": str(key), "required": required, "written": written}
     node["help"] = schema.get("description", "")
     alternatives = [*_alternatives(schema)]
-    listed = next((each["items"] for each in alternatives if "items" in each and _tables(each["items"])), None)
-    named = next((each["additionalProperties"] for each in alternatives if _names_tables(each)), None)
+    listed = [kind["items"] for kind in alternatives if "items" in kind and _tables(kind["items"])]
+    named = [kind["additionalProperties"] for kind in alternatives if _names_tables(kind)]
     tables = _tables(schema)
-    if named is not None:
+    if named:  # tables by names that the user gives
         inside = raw if isinstance(raw, dict) else {}
-        entries = [_entry(named, inside, (*path, name), required=False) for name in inside]
-        return node | {"kind": "named", "options": _words(named), "inside": entries}
-    if listed is not None and (raw is None or isinstance(raw, list)):
+        entries = [_entry(named[0], inside, (*path, name), required=False) for name in inside]
+        return node | {"kind": "named", "options": _words(named[0]), "inside": entries}
+    if listed and (raw is None or isinstance(raw, list)):
         count = len(raw or ())
-        entries = [_entry(listed, raw, (*path, i), required=False) for i in range(min(count, LISTED))]
-        return node | {"kind": "list", "options": _words(listed), "inside": entries, "count": count}
+        entries = [_entry(listed[0], raw, (*path, i), required=False) for i in range(min(count, LISTED))]
+        return node | {"kind": "list", "options": _words(listed[0]), "inside": entries, "count": count}
     if tables and (isinstance(raw, dict) or len(tables) == len(alternatives)):
         return node | _table(schema, tables, raw, path)
     return node | _value(schema, alternatives, raw) | {"tables": _words(schema)}
@@ -124,20 +124,27 @@ def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
 
 def _value(schema: Node, alternatives: list[Node], raw: Any) -> Node:
     """Fields of an entry that is a value: see `form`. Text is shown as it is, anything else as TOML."""
-    shown = "" if raw is None else raw if isinstance(raw, str) else toml(raw)
-    default = schema.get("default")
-    words = [str(word) for each in alternatives for word in _literals(each)]
-    options = words if len(words) and all([*_literals(each)] for each in alternatives) else []
-    examples = (example for each in alternatives for example in each.get("examples", ()))
+    written, default = _as_text(raw), schema.get("default")
+    literals = [[*_literals(kind)] for kind in alternatives]
+    only_literals = bool(literals) and all(literals)
+    examples = [example for kind in alternatives for example in kind.get("examples", ())]
+    units = [quantity["x-unit"] for quantity in _quantities(schema)]
     return {
         "kind": "value",
-        "value": shown if len(shown) <= LONGEST else "",
-        "long": len(shown) > LONGEST,
-        "default": "" if default in (None, "", [], {}) else default if isinstance(default, str) else toml(default),
-        "example": next(examples, ""),
-        "unit": next((each["x-unit"] for each in _quantities(schema)), ""),
-        "options": options,
+        "value": written if len(written) <= LONGEST else "",
+        "long": len(written) > LONGEST,
+        "default": "" if default in ([], {}) else _as_text(default),
+        "example": examples[0] if examples else "",
+        "unit": units[0] if units else "",
+        "options": [str(word) for words in literals for word in words] if only_literals else [],
     }
+
+
+def _as_text(value: Any) -> str:
+    """A value as the form shows it: text as it is, anything else as TOML, nothing for None."""
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else toml(value)
 
 
 def _literals(schema: Node) -> Iterator[str]:

@@ -118,23 +118,25 @@ class Judged:
 def state_of(
     outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, kept: Sequence[bool | None] = ()
 ) -> str:
-    """Return the verdict on an answer, with what is to be said beside it, or its outcome where nothing is decided; only
-    :data:`GOOD` ones are good.
+    """Return the verdict on an answer, or its outcome where nothing is decided; only :data:`GOOD` ones are good.
 
     `exceeded` is True if a limit of a machine is; `kept` are the verdicts on other limits, None where there is none.
     """
     if outcome not in ("done", BROKEN):
         return outcome
-    decisions = [each.decision for each in imitations]
+    decisions = [imitation.decision for imitation in imitations]
     if False in kept or NOT_ACCEPTED in decisions:
         return NOT_ACCEPTED
     if NOT_DECIDED in decisions:
         return NOT_DECIDED
     if exceeded or outcome == BROKEN:
         return EXCEEDED
-    accepted = [each for each in imitations if each.accepted and not each.not_judged and not each.part]
-    missed = any(main is not None and main.reason for main in (each.accounting.main for each in imitations))
-    return (PASS if accepted or True in kept else "done") + (", largest peak missed" if missed else "")
+    # A part of a flight, or one of which some limits are not judged, passes nothing.
+    passed = any(imitation.accepted and not imitation.not_judged and not imitation.part for imitation in imitations)
+    state = PASS if passed or True in kept else "done"
+    main_peaks = [imitation.accounting.main for imitation in imitations]
+    missed = any(peak is not None and peak.reason for peak in main_peaks)
+    return f"{state}, largest peak missed" if missed else state
 
 
 @dataclass(frozen=True)

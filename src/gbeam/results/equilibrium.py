@@ -136,17 +136,24 @@ class Rest(RestingBody, Placed, Decided, Figured[str]):
 
     def __repr__(self) -> str:
         motion = f" {self.motion!r}" if self.motion else ""
-        models = f" ({', '.join(dict.fromkeys(each.model for each in self.bodies.values()))})" if self.bodies else ""
-        named = len(self.bodies) > 1
-        said = [f"{name}: {line}" if named else line for name, each in self.bodies.items() for line in each.lines]
+        kinds = dict.fromkeys(body.model for body in self.bodies.values())
+        models = f" ({', '.join(kinds)})" if kinds else ""
+        sentences = [
+            f"{name}: {line}" if len(self.bodies) > 1 else line
+            for name, body in self.bodies.items()
+            for line in body.lines
+        ]
         if self.several:
-            said.insert(0, most_moved(self, np.linalg.norm(self.point_displacement, axis=-1)))
-        lines = [f"Rest{motion}{models} at {self.time:.4g} s: {said[0]}", *said[1:]]
-        force = ", ".join(f"{each:.4g}" for each in self.ground_force)
+            sentences.insert(0, most_moved(self, np.linalg.norm(self.point_displacement, axis=-1)))
+        force = ", ".join(f"{component:.4g}" for component in self.ground_force)
+        lines = [f"Rest{motion}{models} at {self.time:.4g} s: {sentences[0]}", *sentences[1:]]
         lines += [f"force on the ground ({force}) N", *evenly(self.accelerated)]
         total = self.errors.displacement.total
-        lines += [f"estimated error {percent(total)}"] if self.errors.beams and math.isfinite(total) else []
-        return self._with_warnings(*lines, *filter(None, [self.message]))
+        if self.errors.beams and math.isfinite(total):
+            lines.append(f"estimated error {percent(total)}")
+        if self.message:
+            lines.append(self.message)
+        return self._with_warnings(*lines)
 
 
 LOST = {"critical_speed": "rad/s", "critical_acceleration": "m/s^2", "critical_load_factor": ""}

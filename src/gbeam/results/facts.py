@@ -119,18 +119,23 @@ def _leaf(declaration: Declaration, row_keys: Mapping[str, str], hint: Any) -> E
     in_rows = not (declaration.key or "").startswith("/")
     dims = [dim for dim in declaration.dims if dim not in row_keys or not in_rows]
     types = list(types_in(hint))
-    origins = [get_origin(each) for each in types]
-    scalar_too = float in get_args(hint) and any(get_origin(each) is tuple for each in get_args(hint))
+    origins = [get_origin(kind) for kind in types]
+    alternatives = get_args(hint)
+    number_or_list = float in alternatives and any(get_origin(kind) is tuple for kind in alternatives)
     depth = sum(origin in (dict, Mapping) for origin in origins)
-    ends: tuple[str, ...] = ("[i]",) if dims or (tuple in origins and not declaration.dims and not scalar_too) else ()
+    ends: tuple[str, ...] = ()
     if depth:
-        ends = (".".join(ANY for _ in range(depth)),)
+        ends = (".".join([ANY] * depth),)
     elif dims and dims[-1] in NAMES:
         ends = NAMES[dims[-1]]
-    number = any(each is Any or each in _NUMBERS for each in types)
-    kind = "number" if number else "boolean" if bool in types or np.bool_ in types else "string"
+    elif dims or (tuple in origins and not declaration.dims and not number_or_list):
+        ends = ("[i]",)
+    if any(kind is Any or kind in _NUMBERS for kind in types):
+        json_type = "number"
+    else:
+        json_type = "boolean" if bool in types or np.bool_ in types else "string"
     unit = declaration.unit if isinstance(declaration.unit, str) else "unit"
-    return Entry(unit, declaration.words, ends, (kind, "array") if scalar_too else (kind,))
+    return Entry(unit, declaration.words, ends, (json_type, "array") if number_or_list else (json_type,))
 
 
 def _joined(tree: dict[str, Any], *others: dict[str, Any]) -> dict[str, Any]:

@@ -168,16 +168,18 @@ class Modes(ShapedBody, Oscillating, Decided, Figured[Literal["modes"]]):
 
     def __repr__(self) -> str:
         motion = f" {self.motion!r}" if self.motion else ""
-        models = f" ({', '.join(dict.fromkeys(each.model for each in self.bodies.values()))})" if self.bodies else ""
-        listed = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
-        others = f" and {len(listed) - SHOWN} more" if len(listed) > SHOWN else ""
-        lines = [f"Modes{motion}{models} at {self.time:.4g} s: {', '.join(listed[:SHOWN])}{others}"]
-        if self.rigid:
-            count = (
-                f"{self.rigid} motions of zero frequency are" if self.rigid > 1 else "one motion of zero frequency is"
-            )
-            lines.append(f"{count} left out")
-        lines += [*evenly(self.accelerated), *map(str, self.instabilities), *filter(None, [self.message])]
+        kinds = dict.fromkeys(body.model for body in self.bodies.values())
+        models = f" ({', '.join(kinds)})" if kinds else ""
+        modes = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
+        more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
+        lines = [f"Modes{motion}{models} at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
+        if self.rigid == 1:
+            lines.append("one motion of zero frequency is left out")
+        elif self.rigid:
+            lines.append(f"{self.rigid} motions of zero frequency are left out")
+        lines += [*evenly(self.accelerated), *map(str, self.instabilities)]
+        if self.message:
+            lines.append(self.message)
         return self._with_warnings(*lines)
 
 

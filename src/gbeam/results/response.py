@@ -318,23 +318,21 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
     def __repr__(self) -> str:
         if is_traced(self.q):
             return brief(self)
-        of, models = f" {self.name!r}" if self.name else "", dict.fromkeys(each.model for each in self.bodies.values())
-        unknown = math.isnan(self.error_estimate)
-        error = "no error estimate" if unknown else f"estimated error {percent(self.error_estimate)} of the peak"
-        said = [
-            f"{name}: {line}" if len(self.bodies) > 1 else line
-            for name, each in self.bodies.items()
-            for line in each.lines(self.time)
-        ]
+        name = f" {self.name!r}" if self.name else ""
+        models = dict.fromkeys(body.model for body in self.bodies.values())
+        lines = [f"Response{name} ({', '.join([self.environment, *models])}): {self.outcome}"]
+        lines += [words for words in (self.message, self.initial) if words]
         if self.several:
             moved = most_moved(self, self.largest, "up to ")
-            said.insert(0, f"{moved} in {self.time[0]:.4g} to {self.time[-1]:.4g} s")
-        lines = [
-            f"Response{of} ({', '.join([self.environment, *models])}): {self.outcome}",
-            *filter(None, (self.message, self.initial)),
-            *said,
-            f"{self.integrator}, {self.steps_in_words}; {error}",
-        ]
+            lines.append(f"{moved} in {self.time[0]:.4g} to {self.time[-1]:.4g} s")
+        for body_name, body in self.bodies.items():
+            start = f"{body_name}: " if len(self.bodies) > 1 else ""
+            lines += [f"{start}{line}" for line in body.lines(self.time)]
+        if math.isnan(self.error_estimate):
+            error = "no error estimate"
+        else:
+            error = f"estimated error {percent(self.error_estimate)} of the peak"
+        lines.append(f"{self.integrator}, {self.steps_in_words}; {error}")
         if self.invariants is not None:
             first, last = self.invariants.energy[[0, -1]].sum(axis=1)
             lines.append(f"energy {first:.4g} J at the start, {last:.4g} J at the end")

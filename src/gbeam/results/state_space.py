@@ -317,25 +317,26 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
 
     def __repr__(self) -> str:
         model = f" of {self.model}" if self.model else ""
-        lines = evenly(self.accelerated) + [
-            f"{len(signals)} {kind} ({', '.join(each.name for each in signals[:4])}{', …' if len(signals) > 4 else ''})"
-            for kind, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
-        ]
+        motion = f" on {self.motion!r}" if self.motion else ""
+        lines = evenly(self.accelerated)
+        for kind, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs)):
+            names = ", ".join(signal.name for signal in signals[:4])
+            lines.append(f"{len(signals)} {kind} ({names}{', …' if len(signals) > 4 else ''})")
         if not math.isnan(self.accurate_to):
             lines.append(
                 f"frequencies within {100 * ACCURATE:g} % of the exact model's up to {self.accurate_to:.4g} Hz"
             )
         for margin in self.margins:
-            sizes = {"gain": f"{margin.gain:.3g}", "phase": f"{math.degrees(margin.phase):.3g} deg"}
-            words = (f"{k} margin {'not known' if k in margin.unknown else size}" for k, size in sizes.items())
-            lines.append(f"{margin.drive}: {', '.join(words)}")
+            gain = "not known" if "gain" in margin.unknown else f"{margin.gain:.3g}"
+            phase = "not known" if "phase" in margin.unknown else f"{math.degrees(margin.phase):.3g} deg"
+            lines.append(f"{margin.drive}: gain margin {gain}, phase margin {phase}")
         if self.truncation is not None:
             share = float(self.truncation.share.max(initial=0.0))
             lines.append(
                 f"{self.truncation.method} truncation: {self.truncation.states} states left out, at most "
                 f"{100 * share:.2g} % of the largest gain up to {self.truncation.end:.4g} Hz"
             )
-        return self._with_warnings(f"StateSpace{model}{f' on {self.motion!r}' if self.motion else ''}", *lines)
+        return self._with_warnings(f"StateSpace{model}{motion}", *lines)
 
 
 def slowest_first(poles: Complex) -> Indices:

@@ -47,37 +47,48 @@ class Verdict:
     @property
     def headline(self) -> str:
         """The decision and its reason in one line, with three numbers where as many are known."""
-        judged, criteria = self.judged, self.judged.criteria
-        failed = [each for each in criteria if each.passed is not True]
-        context = {
-            "largest_load": self._loads(beside=not criteria),
+        judged = self.judged
+        decision, intro, reason, worst = self._decided
+        numbers = {
+            "largest_load": self._loads(beside=not judged.criteria),
             "followed": f"followed {self._followed} of the time",
         }
-        pending, decision, shown, intro = judged.not_judged, judged.decision, 1, ""
-        if decision == NOT_ACCEPTED:
-            worst = max((each for each in failed if each.passed is False), key=lambda each: each.use)
-            intro, reason = "" if len(failed) == 1 else "worst of all: ", worst.brief
-        elif decision == NOT_DECIDED:
-            worst, shown = failed[0], 2
-            reason = f"{worst.words} is not known ({worst.limit_written})"
-        elif self.exceeded:
-            worst, decision, shown = None, NOT_ACCEPTED, 2
-            reason = f"the machine exceeds its limits, {self.exceeded}"
-        elif pending:
-            worst, decision = max(criteria, key=lambda each: each.use, default=None), ""
-            shown, reason = (1, worst.brief) if worst else (2, "")
-        elif criteria:
-            worst = max(criteria, key=lambda each: each.use)
-            intro, reason = "" if len(criteria) == 1 else "all limits are kept, the nearest: ", worst.brief
-        else:
-            worst, shown, reason = None, 2, ""
-        known = [words for name, words in context.items() if words and not (worst and worst.name == name)]
-        undecided = "Machine alone, no limit missed" if criteria else "Machine alone, no limit judged"
-        start = decision or (undecided if pending else "No limits set")
+        beside = [words for name, words in numbers.items() if words and not (worst and worst.name == name)]
+        # A criterion that is told has a number of its own.
+        count = 1 if worst is not None and worst.passed is not None else 2
         flight = level_words("the flight", self.scale)
-        start += f" for a part of {flight}" if judged.whole is not None else f" for {flight}" if self.scale else ""
-        missed = judged.accounting.main is not None and judged.accounting.main.reason
-        return _shortened(start, intro, reason, known[:shown], "largest peak missed" if missed else "")
+        if judged.whole is not None:
+            decision += f" for a part of {flight}"
+        elif self.scale:
+            decision += f" for {flight}"
+        main_peak = judged.accounting.main
+        missed = "largest peak missed" if main_peak is not None and main_peak.reason else ""
+        return _shortened(decision, intro, reason, beside[:count], missed)
+
+    @property
+    def _decided(self) -> tuple[str, str, str, Criterion | None]:
+        """The decision, what introduces its reason, the reason, and the criterion that it is about."""
+        judged, criteria = self.judged, self.judged.criteria
+        if judged.decision == NOT_ACCEPTED:
+            missed = [criterion for criterion in criteria if criterion.passed is False]
+            worst = max(missed, key=lambda criterion: criterion.use)
+            unkept = [criterion for criterion in criteria if criterion.passed is not True]
+            return NOT_ACCEPTED, "" if len(unkept) == 1 else "worst of all: ", worst.brief, worst
+        if judged.decision == NOT_DECIDED:
+            unknown = next(criterion for criterion in criteria if criterion.passed is not True)
+            return NOT_DECIDED, "", f"{unknown.words} is not known ({unknown.limit_written})", unknown
+        if self.exceeded:
+            return NOT_ACCEPTED, "", f"the machine exceeds its limits, {self.exceeded}", None
+        if judged.not_judged:
+            if not criteria:
+                return "Machine alone, no limit judged", "", "", None
+            worst = max(criteria, key=lambda criterion: criterion.use)
+            return "Machine alone, no limit missed", "", worst.brief, worst
+        if not criteria:
+            return judged.decision or "No limits set", "", "", None
+        nearest = max(criteria, key=lambda criterion: criterion.use)
+        intro = "" if len(criteria) == 1 else "all limits are kept, the nearest: "
+        return judged.decision or "No limits set", intro, nearest.brief, nearest
 
     @property
     def findings(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import hashlib
 import math
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -113,7 +113,7 @@ def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
 
 
 def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress = None) -> Reproduction:
-    """Compute the responses of a file again."""
+    """Compute the responses of a file again, and compare them with the file."""
     from gbeam.analysis.environments import study
     from gbeam.io.netcdf import stored
 
@@ -124,15 +124,25 @@ def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress =
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         after = stored(answers)
     then, now = computed(before), computed(after)
-    if not any(name.startswith("motions/") for name in before.variables):  # one response alone
+    holds_a_study = any(name.startswith("motions/") for name in before.variables)
+    if not holds_a_study:
         (motion, *others) = facts_of(before).get("motions") or answers.responses
         if others:
             fix = "give the result.nc of all its motions"
             raise InputError(str(path), "holds one response, and does not say of which motion", fix)
-        place = f"motions/{motion}"
-        response = {name.removeprefix(place).lstrip("/"): each for name, each in now.items() if name.startswith(place)}
-        now = {name: each for name, each in now.items() if name in then} | response  # such as the study's notes
+        now = _of_one_motion(now, motion, then)
     return reproduction(os.fspath(path), then, now, origin, units_in(before))
+
+
+def _of_one_motion(study: Mapping[str, Any], motion: str, names: Collection[str]) -> dict[str, Any]:
+    """Variables of one motion of a study as a file of this response alone has them.
+
+    Variables of the whole study, such as its notes, stay if they are among the `names`.
+    """
+    place = f"motions/{motion}"
+    common = {name: value for name, value in study.items() if name in names}
+    response = {name.removeprefix(place).lstrip("/"): value for name, value in study.items() if name.startswith(place)}
+    return common | response
 
 
 def units_in(stored: Stored) -> Callable[[str], str]:
@@ -147,34 +157,41 @@ def reproduction(
     origin: Provenance,
     unit_of: Callable[[str], str],
 ) -> Reproduction:
-    """Compare variables of a file, by name, with those computed again; `unit_of` gives the unit of a name."""
+    """Compare variables of a file, by name, with those computed again; `unit_of` gives the unit of a name.
+
+    In another environment than that of the file, differences are allowed that rounding makes.
+    """
     assert origin.environment is not None
     changed = origin.environment.changes(present())
     names = [*then, *(name for name in now if name not in then)]
     scales = _scales(then, [name for name in then if name in now], unit_of) if changed else {}
 
     def scale_of(name: str) -> float:
-        share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
-        return 1.0 if share else scales.get(unit_of(name), 0.0)
+        """Size against which rounding of a variable is measured; zero in the same environment."""
+        is_share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
+        return 1.0 if is_share else scales.get(unit_of(name), 0.0)
 
     compared = [_difference(name, then.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names]
-    differences = sorted((each for each in compared if each and each.size), key=lambda each: -each.size)
-
-    def by_rounding(each: Difference) -> bool:
-        """True of times of peaks, of which equal ones change places, and of numbers in words, compared themselves."""
-        old, new = then.get(each.name), now.get(each.name)
-        if isinstance(old, str) and isinstance(new, str):
-            return _NUMBER.sub("", old) == _NUMBER.sub("", new)
-        return _WHEN.search(each.name) is not None and math.isfinite(each.size)
-
-    moved = [each for each in differences if changed and by_rounding(each)]
+    unequal = [difference for difference in compared if difference is not None]
+    differences = sorted((each for each in unequal if each.size), key=lambda difference: -difference.size)
+    moved = [each for each in differences if changed and _by_rounding(each, then.get(each.name), now.get(each.name))]
     return Reproduction(
         file=file,
         compared=len(names),
-        differences=tuple(each for each in differences if each not in moved),
-        rounded=len(moved) + sum(each is not None and not each.size for each in compared),
+        differences=tuple(difference for difference in differences if difference not in moved),
+        rounded=len(moved) + len(unequal) - len(differences),
         changed=changed,
     )
+
+
+def _by_rounding(difference: Difference, then: Any, now: Any) -> bool:
+    """True of times of peaks, of which equal ones change places, and of texts that differ in their numbers alone.
+
+    These numbers are compared as variables themselves.
+    """
+    if isinstance(then, str) and isinstance(now, str):
+        return _NUMBER.sub("", then) == _NUMBER.sub("", now)
+    return _WHEN.search(difference.name) is not None and math.isfinite(difference.size)
 
 
 def checked(file: str, origin: Provenance) -> None:
