@@ -229,11 +229,12 @@ class HubBeam:
         return self._tip() if done else (np.zeros(0), np.zeros(0))
 
     def solve_by_default(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times and the tip's displacement as of `solve`, by Exudyn's own settings: an end is all that is given."""
+        """Times and the tip's displacement as of `solve`, by Exudyn's own settings but the end and number of steps."""
         settings = exudyn.SimulationSettings()
         settings.timeIntegration.endTime = self.drive.end
+        settings.timeIntegration.numberOfSteps = self.setting.steps
         settings.solution.file.write = False
-        settings.solution.sensors.writePeriod = self.drive.end / settings.timeIntegration.numberOfSteps
+        settings.solution.sensors.writePeriod = self.drive.end / self.setting.steps
         self.system.SolveDynamic(settings)
         return self._tip()
 
