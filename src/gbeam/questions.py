@@ -260,13 +260,14 @@ def static(case: Case, motion: str | None = None, at: float | None = None, needs
     if all(body.work is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
         case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
-    moved = {name: prepared(case, name) for name in names}
+    bases = {name: prepared(case, name) for name in names}
 
-    def ask(case: Case) -> Any:
+    def rests_of(case: Case) -> tuple[Rest, ...]:
         structure = _subject(case, needs)
-        return tuple(static(structure, base, _time(case, name, at), name=name) for name, base in moved.items())
+        return tuple(static(structure, base, _time(case, name, at), name=name) for name, base in bases.items())
 
-    return sufficient(case, ask, lambda rests: [each.errors for each in rests])[1]
+    _, rests = sufficient(case, rests_of, lambda rests: [rest.errors for rest in rests])
+    return rests
 
 
 @question(

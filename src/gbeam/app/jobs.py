@@ -341,17 +341,23 @@ def _state(place: Path, otherwise: str) -> str:
 
 def _files(place: Path) -> dict[str, Path]:
     """Files of a run by the names under which they are downloaded; every verb's report is report.html."""
-    places = [(name, place / inside) for name, inside in DOWNLOADS]
-    fixed = {name: file for name, file in places if file.is_file() and file.stat().st_size}
+    files = {}
+    for name, inside in DOWNLOADS:
+        file = place / inside
+        if file.is_file() and file.stat().st_size:
+            files[name] = file
     before = place / _BEFORE / _SCENARIO
-    if before.is_file() and _SCENARIO in fixed:
-        changed = before.read_bytes() != fixed[_SCENARIO].read_bytes()
-        fixed |= {_SCENARIO: before} | ({"placed.toml": fixed[_SCENARIO]} if changed else {})
+    if before.is_file() and _SCENARIO in files:  # a verb may have changed the scenario
+        changed = files[_SCENARIO]
+        files[_SCENARIO] = before
+        if before.read_bytes() != changed.read_bytes():
+            files["placed.toml"] = changed
     out = place / "out"
     written = {name: out / name for name in names(out)}
-    report = next((file for name, file in written.items() if name.endswith(".html")), None)
-    files = fixed if report is None else fixed | {"report.html": report}
-    kinds = KINDS if report else (*KINDS, ".png")  # a report has the figures
+    reports = [file for name, file in written.items() if name.endswith(".html")]
+    if reports:
+        files["report.html"] = reports[0]
+    kinds = KINDS if reports else (*KINDS, ".png")  # a report has the figures
     return files | {name: file for name, file in written.items() if name.endswith(kinds)}
 
 

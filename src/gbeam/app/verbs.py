@@ -16,7 +16,7 @@ from gbeam.printable import unprintable
 from gbeam.scenario.values import find_distributions, parse_path, written_at
 
 if TYPE_CHECKING:
-    from cyclopts import ArgumentCollection
+    from cyclopts import Argument, ArgumentCollection
 
 INPUT = "input"  # folder, in that of a run, of its scenario and the files that are read
 PLAIN = 'give text such as "2 s" or "tip.z.max_abs"'
@@ -62,28 +62,35 @@ def verbs() -> dict[str, Verb]:
 
 
 def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
-    """Options of a verb by its arguments; the words of the help give the example, and say if it may be repeated."""
-    options = []
-    for argument in arguments:
-        name, *others = (each.removeprefix("--") for each in argument.names)
-        if name in _OF_THE_PAGE:
-            continue
-        words = str(argument.parameter.help)
-        quoted, default = re.search(r'"([^"]+)"', words), argument.field_info.default
-        if argument.hint is bool:
-            if default:  # the page offers its opposite
-                name, words = others[0], f"do not {words[0].lower()}{words[1:]}"
-            options.append(Option(name, words, ticked=f"--{name}"))
-        elif "Path" in str(argument.hint) and not argument.required:
-            options.append(Option(name, words, ticked=f"--{name}={_WRITTEN}"))
-        else:
-            many = 2 if _REPEATED.search(words) else 1
-            of = "record" if argument.hint is Path else "motion" if name == "motion" else ""
-            of = "values" if "PATH=" in words else of
-            example = quoted[1] if quoted else "" if default is None else str(default)
-            choices = argument.get_choices() or ()
-            options.append(Option(name, words, example=example, choices=choices, many=many, of=of))
-    return tuple(options)
+    """Options of a verb by its arguments, without those that the page has itself."""
+    named = {argument.names[0].removeprefix("--"): argument for argument in arguments}
+    return tuple(_option(name, argument) for name, argument in named.items() if name not in _OF_THE_PAGE)
+
+
+def _option(name: str, argument: Argument) -> Option:
+    """Option of a verb; the words of its help give the example, and say if it may be repeated."""
+    words, default = str(argument.parameter.help), argument.field_info.default
+    if argument.hint is bool:
+        if default:  # the page offers its opposite
+            opposite = argument.names[1].removeprefix("--")
+            return Option(opposite, f"do not {words[0].lower()}{words[1:]}", ticked=f"--{opposite}")
+        return Option(name, words, ticked=f"--{name}")
+    if "Path" in str(argument.hint) and not argument.required:
+        return Option(name, words, ticked=f"--{name}={_WRITTEN}")
+    if "PATH=" in words:
+        suggestions = "values"
+    elif argument.hint is Path:
+        suggestions = "record"
+    else:
+        suggestions = "motion" if name == "motion" else ""
+    quoted = re.search(r'"([^"]+)"', words)
+    if quoted:
+        example = quoted[1]
+    else:
+        example = "" if default is None else str(default)
+    choices = argument.get_choices() or ()
+    most = 2 if _REPEATED.search(words) else 1
+    return Option(name, words, example=example, choices=choices, many=most, of=suggestions)
 
 
 def offered() -> dict[str, Any]:

@@ -70,17 +70,21 @@ def __hash__(self: Any) -> int:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """True if two values are alike; NaN is like NaN, and what JAX traces only like itself."""
+    """True if two values are alike.
+
+    NaN is like NaN. A list, a tuple and an array of the same numbers are alike. What JAX traces is only like itself.
+    """
     if one is other:
         return True
-    listed = [isinstance(each, tuple | list) for each in (one, other)]
-    if any(listed):  # a list, a tuple and an array of the same numbers are alike
-        ordered = all(known or np.ndim(each) for known, each in zip(listed, (one, other), strict=True))
-        return ordered and len(one) == len(other) and all(map(_same, one, other))
+    if isinstance(one, (tuple, list)) or isinstance(other, (tuple, list)):
+        both_ordered = all(isinstance(value, (tuple, list)) or np.ndim(value) for value in (one, other))
+        return both_ordered and len(one) == len(other) and all(map(_same, one, other))
     if isinstance(one, dict):
-        return type(one) is type(other) and one.keys() == other.keys() and all(_same(one[k], other[k]) for k in one)
+        if type(one) is not type(other) or one.keys() != other.keys():
+            return False
+        return all(_same(one[key], other[key]) for key in one)
     if dataclasses.is_dataclass(one):
-        compared = [f.name for f in dataclasses.fields(one) if f.compare]
+        compared = [field.name for field in dataclasses.fields(one) if field.compare]
         return type(one) is type(other) and all(_same(getattr(one, name), getattr(other, name)) for name in compared)
     if is_traced(one, other):
         return False
@@ -121,13 +125,18 @@ def shown(value: Any) -> str:
     arguments = arguments_of(value)
     if arguments is None:
         return f"{type(value).__name__}(…)"
-    defaults = {name: each.default for name, each in inspect.signature(type(value)).parameters.items()}
+    parameters = inspect.signature(type(value)).parameters
+    defaults = {name: parameter.default for name, parameter in parameters.items()}
     for field in dataclasses.fields(value):
         if field.default_factory is not dataclasses.MISSING:
             defaults[field.name] = field.default_factory()
-    none = object()  # equals nothing
-    chosen = {name: each for name, each in arguments.items() if not _same(each, defaults.get(name, none))}
-    return f"{type(value).__name__}({', '.join(f'{name}={_short(each)}' for name, each in chosen.items())})"
+    unequal = object()  # to anything
+    words = [
+        f"{name}={_short(argument)}"
+        for name, argument in arguments.items()
+        if not _same(argument, defaults.get(name, unequal))
+    ]
+    return f"{type(value).__name__}({', '.join(words)})"
 
 
 def _short(value: Any) -> str:
@@ -140,13 +149,14 @@ def _short(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, (list, tuple)):
-        text = f"({', '.join(map(_short, value))}{',' if len(value) == 1 else ''})"
-        return text if len(text) <= _WIDEST else f"<{len(value)}>"
-    if isinstance(value, dict):
-        text = f"{{{', '.join(f'{key}: {_short(each)}' for key, each in value.items())}}}"
-        return text if len(text) <= _WIDEST else f"{{{', '.join(map(str, value))}}}"
-    text = repr(value)
-    return text if len(text) <= _WIDEST else f"{type(value).__name__}(…)"
+        comma = "," if len(value) == 1 else ""
+        text, shorter = f"({', '.join(map(_short, value))}{comma})", f"<{len(value)}>"
+    elif isinstance(value, dict):
+        entries = ", ".join(f"{key}: {_short(entry)}" for key, entry in value.items())
+        text, shorter = f"{{{entries}}}", f"{{{', '.join(map(str, value))}}}"
+    else:
+        text, shorter = repr(value), f"{type(value).__name__}(…)"
+    return text if len(text) <= _WIDEST else shorter
 
 
 def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:

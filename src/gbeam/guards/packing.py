@@ -55,18 +55,18 @@ class _Packing:
         if value is None or (isinstance(value, (str, int, float)) and not isinstance(value, np.generic)):
             return value
         if type(value) is list:
-            return [self.form(each) for each in value]
+            return [self.form(entry) for entry in value]
         if type(value) is tuple:
-            return {"tuple": [self.form(each) for each in value]}
+            return {"tuple": [self.form(entry) for entry in value]}
         if isinstance(value, dict):
-            return {"mapping": {str(key): self.form(each) for key, each in value.items()}}
-        if id(value) not in self._met:
-            self._met[id(value)] = self._form(value)
-            if "record" in (form := self._met[id(value)]):
-                self._met[id(value)] = {"again": self._records}
-                self._records += 1
-                return form
-        return self._met[id(value)]
+            return {"mapping": {str(key): self.form(entry) for key, entry in value.items()}}
+        if id(value) in self._met:
+            return self._met[id(value)]
+        form = self._met[id(value)] = self._form(value)
+        if "record" in form:  # a second time it is told by its number
+            self._met[id(value)] = {"again": self._records}
+            self._records += 1
+        return form
 
     def _form(self, value: Any) -> dict[str, Any]:
         if isinstance(value, (np.ndarray, np.generic)):

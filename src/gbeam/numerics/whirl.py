@@ -53,19 +53,23 @@ def whirl_of(places: Floats, slopes: Floats, rate: float, spin: Floats, accelera
     """Points on what turns with a `rate`, rad/s, at quarters of a turn or at one instant, on a base that turns with a
     `spin` (3,), rad/s, and accelerates, m/s²; None where neither turns. No frequency is known where both do.
     """
-    square, rate = float(spin @ spin), rate if rate > STILL else 0.0
-    if not (rate or square > STILL**2):
+    rate = rate if rate > STILL else 0.0
+    square = float(spin @ spin)
+    base_turns = square > STILL**2
+    if not (rate or base_turns):
         return None
-    places, slopes = (np.broadcast_to(each, (4, *each.shape[1:])) for each in (places, slopes))
-    if square <= STILL**2:
+    places, slopes = (np.broadcast_to(history, (4, *history.shape[1:])) for history in (places, slopes))
+    if not base_turns:
         return Whirl(rate, places, slopes)
-    across = acceleration - (acceleration @ spin) * spin / square  # of the base, which may be off the axis
+    # The base's axis passes through the point whose acceleration across it is zero.
+    across = acceleration - (acceleration @ spin) * spin / square
+    centre = across / square
     x, y, z = spin / np.sqrt(square)
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     turns = np.array([np.eye(3) + np.sin(t) * skew + (1 - np.cos(t)) * skew @ skew for t in QUARTERS])
     vectors = slopes.reshape(4, places.shape[1], -1, 3, slopes.shape[-1])
     return Whirl(
         math.nan if rate else math.sqrt(square),
-        np.einsum("qab,qpb->qpa", turns, places - across / square),
+        np.einsum("qab,qpb->qpa", turns, places - centre),
         np.einsum("qab,qpmbn->qpman", turns, vectors).reshape(slopes.shape),
     )

@@ -146,13 +146,14 @@ class RecordSummary(Part):
 
     @property
     def offsets_of_columns(self) -> list[tuple[str, str, list[str]]]:
-        """Axis, unit, and the offset in each stretch in words, of every column."""
+        """Axis, unit, and the offset in each stretch in words, of every column that the file has."""
+        by_stretch = [(*stretch.load, *(stretch.rates or ())) for stretch in self.offsets]
         rows = []
-        values = [(*each.load, *(each.rates or ())) for each in self.offsets]
-        for (axis, column), off in zip(self.channels.items(), zip(*values, strict=True), strict=True):
+        for k, (axis, column) in enumerate(self.channels.items()):
+            if column == "0":
+                continue
             size, unit = (STANDARD_GRAVITY, "g") if axis in "xyz" else (math.pi / 180, "deg/s")
-            if column != "0":
-                rows.append((axis, unit, [f"{each / size:.4g}" for each in off]))
+            rows.append((axis, unit, [f"{offsets[k] / size:.4g}" for offsets in by_stretch]))
         return rows
 
     def scaled(self, scale: float) -> RecordSummary:

@@ -236,19 +236,11 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         InputError
             If there is no such signal.
         """
-
-        def places(chosen: Sequence[str] | None, signals: tuple[Signal, ...], argument: str) -> list[int]:
-            names = [each.name for each in signals]
-            for name in chosen or ():
-                if name not in names:
-                    raise InputError(argument, f"has no {name!r}", f"choose from {', '.join(names)}")
-            return list(range(len(names))) if chosen is None else [names.index(name) for name in chosen]
-
-        ins, outs = places(inputs, self.inputs, "inputs"), places(outputs, self.outputs, "outputs")
+        ins, outs = _indices("inputs", inputs, self.inputs), _indices("outputs", outputs, self.outputs)
         gains = np.ix_(outs, ins)
-        left_out = self.truncation
-        if left_out is not None:
-            left_out = replace(left_out, error=left_out.error[gains], gain=left_out.gain[gains])
+        truncation = self.truncation
+        if truncation is not None:
+            truncation = replace(truncation, error=truncation.error[gains], gain=truncation.gain[gains])
         return replace(
             self,
             b=self.b[:, ins],
@@ -258,7 +250,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
             outputs=tuple(self.outputs[k] for k in outs),
             input=self.input[ins],
             output=self.output[outs],
-            truncation=left_out,
+            truncation=truncation,
         )
 
     def to_scipy(self) -> Any:
@@ -337,6 +329,17 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
                 f"{100 * share:.2g} % of the largest gain up to {self.truncation.end:.4g} Hz"
             )
         return self._with_warnings(f"StateSpace{model}{motion}", *lines)
+
+
+def _indices(argument: str, names: Sequence[str] | None, signals: Sequence[Signal]) -> list[int]:
+    """Indices of named signals, of all without names; InputError, at an argument, for an unknown name."""
+    if names is None:
+        return list(range(len(signals)))
+    known = [signal.name for signal in signals]
+    for name in names:
+        if name not in known:
+            raise InputError(argument, f"has no {name!r}", f"choose from {', '.join(known)}")
+    return [known.index(name) for name in names]
 
 
 def slowest_first(poles: Complex) -> Indices:

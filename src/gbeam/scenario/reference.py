@@ -144,13 +144,14 @@ class _Page:
 
     def _quantity(self, schema: dict[str, Any], of: str) -> str:
         """Name of a quantity with its unit, sign and the words accepted instead of it."""
-        name, (number, _, *others) = schema["x-quantity"], schema["anyOf"]
-        sign = ", positive" if "exclusiveMinimum" in number else ", 0 or more" if "minimum" in number else ""
-        words = "".join(
-            f', or `"{each["const"]}"`' if "const" in each else f", or {each['description']}" for each in others
-        )
+        name, (number, _, *accepted) = schema["x-quantity"], schema["anyOf"]
+        words = "".join(f", or {_accepted(text)}" for text in accepted)
         if of and name == of:
-            return "the quantity" + words
+            return f"the quantity{words}"
+        if "exclusiveMinimum" in number:
+            sign = ", positive"
+        else:
+            sign = ", 0 or more" if "minimum" in number else ""
         if of and name == self._rate_of(of):
             return f"its rate of change{sign}{words}"
         unit = f" in {KINDS[name].unit}" if KINDS[name].unit else ""
@@ -171,6 +172,11 @@ class _Page:
         """Name of a quantity's rate of change, by the schema of a trapezoid's ``jerk``."""
         trapezoid = self.tables[f"Trapezoid{_OF}{quantity.replace(' ', '-')}"]
         return str(trapezoid["properties"]["jerk"]["x-quantity"])
+
+
+def _accepted(text: dict[str, Any]) -> str:
+    """A text that is accepted in place of a quantity: itself, or what it is."""
+    return f'`"{text["const"]}"`' if "const" in text else str(text["description"])
 
 
 def tag_of(table: dict[str, Any]) -> tuple[str, str]:

@@ -177,12 +177,16 @@ def _is_distribution(node: Any) -> bool:
 def from_table(name: str, numbers: Any) -> Distribution:
     """Read a distribution from a table ``{ name = numbers }``, of any types."""
     family = FAMILIES.get(name)
-    plain = isinstance(numbers, list) and all(
-        isinstance(each, (str, int, float)) and not isinstance(each, bool) for each in numbers
-    )
-    if not plain and family is not None:
+    if family is not None and not _are_numbers(numbers):
         raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_named(family)}] }}")
-    return read_distribution(name, [each if isinstance(each, str) else repr(each) for each in numbers])
+    return read_distribution(name, [number if isinstance(number, str) else repr(number) for number in numbers])
+
+
+def _are_numbers(numbers: Any) -> bool:
+    """True for a list of numbers and texts."""
+    if not isinstance(numbers, list):
+        return False
+    return all(isinstance(number, (str, int, float)) and not isinstance(number, bool) for number in numbers)
 
 
 def quantities(parts: Sequence[str]) -> tuple[list[float], str]:

@@ -166,9 +166,10 @@ class Arm(_Held):
         return self
 
     def _problems(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
+        """Errors of an arm without directions or loads, or without keys that every direction needs."""
         if self.load is None and not self.directions:
-            asked = self._asked("directions")
-            yield ((), wrong("directions are missing", asked, mark="key")) if asked else _UNDIRECTED
+            advice = self._asked("directions")
+            yield ((), wrong("directions are missing", advice, mark="key")) if advice else _UNDIRECTED
         unloaded = [name for name, keys in self.motions.items() if name and keys["load"] is None]
         if unloaded:
             hint = self._asked("directions") or 'add load = "+x" to each'
@@ -176,12 +177,12 @@ class Arm(_Held):
         if self.load is not None and self.directions:
             yield ("load",), wrong("is given beside directions", "keep load or directions, not both", mark="key")
         for key, example in _NEEDED.items():
-            lacking = [name for name, keys in self.motions.items() if not {key, *_OR.get(key, ())} & keys.keys()]
-            of = f" in the directions {', '.join(lacking)}" if 0 < len(lacking) < len(self.motions) else ""
+            either = (key, *_OR.get(key, ()))
+            lacking = [name for name, keys in self.motions.items() if not {*either} & keys.keys()]
             if lacking:
-                either = " or ".join((key, *_OR.get(key, ())))
+                directions = f" in the directions {', '.join(lacking)}" if len(lacking) < len(self.motions) else ""
                 hint = self._asked(key) or f"add {key} = {example}"
-                yield (), wrong(f"{either} is missing{of}", hint, mark="key")
+                yield (), wrong(f"{' or '.join(either)} is missing{directions}", hint, mark="key")
 
     def _asked(self, key: str) -> str:
         """Words that ask for a key that the preset's standard fixes; empty where it does not."""

@@ -111,10 +111,10 @@ def _line(
     ] = None,
 ) -> _Line:
     """The line along which a beam lies at rest: by points, by pieces, or straight with a twist at stations."""
-    places = {"points": points, "pieces": pieces, "stations": stations}
-    ways = [name for name, value in places.items() if value is not None]
-    if len(ways) != 1:
-        problem = f"{ways[1]} is given beside {ways[0]}" if ways else "the line is missing"
+    ways = {"points": points, "pieces": pieces, "stations": stations}
+    way, *others = [name for name, value in ways.items() if value is not None] or [""]
+    if not way or others:
+        problem = f"{others[0]} is given beside {way}" if others else "the line is missing"
         raise InputError("", problem, "give one of points, pieces and stations")
     of_file = isinstance(points, str)
     if length_unit is not None and not of_file:
@@ -122,19 +122,18 @@ def _line(
     if pieces is not None:
         if twist is not None:
             raise InputError("twist", "is given beside pieces", "give each piece its own twist")
-        lengths, *turns = zip(*((p.length, p.twist, p.turn_y, p.turn_z) for p in pieces), strict=True)
-        return _Line.of_pieces(lengths, **dict(zip(("twist", "turn_y", "turn_z"), turns, strict=True)))
+        lengths = [piece.length for piece in pieces]
+        turns = {name: [getattr(piece, name) for piece in pieces] for name in ("twist", "turn_y", "turn_z")}
+        return _Line.of_pieces(lengths, **turns)
     if of_file:
         with placing_within("points"):
             return read_line(points, length_unit, twist, smooth)
-    listed = points if stations is None else [(x, 0.0, 0.0) for x in stations]
     if stations is not None and twist is None:
         raise InputError("", "twist is missing beside stations", 'add twist = ["0 deg", "10 deg"]')
-    if twist is not None and len(twist) != len(listed):
-        raise InputError(
-            "twist", f"has {len(twist)} values for {len(listed)} {ways[0]}", f"give one for each of the {ways[0]}"
-        )
-    return _Line.of_points(listed, twist or 0.0, smooth=smooth and stations is None)
+    places = points if stations is None else [(x, 0.0, 0.0) for x in stations]
+    if twist is not None and len(twist) != len(places):
+        raise InputError("twist", f"has {len(twist)} values for {len(places)} {way}", f"give one for each of the {way}")
+    return _Line.of_points(places, twist or 0.0, smooth=smooth and stations is None)
 
 
 _Places = Annotated[

@@ -75,6 +75,23 @@ def _optional(of: Any, description: str) -> tuple[Any, Any]:
 
 def _joint(name: str, kind: Kind) -> Any:
     """Table of a kind of joint; values are written plainly for one coordinate, in tables by name for several."""
+    fields = _placed(name, kind)
+    for key, (type_of, words) in _ABOUT.items():
+        coordinates = kind.names_in(key)
+        by_coordinate = {each: _optional(type_of(kind_of_value(key, each)), words) for each in coordinates}
+        if len(coordinates) == 1:
+            fields[key] = by_coordinate[coordinates[0]]
+        elif coordinates:
+            about = f"{words[0].upper()}{words[1:]}, by coordinate."
+            table = _table(Coordinates, _title(name, key), about, by_coordinate)
+            fields[key] = _optional(table, f"{words}: {{ {', '.join(coordinates)} }}")
+    if len(kind.value_names) > 1:
+        fields["coupling"] = _coupling(name, kind)
+    return _table(Table, name.title(), f"{kind.words[0].upper()}{kind.words[1:]}.", fields)
+
+
+def _placed(name: str, kind: Kind) -> dict[str, Any]:
+    """Keys of a kind of joint that say between which bodies it is, and where."""
     hung = 'what it hangs on: "ground", or a point of a body, such as "bus.left"; "bus.root" is its root'
     turn = "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]"
     fields: dict[str, Any] = {
@@ -85,31 +102,29 @@ def _joint(name: str, kind: Kind) -> Any:
     if kind.axes:
         vectors = ", ".join(["[x, y, z]"] * kind.axes)
         second = ", the second as it stands at a first angle of zero" if kind.axes > 1 else ""
-        listed = Annotated[tuple[Direction, ...], Field(min_length=kind.axes, max_length=kind.axes)]
-        fields["axes"] = (listed, Field(description=f"directions in axes of the point{second}: [{vectors}]"))
+        directions = Annotated[tuple[Direction, ...], Field(min_length=kind.axes, max_length=kind.axes)]
+        fields["axes"] = (directions, Field(description=f"directions in axes of the point{second}: [{vectors}]"))
     fields["at"] = (Place3, Field(default=(0.0, 0.0, 0.0), description="place of the joint from the point: [x, y, z]"))
     fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=turn))
-    for key, (type_of, words) in _ABOUT.items():
-        names = kind.names_in(key)
-        within = {coordinate: _optional(type_of(kind_of_value(key, coordinate)), words) for coordinate in names}
-        if len(names) == 1:
-            fields[key] = within[names[0]]
-        elif names:
-            title = f"{name}_{key}".title().replace("_", "")
-            table = _table(Coordinates, title, f"{words[0].upper()}{words[1:]}, by coordinate.", within)
-            fields[key] = _optional(table, f"{words}: {{ {', '.join(names)} }}")
-    if len(kind.value_names) > 1:
-        words = "stiffness between two coordinates"
-        within = {
-            f"{one}_{two}": (Annotated[float, Quantity(COUPLINGS[(one in SLIDES) + (two in SLIDES)])] | None,
-                             optional(words, alias=f"{one}-{two}"))
-            for one, two in combinations(kind.value_names, 2)
-        }  # fmt: skip
-        title = f"{name}_coupling".title().replace("_", "")
-        table = _table(Coordinates, title, "Coupling, by two coordinates.", within)
-        first = "-".join(kind.value_names[:2])
-        fields["coupling"] = _optional(table, f"{words} that have springs, by both names: {{ {first}, ... }}")
-    return _table(Table, name.title(), f"{kind.words[0].upper()}{kind.words[1:]}.", fields)
+    return fields
+
+
+def _coupling(name: str, kind: Kind) -> tuple[Any, Any]:
+    """Key of stiffnesses between two coordinates of a kind of joint, by both names."""
+    words = "stiffness between two coordinates"
+    fields = {}
+    for one, two in combinations(kind.value_names, 2):
+        slides = (one in SLIDES) + (two in SLIDES)
+        number = Annotated[float, Quantity(COUPLINGS[slides])] | None
+        fields[f"{one}_{two}"] = (number, optional(words, alias=f"{one}-{two}"))
+    table = _table(Coordinates, _title(name, "coupling"), "Coupling, by two coordinates.", fields)
+    first = "-".join(kind.value_names[:2])
+    return _optional(table, f"{words} that have springs, by both names: {{ {first}, ... }}")
+
+
+def _title(joint: str, key: str) -> str:
+    """Name of the table of a key of a joint, such as RevoluteStiffness."""
+    return f"{joint}_{key}".title().replace("_", "")
 
 
 _JOINTS = [_joint(name, kind) for name, kind in KINDS.items()]
