@@ -45,11 +45,11 @@ def test_one_state_serves_all_steps_until_corrections_shrink_slowly() -> None:
     built.residual = spring
     built.extend(30)
     built.renew(stages(soft))
-    built.correct(np.full(30, 0.5), np.zeros(30, dtype=bool), fast=False)
+    built.grow_old(np.full(30, 0.5), np.zeros(30, dtype=bool), fast=False)
     built.renew(stages(soft))
     assert spring.derived == [1] and built.single and built.even and built.trusted.all()
     slow = np.arange(30) == 20
-    built.correct(np.full(30, 0.1), slow, fast=False)
+    built.grow_old(np.full(30, 0.1), slow, fast=False)
     built.renew(stages(soft))
     assert built.spacing == APART and len(built.slope) == 30 and spring.derived == [1, 3]
     assert built.fresh.tolist() == [False] * 20 + [True] * 10 and not built.trusted.any()
@@ -61,11 +61,11 @@ def test_derivatives_come_closer_where_corrections_shrink_slowly_and_go_apart_wh
     built.extend(2)
     spacings = []
     for slow in (True, True, True, False, False):
-        built.correct(np.zeros(2), np.array([slow, False]), fast=True)
+        built.grow_old(np.zeros(2), np.array([slow, False]), fast=True)
         spacings.append(built.spacing)
     assert spacings == [APART, NEAR, NEAR, NEAR + 1, NEAR + 2]
     for _ in range(FAR):
-        built.correct(np.zeros(2), np.zeros(2, dtype=bool), fast=True)
+        built.grow_old(np.zeros(2), np.zeros(2, dtype=bool), fast=True)
     assert built.even
 
 

@@ -68,7 +68,7 @@ def test_accelerations_are_related_to_those_before() -> None:
 def test_steps_that_leave_bound_the_rounding_of_those_that_follow() -> None:
     built = Verdict()
     built.extend(3)
-    built.feel(np.array([1.0, 5.0, 1e12]))
+    built.set_rounding(np.array([1.0, 5.0, 1e12]))
     built.leave(2)
     assert built.bound == pytest.approx(50 * CANCELLED) and built.corrections.shape == (5, 1)
     built.record(np.array([1e-6]), np.ones((1, 1, 1)))

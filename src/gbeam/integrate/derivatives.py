@@ -79,7 +79,9 @@ class Derivatives:
         return (alone & self.fresh) | (self.single and (self.slope == self.reached).all())
 
     def extend(self, added: int) -> None:
-        """Append steps with the derivatives of the last one, or let those of one stage serve all."""
+        """Append steps with the derivatives of the last one. Where all have those of one stage, they serve the new
+        ones, too.
+        """
         count = len(self.age)
         if not count and self.even:
             self.slope = None
@@ -99,25 +101,27 @@ class Derivatives:
         self._keep(slice(count, None))
 
     def _keep(self, kept: slice) -> None:
-        """Reduce to a slice of the steps; if it is empty, the last derivatives serve the steps that follow."""
+        """Keep a slice of the steps. If it is empty, the last derivatives serve the steps that follow."""
         count, self.age = len(self.age), self.age[kept]
         if len(self.slope) == count > 1:
             self.slope = self.slope[kept] if len(self.age) else self.slope[-1:, -1:]
         self.maps = self._maps_of(kept)
 
-    def correct(self, moved: Array, slow: Flags, *, fast: bool) -> None:
-        """Let derivatives grow old by corrections (t,), shares of the accelerations: at once where these shrink slowly,
-        and then find them closer to one another; farther where all shrink fast.
+    def grow_old(self, shares: Array, slow: Flags, *, fast: bool) -> None:
+        """Add the last corrections (t,), as shares of the accelerations, to the age of the derivatives.
+
+        Where corrections shrink slowly, the derivatives are old at once, and the next ones are computed closer to one
+        another; where all shrink fast, farther apart.
         """
-        self.age = np.where(slow, np.inf, self.age + moved)
+        self.age = np.where(slow, np.inf, self.age + shares)
         if slow.any():
             self.spacing = APART if self.even else max(self.spacing // 2, NEAR)
         elif fast:
             self.spacing += 1
 
     def renew(self, stages: Stages) -> None:
-        """Find K, C and M anew from the first step on whose derivatives are old, at some stages, and interpolate; where
-        there are none yet, find them at the first stage alone.
+        """Compute K, C and M again from the first step whose derivatives are old to the last: at some of the stages,
+        and interpolated between these. Without any yet, compute them at the first stage alone.
         """
         count = len(self.age)
         per_step, n = len(stages.times) // count, stages.states.shape[-1]
@@ -126,53 +130,67 @@ class Derivatives:
             return slopes(self.residual, *state).swapaxes(0, 1)
 
         if self.slope is None:
-            self.slope = self._between(function, stages, None)[:, None]
+            self.slope = self._interpolate(function, stages, None)[:, None]
             self.reached = self.slope[0, 0]
-        stale = ~(self.age < np.inf if self.even and count > 1 else self.age <= (STALE if count > 1 else STALE_ALONE))
-        if not stale.any():
+        if count == 1:
+            valid = self.age <= STALE_ALONE
+        elif self.even:
+            valid = self.age < np.inf
+        else:
+            valid = self.age <= STALE
+        if valid.all():
             return
-        first = int(np.argmax(stale))
-        renewed = self._between(function, stages, first).reshape(-1, per_step, 3, n, n)
+        first = int(np.argmin(valid))
+        renewed = self._interpolate(function, stages, first).reshape(-1, per_step, 3, n, n)
         self.slope = np.concatenate([np.broadcast_to(self.slope, (count, *renewed.shape[1:]))[:first], renewed])
         self.age[first:], self.maps = 0.0, self._maps_of(slice(first))
 
     def factor(self, stages: Stages, tableau: Tableau, held: Held | None) -> None:
-        """Complete `maps` by those of steps that have none or new derivatives; `held` commands learn what they move."""
+        """Compute the maps of steps that have none, or whose derivatives are new. The commands `held` by controllers
+        receive what they change.
+        """
         (*_, per_step, m), count, n = tableau.w_q.shape, len(self.age), stages.states.shape[-1]
         done = 0 if self.maps is None else len(self.maps[0])
         if done in (1, count):
             return
         t = tableau if len(tableau.d) == 1 else each_leaf(lambda leaf: leaf[done:], tableau)
-        jacobian, by_state = t.jacobians(*np.moveaxis(self.slope if self.single else self.slope[done:], 2, 0))
+        slope = self.slope if self.single else self.slope[done:]
+        jacobian, by_state = t.jacobians(*np.moveaxis(slope, 2, 0))
+        # One solution of the linear systems gives J⁻¹ and J⁻¹ L.
         size = per_step * n
         unit = np.broadcast_to(np.eye(size), jacobian.shape)
         inverse, answer = np.split(solved(jacobian, np.concatenate([unit, by_state], axis=-1)), [size], axis=-1)
-        step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         if held is not None:
-            held.push(inverse, t, self._between(held.sampling.onto, stages, 0))
+            held.push(inverse, t, self._interpolate(held.sampling.onto, stages, 0))
+        # S = g − d J⁻¹ L
+        step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         by_stages = t.d @ answer.reshape(-1, per_step, n * m * n)
         maps = inverse, answer, step - by_stages.reshape(-1, m * n, m * n)
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
     def forces(self, states: Array) -> Array:
-        """Sizes (t, s n) of the forces that cancel at stages, |K| |q| + |C| |q̇| + |M| |q̈|, derived where it began."""
+        """Sizes (t, s n) of the forces that cancel at the stages, |K| |q| + |C| |q̇| + |M| |q̈|, by K, C and M where
+        the window began.
+        """
         sizes: Array = np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)
         return sizes.sum(axis=0).T.reshape(len(self.age), -1)
 
     def accelerations(self, forces: Array) -> Array:
-        """Largest accelerations (t,) that forces (t, s n) may make."""
+        """Upper bounds (t,) of the accelerations that forces of sizes (t, s n) make."""
         return np.abs(products(np.abs(self.maps[0]), forces)).max(axis=1)
 
-    def _between(self, function: Any, stages: Stages, first: int | None) -> Array:
-        """Values (t s, ...) of a function of states and inputs at all stages from step `first` on, interpolated between
-        some; at the first stage of the window alone where `first` is None.
+    def _interpolate(self, function: Any, stages: Stages, first: int | None) -> Array:
+        """Values (t s, ...) of a function of states and inputs at all stages from step `first` on.
+
+        The function is evaluated at some of the stages, and interpolated at the others. Where `first` is None, the
+        result is the value at the window's first stage alone.
         """
         steps = len(self.age)
         per_step = len(stages.times) // steps
         begin, count = (0, 1) if first is None else (per_step * first, per_step * (steps - first))
         size = 1 + math.ceil((count - 1) / (1 if steps == 1 else self.spacing))
         chosen = begin + np.linspace(0, count - 1, size).round().astype(int)
-        if first is not None:  # of the first step all, so that it converges as by Newton's method
+        if first is not None:  # all stages of the first step, so that it converges as by Newton's method
             chosen = np.union1d(chosen, begin + np.arange(per_step))
         values = function(*stages.states[:, chosen], each_leaf(lambda leaf: leaf[chosen], stages.inputs))
         if len(chosen) == 1:
@@ -180,10 +198,12 @@ class Derivatives:
         return interpolated(stages.times[chosen], values, stages.times[begin : begin + count])
 
     def _maps_of(self, kept: slice) -> Any:
-        """Maps of a slice of the steps, to be kept; None where they are found anew: one for all, or by controllers."""
+        """Maps of a slice of the steps; None where they have to be computed again, as one of all steps or with
+        controllers in the loop.
+        """
         if self.maps is None or self.sampling is not None:
             return None
-        maps = tuple(each[kept] for each in self.maps)
+        maps = tuple(by_step[kept] for by_step in self.maps)
         return maps if len(maps[0]) > 1 else None
 
 
@@ -192,15 +212,18 @@ def products(matrices: Array, vectors: Array) -> Array:
     return vectors @ matrices[0].T if len(matrices) == 1 else (matrices @ vectors[..., None])[..., 0]
 
 
-def interpolated(at: Array, values: Array, points: Array) -> Array:
-    """Values (p, ...) at times `points` (p,), by polynomials through the nearest of values (k, ...) at times (k,)."""
-    size = min(NEAREST, len(at))
-    first: Array = np.clip(np.searchsorted(at, points) - size // 2, 0, len(at) - size)
+def interpolated(times: Array, values: Array, points: Array) -> Array:
+    """Interpolate values (k, ...) at ascending `times` (k,) at the times `points` (p,).
+
+    The result (p, ...) is that of Lagrange's polynomials through the `NEAREST` values about each point.
+    """
+    size = min(NEAREST, len(times))
+    first: Array = np.clip(np.searchsorted(times, points) - size // 2, 0, len(times) - size)
     index = first[:, None] + np.arange(size)
-    near, diagonal = at[index], np.eye(size, dtype=bool)
-    numerator = np.where(diagonal, 1.0, points[:, None, None] - near[:, None, :])
-    denominator = np.where(diagonal, 1.0, near[:, :, None] - near[:, None, :])
+    nodes, diagonal = times[index], np.eye(size, dtype=bool)
+    numerator = np.where(diagonal, 1.0, points[:, None, None] - nodes[:, None, :])
+    denominator = np.where(diagonal, 1.0, nodes[:, :, None] - nodes[:, None, :])
     weight = (numerator / denominator).prod(axis=-1)
-    weights = np.zeros((len(points), len(at)))
+    weights = np.zeros((len(points), len(times)))
     np.put_along_axis(weights, index, weight, axis=1)
-    return (weights @ values.reshape(len(at), -1)).reshape(len(points), *values.shape[1:])
+    return (weights @ values.reshape(len(times), -1)).reshape(len(points), *values.shape[1:])

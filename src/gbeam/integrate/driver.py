@@ -34,8 +34,10 @@ def integrate(
     stop: Callable[[Floats], int | None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Integrate `count` steps from q, qd (n,), split at `corners`. `stop` maps q (k, n) of a chunk of steps to the
-    number after which to end, or None. A failed step ends the trajectory, or leaves NaN where JAX traces the equations.
+    """Integrate `count` steps of length `step` from q, qd (n,), split at `corners`.
+
+    `stop` maps q (k, n) of a chunk of steps to the number of steps after which to end, or None. A failed step ends the
+    trajectory; where JAX traces the equations, it leaves NaN.
     """
     steps = fitted(start, step, count, None if corners is None else corners.felt_by(scheme))
     return through(equations, scheme, q, qd, steps, stop=stop, progress=progress)
@@ -78,12 +80,13 @@ def through(
         if stopped or not converged:
             break
     q, qd, *qdd = (namespace(parts[0]).concatenate(parts) for parts in zip(*pieces, strict=True))
-    known = qdd[0] if qdd else Demanded(equations, steps, q, qd, samples)
+    known = qdd[0] if qdd else Demanded(equations, steps, q, qd, samples)  # q̈, or how to compute it
     trajectory = Trajectory(time[: len(q)], q, qd, known, converged, stopped, samples)
     return replace(trajectory, stopped=stopped or trajectory.failure is not None)
 
 
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
+    """Pieces of a run of linear equations: first the initial state, then the kept steps of each chunk."""
     z, state = linear.start(equations, scheme, steps, q, qd)
     size = len(steps) if is_jax(state[-1]) else _LINEAR_CHUNK
     fit = added(equations, scheme, steps.longest)
@@ -96,7 +99,7 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
 def _nonlinear(
     equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps
 ) -> tuple[Iterator[Piece], Any]:
-    """Pieces of a run, and the samples of its controllers, if any, which are taken as it goes on."""
+    """Pieces of a run of nonlinear equations, and the samples of its controllers or None, which are taken meanwhile."""
     controlled = equations.controllers is not None and equations.controllers.traced
     if controlled or holds_tracer(equations.residual, q, qd, equations.drive(steps.first[:1])):
         from gbeam.integrate.traced import traced
@@ -104,6 +107,8 @@ def _nonlinear(
         run, loop = traced(equations, scheme, q, qd, steps)
         solved = np.ones(1 + np.count_nonzero(steps.kept), dtype=bool)
         first = (*(history[:1] for history in run), solved[:1])
-        return iter([first, (*(history[1:][steps.kept] for history in run), solved[1:])]), loop
-    samples, (q, qd) = sampling_of(equations, steps), (np.asarray(x, dtype=float) for x in (q, qd))
+        following = (*(history[1:][steps.kept] for history in run), solved[1:])
+        return iter([first, following]), loop
+    samples = sampling_of(equations, steps)
+    q, qd = np.asarray(q, dtype=float), np.asarray(qd, dtype=float)
     return windows(equations, scheme, q, qd, steps, samples), samples

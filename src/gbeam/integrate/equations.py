@@ -35,13 +35,14 @@ class LinearTerms:
         return self.velocity, self.stiffness, self.force
 
     def at(self, features: Array) -> tuple[Array, Array, Array]:
-        """C, K (..., n, n) and F (..., n) at features (..., k); where there are fewer than terms, the last are zero."""
+        """C, K (..., n, n) and F (..., n) at features (..., k). Features that are missing at the end count as zero."""
         xp, count = namespace(features, self.force), features.shape[-1]
-        flat = (features @ xp.reshape(terms[:count], (count, -1)) for terms in self.each)
-        velocity, stiffness, force = (
-            xp.reshape(sums, (*sums.shape[:-1], *terms.shape[1:])) for sums, terms in zip(flat, self.each, strict=True)
-        )
-        return velocity, stiffness, force
+
+        def combined(terms: Array) -> Array:
+            sums = features @ xp.reshape(terms[:count], (count, -1))
+            return xp.reshape(sums, (*sums.shape[:-1], *terms.shape[1:]))
+
+        return combined(self.velocity), combined(self.stiffness), combined(self.force)
 
     @property
     def nonzero(self) -> tuple[Array, Array, Array]:
@@ -64,7 +65,7 @@ class LinearEquations:
     rest: tuple[Array, Array] | None = None
 
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
-        """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""
+        """Accelerations q̈ (t, n) that satisfy the equations at q, q̇ (t, n) and inputs (t, ...)."""
         pieces = []
         for q_piece, qd_piece, inputs_piece in _pieces(q.shape[1], q, qd, inputs):
             c, k, f = self.matrices(inputs_piece)
@@ -86,7 +87,7 @@ class NonlinearEquations:
     idle: Any = None
 
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
-        """q̈ (t, n) demanded at q, q̇ (t, n) and inputs (t, ...)."""
+        """Accelerations q̈ (t, n) that satisfy the equations at q, q̇ (t, n) and inputs (t, ...)."""
         return accelerations(exact(self.residual), q, qd, inputs)
 
 
@@ -156,19 +157,22 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array
 
 
 def expanded(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array]:
-    """Values (t, r) of a function, and its derivatives as of :func:`slopes`, which are evaluated together."""
+    """Values (t, r) of a function and its derivatives, as :func:`slopes` gives them, from the same evaluations.
+
+    Each coordinate of q, q̇ and q̈ takes a complex step of its own: Im f(x + i h) / h is the derivative.
+    """
     n, pieces = q.shape[1], []
     steps = 1j * STEP * np.eye(3 * n).reshape(3 * n, 1, 3, n)
     for *state, inputs_piece in _pieces(n**2, q, qd, qdd, inputs):
-        values = residual(*(value + steps[:, :, k] for k, value in enumerate(state)), inputs_piece)
-        pieces.append(values)
+        stepped_state = (values + steps[:, :, k] for k, values in enumerate(state))
+        pieces.append(residual(*stepped_state, inputs_piece))
     every = np.concatenate(pieces, axis=1)
     value = every[0].real if n else residual(q, qd, qdd, inputs)
     return value, (every.imag / STEP).reshape(3, n, len(q), every.shape[-1]).transpose(0, 2, 3, 1)
 
 
 def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
-    """M (t, n, n) of equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...), as :func:`slopes` gives it."""
+    """Mass matrices M (t, n, n) of equations linear in q̈, at q, q̇ (t, n) and inputs (t, ...)."""
     count, n = q.shape
     if not n:  # all motion is prescribed
         return np.zeros((count, 0, 0))
@@ -177,12 +181,16 @@ def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
 
 
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
-    """q̈ (t, n) that equations linear in q̈ demand at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular."""
+    """q̈ (t, n) that satisfies equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular.
+
+    The residual without acceleration is the force, and one of a huge unit acceleration is a column of M.
+    """
     pieces, n = [], q.shape[1]
     units = HUGE * np.eye(n + 1, n, k=-1)[:, None]  # no acceleration, and one of each coordinate alone
     for q_piece, qd_piece, inputs_piece in _pieces(n, q, qd, inputs):
         forces = residual(q_piece, qd_piece, np.broadcast_to(units, (n + 1, *q_piece.shape)), inputs_piece)
-        pieces.append(solved(forces[1:].transpose(1, 2, 0) / HUGE, -forces[0][..., None])[..., 0])
+        mass = forces[1:].transpose(1, 2, 0) / HUGE
+        pieces.append(solved(mass, -forces[0][..., None])[..., 0])
     return np.concatenate(pieces)
 
 
@@ -192,6 +200,7 @@ class Demanded:
     """
 
     def __init__(self, equations: Any, steps: Any, q: Any, qd: Any, samples: Any = None) -> None:
+        """Prepare the inputs. Commands act in the step that ends at a time, and none acts at the start."""
         self.equations, self.q, self.qd = equations, q, qd
         self.time = np.append(steps.first[:1], steps.end[steps.kept])
         self.held = None
@@ -201,7 +210,7 @@ class Demanded:
         self.values, self.computed = np.zeros(q.shape), np.zeros(len(q), dtype=bool)
 
     def __call__(self, index: Any) -> Any:
-        """Accelerations (k, n) at the times of indices (k,)."""
+        """Accelerations (k, n) at the times of indices (k,), computed where they have not been asked for before."""
         new = np.unique(index[~self.computed[index]])
         if len(new):
             inputs = self.equations.drive(self.time[new])
@@ -213,7 +222,9 @@ class Demanded:
 
 
 def _pieces(numbers: int, *parts: Any) -> list[Any]:
-    """Arrays and records (t, ...) cut along time, to fit memory at so many numbers a time; JAX's are whole."""
+    """Arrays and records (t, ...) cut along time into pieces that fit memory, where each time needs so many `numbers`.
+    Arrays of JAX stay whole.
+    """
     count, size = len(parts[0]), max(FEWEST, AT_ONCE // max(numbers, 1))
     if count <= size or is_jax(parts[0]):
         return [parts]
@@ -221,7 +232,7 @@ def _pieces(numbers: int, *parts: Any) -> list[Any]:
 
 
 def solved(left: Array, right: Array) -> Array:
-    """Solutions of linear systems; NaN where one is singular, which NumPy raises an error for."""
+    """Solutions of linear systems. They are NaN where a matrix is singular, for which NumPy would refuse all."""
     try:
         return namespace(left, right).linalg.solve(left, right)
     except np.linalg.LinAlgError:

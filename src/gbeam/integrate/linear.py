@@ -21,7 +21,10 @@ from gbeam.integrate.steps import Steps
 def start(
     equations: LinearEquations, scheme: Scheme, steps: Steps, q: Array, qd: Array
 ) -> tuple[Array, tuple[Array, ...]]:
-    """The first z (m, n) and q, q̇ and, where the scheme has them or JAX traces them, q̈ (n,) from an initial state."""
+    """The first z (m, n) of a run, and the initial q, q̇ and q̈ (n,).
+
+    q̈ is left out where the scheme has no accelerations at the ends of steps, unless JAX traces the run.
+    """
     inputs, first = equations.drive(steps.first[:1]), scheme.tableau(steps.length[0]).first
     if not (scheme.ends or holds_jax(q, qd, inputs, equations.mass, equations.terms or equations.matrices(inputs))):
         return first[:, :2] @ np.stack([q, qd]), (q, qd)
@@ -89,19 +92,21 @@ def chunk(
         return last, kept[:2]
     q, qd, qdd = kept
     # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
-    again = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
-    if again.size:
-        acceleration = equations.accelerations(q[again], qd[again], equations.drive(steps.end[steps.kept][again]))
+    lacking = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
+    if lacking.size:
+        at_ends = equations.drive(steps.end[steps.kept][lacking])
+        acceleration = equations.accelerations(q[lacking], qd[lacking], at_ends)
         if scheme.ends:
-            qdd[again] = acceleration
+            qdd[lacking] = acceleration
         else:
             qdd = acceleration
     return last, (q, qd, qdd)
 
 
 def _distinct(inputs: Any, count: int) -> tuple[Any, Array]:
-    """Inputs of the steps, of `count`, at which they are not those of the step before, and indices (count,) into them
-    for every step: a base at rest, or turning steadily, has one map for all steps.
+    """Inputs of those of `count` steps whose inputs differ from the step before's, and an index (count,) into these.
+
+    A base that rests, or turns steadily, so has one map for all steps.
     """
     leaves = [leaf.reshape(count, -1) for leaf in leaves_of(inputs)]
     changed = np.append(True, np.any([(leaf[1:] != leaf[:-1]).any(axis=1) for leaf in leaves], axis=0))
@@ -129,7 +134,9 @@ def _unit(m: int, n: int) -> Array:
 
 
 def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, group: Array) -> tuple[Array, Array]:
-    """Affine maps of a group's part of z to its x at stages, (t, s, n, m n + 1), and to its next z, (t, m, n, ...)."""
+    """Affine maps of a group's part of z to its accelerations at the stages, (t, s, n, m n + 1), and to its next z, (t,
+    m, n, m n + 1).
+    """
     (*_, stages, m), n = t.w_q.shape, len(group)
     if n < len(mass):
         pair = np.ix_(group, group)
@@ -142,8 +149,10 @@ def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, grou
 
 
 def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends: Array, steps: Steps) -> Array:
-    """`maps` (t, m, n, m n + 1) to the next z, replaced after steps where the scheme starts anew: from q and q̇ at the
-    `ends` of these, (t, 2, n, m n + 1), and the accelerations that the equations demand.
+    """Replace those of the `maps` (t, m, n, m n + 1) to the next z after which the scheme starts anew.
+
+    There z is that of an initial state: of q and q̇ at the end of the step, by the maps `ends` (t, 2, n, m n + 1), and
+    of the accelerations that satisfy the equations.
     """
     anew = np.flatnonzero(steps.anew)
     if not anew.size:
@@ -158,7 +167,9 @@ def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends:
 
 
 def recurrence(xp: Any, maps: Array, z: Array) -> Array:
-    """States before each of some steps and after the last, (t + 1, m n), by affine maps (t, m n, m n + 1)."""
+    """Apply affine maps (t, m n, m n + 1) one after another to z (m n,); return the states before each and after the
+    last, (t + 1, m n).
+    """
     if xp is np:
         states = np.ones((len(maps) + 1, z.size + 1))
         states[0, :-1] = z

@@ -67,26 +67,33 @@ class Stretch:
 
 
 def stretches(scheme: Scheme, steps: Steps, size: int) -> Iterator[Stretch]:
-    """Divide steps into groups of `size`, those of at most `_AT_ONCE` chunks at a time."""
+    """Divide steps into groups of `size` that share one Jacobian, and yield them by up to `_AT_ONCE` chunks."""
     all_chunks = list(_groups(steps, size, restart=scheme.ends))
-    for some_chunks in (all_chunks[k : k + _AT_ONCE] for k in range(0, len(all_chunks), _AT_ONCE)):
-        index = np.concatenate([groups for groups, _ in some_chunks])
-        chosen, tableau = steps[index.ravel()], scheme.tableau(steps.length[index[:, 0]])
-        times = [chosen.times(offset) for offset in scheme.offsets] + ([] if scheme.ends else [chosen.end])
-        yield Stretch(chosen, index.shape, [last for _, last in some_chunks], tableau, np.stack(times, axis=1))
+    for first in range(0, len(all_chunks), _AT_ONCE):
+        indices, lasts = zip(*all_chunks[first : first + _AT_ONCE], strict=True)
+        index = np.concatenate(indices)  # (groups, size)
+        chosen = steps[index.ravel()]
+        times = [chosen.times(offset) for offset in scheme.offsets]
+        if not scheme.ends:  # q̈ at the end of a step is computed from the inputs there
+            times.append(chosen.end)
+        tableau = scheme.tableau(steps.length[index[:, 0]])
+        yield Stretch(chosen, index.shape, list(lasts), tableau, np.stack(times, axis=1))
 
 
 def chunks(drive: Drive, scheme: Scheme, all_stretches: Iterable[Stretch]) -> Iterator[Chunk]:
-    """Chunks of stretches with their inputs from `drive`, which is evaluated once a stretch."""
+    """Yield the chunks of stretches with their inputs. `drive` is evaluated once for each stretch."""
     import jax
 
     stages = len(scheme.offsets)
     for stretch in all_stretches:
-        (groups, size), first = stretch.shape, 0
-        driven = drive(stretch.times.ravel())
-        driven = jax.tree.map(lambda leaf, to=(groups, size, -1): leaf.reshape(*to, *leaf.shape[1:]), driven)
-        at_ends = None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, :, stages], driven)
+        groups, size = stretch.shape
+        by_group = (groups, size, -1)
+        driven = jax.tree.map(
+            lambda leaf, shape=by_group: leaf.reshape(*shape, *leaf.shape[1:]), drive(stretch.times.ravel())
+        )
         inputs = jax.tree.map(lambda leaf: leaf[:, :, :stages], driven)
+        at_ends = None if scheme.ends else jax.tree.map(lambda leaf: leaf[:, :, stages], driven)
+        first = 0
         for last in stretch.lasts:
             part = slice(first, first + len(last))
             pieces = jax.tree.map(lambda leaf, part=part: leaf[part], (stretch.tableau, inputs, at_ends))
@@ -95,17 +102,22 @@ def chunks(drive: Drive, scheme: Scheme, all_stretches: Iterable[Stretch]) -> It
 
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
-    """Yield chunks: indices (groups, size) of their steps, and the place (groups,) of the last step of each group that
-    counts, −1 if none does. With `restart` a chunk ends where the scheme starts anew.
+    """Yield the groups of each chunk: indices (groups, size) of their steps, and the place (groups,) of the last step
+    that counts in each group, −1 if none does. With `restart` a chunk ends where the scheme starts anew.
     """
     ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
-    starts = [np.arange(a, b + 1, size) for a, b in zip(np.append(0, ends[:-1] + 1), ends, strict=True)]
-    spans = [np.stack([first, np.full(len(first), end)]) for first, end in zip(starts, ends, strict=True)]
-    for run in spans if restart else [np.concatenate(spans, axis=1)]:
-        for done in range(0, run.shape[1], CHUNK // size):
-            first, end = run[:, done : done + CHUNK // size]
+    begins = np.append(0, ends[:-1] + 1)
+    # Of each run between restarts: the first steps of its groups, and the run's last step.
+    spans = []
+    for begin, end in zip(begins, ends, strict=True):
+        firsts = np.arange(begin, end + 1, size)
+        spans.append(np.stack([firsts, np.full(len(firsts), end)]))
+    in_chunk = CHUNK // size
+    for span in spans if restart else [np.concatenate(spans, axis=1)]:
+        for done in range(0, span.shape[1], in_chunk):
+            first, end = span[:, done : done + in_chunk]
             # Groups beyond the last fill the chunk, so that one program serves every duration.
-            fill = CHUNK // size - len(first)
+            fill = in_chunk - len(first)
             last = np.append(np.minimum(end - first, size - 1), np.full(fill, -1))
             first, end = (np.append(x, np.full(fill, end[-1])) for x in (first, end))
             yield np.minimum(first[:, None] + np.arange(size), end[:, None]), last
@@ -126,7 +138,7 @@ class Carry(NamedTuple):
 
 
 def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
-    """Residuals of all stages, (s, n)."""
+    """Residuals (s, n) at all stages of a step, from the state z before it and the stages' accelerations x."""
     q, qd = t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x
     return jax.lax.map(lambda stage: residual(*stage), (q, qd, x, inputs))
 
@@ -138,24 +150,28 @@ def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple
 
 
 def _inverse_jacobian(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
-    """Inverse Jacobian (s n, s n) of a step, by the residual's derivatives at the mean of its stages."""
+    """Inverse Jacobian (s n, s n) of a step's residuals with respect to its accelerations. K, C and M are taken once,
+    at the mean of the stages.
+    """
     q, qd, qdd = (jnp.mean(values, axis=0) for values in (t.w_q @ z + t.c_q @ x, t.w_v @ z + t.c_v @ x, x))
     k, c, m = slopes(residual, q, qd, qdd, jax.tree.map(lambda leaf: jnp.mean(leaf, axis=0), inputs))
     return jnp.linalg.inv(jnp.kron(t.c_q, k) + jnp.kron(t.c_v, c) + jnp.kron(jnp.eye(len(x)), m))
 
 
 def _size(correction: Array, x: Array) -> Array:
-    """Largest correction as a share of the largest acceleration of the step, as an error in q̈ matters by moving q."""
+    """Largest component of a correction as a share of the largest acceleration of the step."""
     return jnp.max(jnp.abs(correction)) / (LEAST + jnp.max(jnp.abs(x)))
 
 
-def _left(last: Array, before: Array) -> Array:
-    """Error left after the last of two corrections, which shrink by a constant factor."""
+def _remaining_error(last: Array, before: Array) -> Array:
+    """Estimated error after the last of two corrections, whose sizes are taken to shrink by a constant factor."""
     return last * jnp.where(before > 0, shrinkage(last, before), 0.0)
 
 
 def _guess(t: Tableau, carry: Carry) -> Array:
-    """First guess of a step's accelerations (s, n), extrapolated linearly: from the last two steps, or two stages."""
+    """First guess of a step's accelerations (s, n), extrapolated linearly from the last two steps or the last two
+    stages.
+    """
     x = carry.x
     if len(x) == 1:
         return 2 * x - carry.before
@@ -189,60 +205,64 @@ def steps(
     last: Any,
     count: Any,
 ) -> Any:
-    """Take `count` groups of steps, inputs (groups, steps, s, ...), one Jacobian a group; returns the carry, q, q̇, q̈
-    (groups · steps, n) and each step's relative error. `last` (groups,) is each group's last step that counts.
+    """Take `count` groups of steps with inputs (groups, steps, s, ...) and one Jacobian for each group.
+
+    The result is the carry, q, q̇, q̈ (groups · steps, n) and the relative error of each step. `last` (groups,) is the
+    last step that counts in each group.
     """
     stages, n = carry.x.shape
 
-    def group(carry: Carry, of_group: Any) -> Any:
-        """Take a group's steps by one inverse Jacobian; a scheme of many stages goes on from the last that counts."""
+    def take_group(carry: Carry, of_group: Any) -> Any:
+        """Take a group's steps by one inverse Jacobian. A scheme of many stages goes on from the last that counts."""
         t, group_inputs, group_ends, end = of_group
         first = jax.tree.map(lambda leaf: leaf[0], group_inputs)
         inverse = _inverse_jacobian(residual, t, carry.z, first, _guess(t, carry))
 
-        def step(carry: Carry, stage_inputs: Any) -> Any:
+        def take_step(carry: Carry, stage_inputs: Any) -> Any:
             """Correct the stages of a step until they have converged; return the next carry, and q, q̇, q̈ and error."""
 
             def unconverged(state: tuple[Array, ...]) -> Array:
                 _, size, before, tries = state
-                return (tries < FEWEST) | ((tries < MOST) & (_left(size, before) > NEAR))
+                return (tries < FEWEST) | ((tries < MOST) & (_remaining_error(size, before) > NEAR))
 
             def corrected(state: tuple[Array, ...]) -> tuple[Array, ...]:
                 x, size, _, tries = state
-                left = _stage_residual(residual, t, carry.z, stage_inputs, x)
-                correction = (inverse @ left.ravel()).reshape(stages, n)
+                residuals = _stage_residual(residual, t, carry.z, stage_inputs, x)
+                correction = (inverse @ residuals.ravel()).reshape(stages, n)
                 x = x - correction
                 return x, _size(correction, x), size, tries + 1
 
             x, size, before, _ = jax.lax.while_loop(unconverged, corrected, (_guess(t, carry), jnp.inf, jnp.inf, 0))
             after, q, qd = _next(t, carry, x)
-            return after, (q, qd, x[-1], _left(size, before))
+            return after, (q, qd, x[-1], _remaining_error(size, before))
 
-        after, history = jax.lax.scan(step, carry, group_inputs)
+        after, (q, qd, qdd, error) = jax.lax.scan(take_step, carry, group_inputs)
         if stages > 1:  # z is q and q̇
-            q, qd, qdd, _ = (values[end] for values in history)
-            filled = end < len(history[0]) - 1
-            guess = jnp.broadcast_to(qdd, (stages, n))
-            from_last = Carry(jnp.stack([q, qd]), guess, guess)
+            filled = end < len(q) - 1
+            guess = jnp.broadcast_to(qdd[end], (stages, n))
+            from_last = Carry(jnp.stack([q[end], qd[end]]), guess, guess)
             after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), from_last, after)
-        q, qd, qdd, left = history
-        return after, (q, qd, qdd if group_ends is None else accelerations(residual, q, qd, group_ends), left)
+        at_end = qdd if group_ends is None else accelerations(residual, q, qd, group_ends)
+        return after, (q, qd, at_end, error)
 
     by_group = tableau, inputs, at_ends, last
-    carry, history = _first(group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
+    carry, history = _over_groups(take_group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
     return carry, tuple(x.reshape(-1, *x.shape[2:]) for x in history)
 
 
-def _first(group: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
-    """Scan over the first `count` groups; the history has three arrays of `shape` (groups, steps, n), one without n."""
+def _over_groups(take: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
+    """Apply `take` to the first `count` groups in turn, and collect the histories.
 
-    def turn(k: Any, state: Any) -> Any:
+    Those of q, q̇ and q̈ have the `shape` (groups, steps, n), that of the error is without n. A scan would take all
+    groups, also those that only fill the chunk.
+    """
+
+    def take_next(k: Any, state: Any) -> Any:
         carry, history = state
-        carry, new = group(
-            carry, jax.tree.map(lambda leaf: jax.lax.dynamic_index_in_dim(leaf, k, keepdims=False), by_group)
-        )
+        group = jax.tree.map(lambda leaf: jax.lax.dynamic_index_in_dim(leaf, k, keepdims=False), by_group)
+        carry, values = take(carry, group)
         put = partial(jax.lax.dynamic_update_index_in_dim, index=k, axis=0)
-        return carry, tuple(put(whole, part) for whole, part in zip(history, new, strict=True))
+        return carry, tuple(put(whole, part) for whole, part in zip(history, values, strict=True))
 
     history = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
-    return jax.lax.fori_loop(0, count, turn, (carry, history))
+    return jax.lax.fori_loop(0, count, take_next, (carry, history))

@@ -20,8 +20,10 @@ SETTLED = 1e-14  # of the largest acceleration
 
 
 def relaxed(t: Tableau, mass: Floats, c: Floats, k: Floats, f: Floats, z: Floats) -> tuple[Floats, Floats] | None:
-    """States before each step and after the last, (t + 1, m n), and accelerations of stages, (t, s n), from z (m, n) by
-    equal steps with C and K (t, s, n, n) and F (t, s, n); None where they do not settle.
+    """Take equal steps with C and K (t, s, n, n) and F (t, s, n) from z (m, n) by iteration about their means.
+
+    Returns the states before each step and after the last, (t + 1, m n), and the accelerations of stages, (t, s n);
+    None where the iteration does not converge.
     """
     mean = _Mean(t, mass, c.mean(axis=(0, 1)), k.mean(axis=(0, 1)))
     state, states, accelerations = z.ravel(), list[Floats](), list[Floats]()
@@ -39,8 +41,9 @@ def relaxed(t: Tableau, mass: Floats, c: Floats, k: Floats, f: Floats, z: Floats
 
 
 class _Mean:
-    """Maps of a step by mean matrices: of forces and the state before to the accelerations of stages, of these to
-    coordinates and rates there and to the next state, and its powers.
+    """Maps of a step by mean matrices. `per_force` and `per_state` map forces and the state before to the accelerations
+    of stages; `of_state` and `of_stages` map the state before and these accelerations to q and q̇ at the stages; `next`
+    maps the accelerations to the next state. `powers` are those of the map from state to state.
     """
 
     def __init__(self, t: Tableau, mass: Floats, c: Floats, k: Floats) -> None:
@@ -54,8 +57,10 @@ class _Mean:
         self.powers = _powers(g.T + d.T @ self.per_state, TOGETHER)
 
     def settled(self, change: Floats, driven: Floats, state: Floats) -> tuple[Floats, Floats] | None:
-        """States (t + 1, m n) from one (m n,), and accelerations of stages, under forces (t, s n), where K and C change
-        by (t, s, n, 2 n); None where they do not settle.
+        """States (t + 1, m n) from the first, (m n,), and accelerations of stages, under the forces `driven` (t, s n).
+
+        K and C differ from their means by `change` (t, s, n, 2 n). The forces of these changes are added, and the steps
+        taken again, until the accelerations settle; None where they do not.
         """
         count, stages, n, _ = change.shape
         forces, before = driven, np.inf
@@ -66,14 +71,16 @@ class _Mean:
             if np.abs(x - before).max() <= SETTLED * np.abs(x).max():
                 return states, x
             before = x
-            stage = [states[:-1] @ w + x @ c for w, c in zip(self.of_state, self.of_stages, strict=True)]
-            moved = np.concatenate([each.reshape(count, stages, n, 1) for each in stage], axis=2)
-            forces = driven - (change @ moved).reshape(count, -1)
+            q, qd = (states[:-1] @ w + x @ c for w, c in zip(self.of_state, self.of_stages, strict=True))
+            at_stages = np.concatenate([values.reshape(count, stages, n, 1) for values in (q, qd)], axis=2)
+            forces = driven - (change @ at_stages).reshape(count, -1)
         return None
 
 
 def _powers(step: Floats, count: int) -> Floats:
-    """Powers 0, 1, ... (p, n, n) of the map of a step: as many as make a chain of `count` steps shortest."""
+    """Powers 0, 1, ... (p, n, n) of the map of a step, about as many as the square root of `count`: then a chain of so
+    many steps takes the fewest passes.
+    """
     powers = [np.eye(len(step))]
     for _ in range(math.isqrt(count) + 1):
         powers.append(powers[-1] @ step)
@@ -81,21 +88,21 @@ def _powers(step: Floats, count: int) -> Floats:
 
 
 def _chain(powers: Floats, added: Floats, first: Floats) -> Floats:
-    """States (t + 1, n) of z₊ = A z + added (t, n) from the first, by powers of A: blocks of steps side by side, which
-    are then joined.
+    """States (t + 1, n) of z₊ = A z + added (t, n) from the first one, by powers of A.
+
+    Blocks of steps are taken side by side from zero; then each is moved by what its first state adds.
     """
     (count, size), length = added.shape, len(powers) - 1
     blocks = -(-count // length)
-    parts = np.zeros((blocks * length, size))
-    parts[:count] = added
-    apart = np.zeros((length + 1, blocks, size))  # states of blocks that begin at zero
-    for state, following, part in zip(
-        apart, apart[1:], parts.reshape(blocks, length, size).swapaxes(0, 1), strict=False
-    ):
-        following[:] = state @ powers[1].T + part
+    padded = np.zeros((blocks * length, size))
+    padded[:count] = added
+    by_step = padded.reshape(blocks, length, size).swapaxes(0, 1)
+    from_zero = np.zeros((length + 1, blocks, size))
+    for k, of_step in enumerate(by_step):
+        from_zero[k + 1] = from_zero[k] @ powers[1].T + of_step
     starts = np.empty((blocks, size))
     for block in range(blocks):
         starts[block] = first
-        first = powers[-1] @ first + apart[-1, block]
-    states = apart[:-1] + starts @ powers[:-1].swapaxes(1, 2)
+        first = powers[-1] @ first + from_zero[-1, block]
+    states = from_zero[:-1] + starts @ powers[:-1].swapaxes(1, 2)
     return np.concatenate([states.swapaxes(0, 1).reshape(-1, size), first[None]])[: count + 1]

@@ -117,8 +117,9 @@ class Sampling:
                 self.held[since[len(samples)] : end, part] = samples[-1][2]
 
     def take(self, c: int, s: int, step: int, measured: Array) -> bool:
-        """Take sample number `s` of controller `c`, measured at the beginning of a step, and forget later ones; return
-        False if its law fails. An error at the first sample is raised.
+        """Take sample number `s` of controller `c`, measured at the beginning of a step; return False if its law fails.
+
+        Later samples are forgotten: they were those of an earlier iterate. An error at the first sample is raised.
         """
         samples, since = self.samples[c], self.since[c]
         del samples[s:]
@@ -132,16 +133,19 @@ class Sampling:
         self.failure = None
         samples.append((measured, asked, limited, after))
         self.held[since[s] : since[s + 1], self.controllers.drives[c]] = limited
-        if s & (s - 1) == 0 and (c, s) not in self.repeated:
+        power_of_two = s & (s - 1) == 0  # at these samples the law is asked twice: it may not remember calls
+        if power_of_two and (c, s) not in self.repeated:
             self._repeat(c, s)
         return True
 
     def _sample(self, c: int, s: int, step: int, measured: Array) -> tuple[float, Array, Any]:
-        """Time, measurements and state that a law is given at a sample."""
+        """Time, measurements and state that the law of controller `c` receives at sample `s`."""
         return float(self.steps.begin[step]), measured, self.samples[c][s - 1][3] if s else self.started[c]
 
     def _repeat(self, c: int, s: int) -> None:
-        """Ask a law again for the sample before number `s`, or the first one: what it kept meanwhile shows."""
+        """Ask a law again for the sample before number `s`, or for the first one, and refuse a law that answers
+        otherwise: it keeps a state of its own.
+        """
         self.repeated.add((c, s))
         before = max(s - 1, 0)
         measured, asked, _, after = self.samples[c][before]
@@ -149,7 +153,9 @@ class Sampling:
         self.controllers.refuse_memory(c, *sample, (asked, after))
 
     def stopped(self, step: int) -> None:
-        """Forget a failure unless it is that of the step where the run ended: another may be of an iterate only."""
+        """Forget a failure unless it happened at the step where the run ended. An earlier iterate may have caused
+        another.
+        """
         if self.failure is not None and self.failure[0] != step:
             self.failure = None
 
@@ -158,11 +164,13 @@ class Sampling:
         return tuple(map(np.stack, tuple(zip(*self.samples[c], strict=True))[:3]))
 
     def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Derivatives (t, n, m) of the residual with respect to the commands, at states and inputs (t, ...)."""
+        """Derivatives ∂r/∂u (t, n, m) of the residual with respect to the commands, at states and inputs (t, ...)."""
         return self._by_command(self.residual, q, qd, qdd, inputs)
 
     def _by_command(self, function: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) with respect to the commands."""
+        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) with respect to the commands, by
+        complex steps.
+        """
         count = self.held.shape[1]
         units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
         values = function(q, qd, qdd, self.controllers.driven(inputs, units))
@@ -174,7 +182,9 @@ class Sampling:
         return self.controllers.measured(c, q, qd, qdd, inputs)
 
     def measurement_slopes(self, c: int, q: Array, qd: Array, inputs: Any) -> tuple[Array, Array | None]:
-        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands held before, (t, k, m).
+        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands that acted before, (t,
+        k, m).
+
         The latter are None unless accelerations are measured: positions and rates do not follow a command at once.
         """
         accelerates = self.controllers.accelerates(c)
@@ -229,14 +239,20 @@ class Held:
         self.values = self._at_samples(self.sampling.measured, z)
 
     def _at_samples(self, function: Any, z: Array) -> dict[int, Any]:
-        """Values, by controllers, of a function of the states and inputs at their samples, with the commands before."""
+        """Evaluate a function of a controller, q, q̇ and inputs at the samples of each controller, under the commands
+        that acted before; return the values by the controllers' numbers.
+        """
         before, driven = np.concatenate([self.before[None], self.u]), self.sampling.controllers.driven
-        inputs = {c: driven(values, before[self.samples[c]]) for c, values in self.inputs.items()}
-        return {c: function(c, z[steps, 0], z[steps, 1], inputs[c]) for c, steps in self.samples.items()}
+        values = {}
+        for c, steps in self.samples.items():
+            values[c] = function(c, z[steps, 0], z[steps, 1], driven(self.inputs[c], before[steps]))
+        return values
 
     def push(self, inverse: Array, t: Any, onto: Array) -> None:
-        """Find what commands change: accelerations by J⁻¹ ∂r/∂u, the next z by −d J⁻¹ ∂r/∂u, with d of the tableau `t`
-        and ∂r/∂u `onto` (t s, n, m).
+        """Compute what a change of commands does: it changes accelerations by −J⁻¹ ∂r/∂u and the next z by −d J⁻¹
+        ∂r/∂u.
+
+        `inverse` is J⁻¹, d that of the tableau `t`, and `onto` ∂r/∂u (t s, n, m).
         """
         count, n = len(self.u), onto.shape[1]
         self.answer = inverse @ onto.reshape(count, -1, onto.shape[-1])
@@ -244,8 +260,10 @@ class Held:
         self.step = -by_stages.reshape(count, -1, onto.shape[-1])
 
     def sampled(self, k: int, moved: Array) -> Array:
-        """Take the samples of step `k` of the window, whose state is to change by `moved` (m n,); return the change of
-        the next state by the change of commands, (m n,).
+        """Take the samples at the beginning of step `k` of the window, whose state is to change by `moved` (m n,).
+
+        Returns the change (m n,) of the next state by the change of the commands. A sample is measured to first order
+        about the last iterate.
         """
         step = self.first + k
         for c, i, s in self.due[k]:

@@ -45,15 +45,19 @@ class Tableau:
     first: Floats
 
     def jacobians(self, k: Any, c: Any, m: Any) -> tuple[Any, Any]:
-        """Derivatives of the residuals of stages (t, s n) by their accelerations, J (t, s n, s n), and by the state
-        before, L (t, s n, m n), from their slopes K, C and M (1 or t, s, n, n).
+        """Derivatives of the residuals of a step's stages, from K, C and M (1 or t, s, n, n) at the stages.
+
+        J (t, s n, s n) are those with respect to the stages' accelerations, L (t, s n, m n) to the state z before.
         """
         k, c, m = (slope[:, :, None] for slope in (k, c, m))
         c_q, c_v, w_q, w_v = (weights[..., None, None] for weights in (self.c_q, self.c_v, self.w_q, self.w_v))
         (*_, stages, states), n = self.w_q.shape, k.shape[-1]
-        blocks = c_q * k + c_v * c + np.eye(stages)[..., None, None] * m, w_q * k + w_v * c
-        J, L = (matrices.swapaxes(2, 3) for matrices in blocks)
-        return J.reshape(-1, stages * n, stages * n), L.reshape(-1, stages * n, states * n)
+        # Blocks of stage i and of stage j or vector k; then the axes (t, i, j, n, n) become those of a matrix.
+        by_stage = c_q * k + c_v * c + np.eye(stages)[..., None, None] * m
+        by_state = w_q * k + w_v * c
+        J = by_stage.swapaxes(2, 3).reshape(-1, stages * n, stages * n)
+        L = by_state.swapaxes(2, 3).reshape(-1, stages * n, states * n)
+        return J, L
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +89,9 @@ class Scheme:
 
 
 def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
-    """Powers of the step, −2 to 2, in a tableau: z = (q*, v*, c) and (q, q̇, q̈) are of orders 0, 1, 2 in 1/step."""
+    """Powers, −2 to 2, with which the arrays of a tableau grow with the length of the step. z = (q*, v*, c) and (q, q̇,
+    q̈) are of orders 0, 1, 2 in 1/step.
+    """
     k, pair, x = np.arange(m), np.arange(2)[:, None], np.full(stages, 2)
     return {
         "w_q": np.tile(k, (stages, 1)),
@@ -102,7 +108,9 @@ def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
 
 @cache
 def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:
-    """The one-step family: weights of the old acceleration and forces (Chung and Hulbert), Newmark's parameters."""
+    """The one-step family: alpha_m and alpha_f are the weights of the old acceleration and of the old forces (Chung and
+    Hulbert), beta and gamma Newmark's parameters.
+    """
     share = (1 - alpha_f) / (1 - alpha_m)
     # z = (q*, v*, c): what the stage starts from, and the share c of the new a that is known before.
     q, v, c, x = np.eye(4)
@@ -212,8 +220,10 @@ def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floa
 
 
 def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
-    """Residual of n coordinates that steps solve: fitted to its modes at q = 0, or the equations' own where these do
-    not keep them, the scheme does not fit steps, or JAX traces the residual.
+    """Residual that steps solve, of `n` coordinates: fitted to the modes at q = 0.
+
+    It is the equations' own where these do not keep their modes, where the scheme does not fit steps, and where JAX
+    traces the residual.
     """
     residual = equations.residual
     if scheme.exponent is None or equations.idle is None or holds_jax(residual):
@@ -232,16 +242,18 @@ def to_modes(exponent: Any, step: Any, mass: Floats, damping: Floats, stiffness:
     frequency = np.where(fits, frequency, 1.0)  # any value for modes that are left as they are
     angle = np.minimum(frequency * np.asarray(step)[..., None], FITTED)
     ratio = np.where(fits, rate / (2 * frequency), 0.0)
-    z = angle * (-ratio + 1j * np.sqrt(1 - ratio**2))
+    z = angle * (-ratio + 1j * np.sqrt(1 - ratio**2))  # λ h
     mu = exponent(z)
     # μ² m + μ h c + (ω h)² = 0 with the mode's own stiffness.
     factor = np.abs(z / mu) ** 2
     slower = np.divide(mu.real, z.real, out=np.ones_like(ratio), where=ratio > 0)
+    added_mass = np.where(fits, factor - 1, 0.0)
+    added_rate = np.where(fits, rate * (slower * factor - 1), 0.0)
+    # A modal value v of each mode φ is the matrix Σ M φ v φᵀ M.
     shapes = mass @ modes
-    added_masses, added_rates = np.where(fits, factor - 1, 0.0), np.where(fits, rate * (slower * factor - 1), 0.0)
-    mass_term, damping_term = (
-        shapes * values[..., None, :] @ np.swapaxes(shapes, -1, -2) for values in (added_masses, added_rates)
-    )
+    transposed = np.swapaxes(shapes, -1, -2)
+    mass_term = shapes * added_mass[..., None, :] @ transposed
+    damping_term = shapes * added_rate[..., None, :] @ transposed
     return mass_term, damping_term
 
 

@@ -52,7 +52,7 @@ def taken_together(
     """
 
     def step(z: Array, h: Array, phi: Array) -> tuple[Array, tuple[Array, Array, Array]]:
-        """One step of all runs, of lengths h (b,): the next z, and q, q̇, q̈ (n, b) at its end."""
+        """Take one step of all runs, of lengths h (b,); return the next z, and q, q̇, q̈ (n, b) at its end."""
         t = _tableau(unit, h)
         stages, (_, n, b) = len(t.c_q), z.shape
         c, k, f = (
@@ -72,18 +72,22 @@ def taken_together(
         qdd = x[-1] if ends else _times(inverse, f[-1] - _times(k[-1], q) - _times(c[-1], qd))
         return _combined(t.g, z) + _combined(t.d, x), (q, qd, qdd)
 
-    def turn(i: Any, state: Any) -> Any:
+    def take_next(i: Any, state: Any) -> Any:
         z, history = state
-        z, new = step(z, lengths[i], features[i])
-        return z, tuple(jax.lax.dynamic_update_index_in_dim(a, b, i, 0) for a, b in zip(history, new, strict=True))
+        z, ends = step(z, lengths[i], features[i])
+        put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
+        return z, tuple(put(whole, part) for whole, part in zip(history, ends, strict=True))
 
     history = (jnp.zeros((len(lengths), *z.shape[1:])),) * 3
-    z, history = jax.lax.fori_loop(0, count, turn, (z, history))
+    z, history = jax.lax.fori_loop(0, count, take_next, (z, history))
     return z, tuple(jnp.moveaxis(x, -1, 0) for x in history)
 
 
 def eliminated(rows: Array) -> Array:
-    """Solutions (n, b) of b small systems, matrix and right-hand side (n, n + 1, b), by elimination without pivots."""
+    """Solve b small linear systems at once, by Gauss's elimination without pivoting.
+
+    `rows` (n, n + 1, b) has their matrices and right-hand sides; the solutions are (n, b).
+    """
     pivots = []
     while len(rows):
         pivots.append(rows[0, 1:] / rows[0, :1])
@@ -100,7 +104,7 @@ def stage_count(scheme: Scheme) -> int:
 
 
 def accelerations(inverse: Array, terms: LinearTerms, features: Array, parts: Parts, q: Array, qd: Array) -> Array:
-    """q̈ (n, b) that the equations demand at features (k, b)."""
+    """Accelerations q̈ (n, b) that satisfy the equations at features (k, b)."""
     c, k, f = (_sum(matrix_terms, features, chosen) for matrix_terms, chosen in zip(terms.each, parts, strict=True))
     return _times(inverse, f - _times(k, q) - _times(c, qd))
 
@@ -145,7 +149,9 @@ class Run:
 
     @cached_property
     def shape(self) -> Hashable | None:
-        """Key of runs that can be integrated together; None of one that has to be integrated alone."""
+        """Key of runs that can be integrated together: of equal sizes and nearly equal numbers of steps. It is None for
+        a run that has to be integrated alone.
+        """
         steps = self.steps
         magnitude = ceil(log(len(steps), NEARLY))  # equal for numbers of steps that are nearly equal
         if isinstance(self.equations, NonlinearEquations):
@@ -201,22 +207,22 @@ class Run:
 
 
 def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
-    """Integrate runs of one shape; None in place of one whose corrections failed, to be integrated alone."""
+    """Integrate runs of one shape. A run whose corrections have failed is None, to be integrated alone."""
     solve = _linear if isinstance(runs[0].equations, LinearEquations) else _nonlinear
     histories, converged = solve(runs)
     trajectories = []
     for run, sound, *state in zip(runs, converged, *histories, strict=True):
         kept = np.append(True, run.steps.kept)
         time = np.append(run.steps.begin[0], run.steps.end)
-        state = [x[: len(kept)] for x in state]
+        q, qd, qdd = (x[: len(kept)] for x in state)  # without the steps that fill a shorter run
         if not kept.all():
-            time, *state = (x[kept] for x in (time, *state))
-        trajectories.append(Trajectory(time, *state) if sound and np.isfinite(state[2]).all() else None)
+            time, q, qd, qdd = time[kept], q[kept], qd[kept], qdd[kept]
+        trajectories.append(Trajectory(time, q, qd, qdd) if sound and np.isfinite(qdd).all() else None)
     return trajectories
 
 
 def _stacked(parts: Sequence[Any], axis: int = 0) -> Any:
-    """Leaves of trees side by side along a new axis, the first or the last."""
+    """Stack the leaves of equal trees along a new axis, the first or the last."""
 
     def stack(*leaves: Any) -> Array:
         stacked = np.asarray(leaves)
@@ -262,8 +268,10 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
 
 
 def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..., Any]:
-    """Compiled `solve(residual, ...)` over many runs, as a function of (form, axes, leaves), which are their residuals
-    as :data:`Residuals`, and of its other arguments, whose axes of runs are `more_axes`.
+    """Compile `solve(residual, ...)` over many runs at once.
+
+    The result is a function of the residuals' form, axes and leaves, as in :data:`Residuals`, and of the other
+    arguments, whose axes of runs are `more_axes`.
     """
 
     @partial(jax.jit, static_argnums=(0, 1))
@@ -285,25 +293,28 @@ Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and ar
 
 
 def _residuals(runs: Sequence[Run]) -> Residuals:
-    """The runs' residuals: their arrays stacked along a first axis of runs, or without it where `common` has them."""
+    """The runs' residuals: arrays stacked along a first axis of runs, but for those that all share by `common`."""
     common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
-    by_leaf = list(zip(*(run.residual[0] for run in runs), strict=True))  # of each array, the runs' own
-    axes = [None if id(of_runs[0]) in common and all(x is of_runs[0] for x in of_runs) else 0 for of_runs in by_leaf]
-    leaves = [of_runs[0] if axis is None else np.asarray(of_runs) for of_runs, axis in zip(by_leaf, axes, strict=True)]
+    axes, leaves = list[int | None](), list[Array]()
+    for of_runs in zip(*(run.residual[0] for run in runs), strict=True):
+        first = of_runs[0]
+        shared = id(first) in common and all(leaf is first for leaf in of_runs)
+        axes.append(None if shared else 0)
+        leaves.append(first if shared else np.asarray(of_runs))
     return runs[0].residual[1], tuple(axes), leaves
 
 
 def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
-    """The residuals that steps solve: fitted to their modes, as by :func:`gbeam.integrate.schemes.stepped`."""
+    """The residuals that steps solve: fitted to their modes, as :func:`gbeam.integrate.schemes.stepped` does."""
     exponent, equations = runs[0].scheme.exponent, [cast(NonlinearEquations, run.equations) for run in runs]
     if exponent is None or equations[0].idle is None:
         return residuals
     form, axes, leaves = residuals
     zero = np.zeros((len(runs), len(runs[0].q)))
-    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *(each.idle for each in equations))
+    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *(of_run.idle for of_run in equations))
     k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, idle))
-    added_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
-    leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), *added_terms))
+    mass_terms, damping_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
+    leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), mass_terms, damping_terms))
     return form, (*axes, 0, 0), leaves
 
 

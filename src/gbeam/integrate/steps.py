@@ -35,7 +35,9 @@ class Corners:
 
     @staticmethod
     def of(times: Any, drive: Drive, start: float, end: float) -> Corners:
-        """Corners at those `times` (s) that lie in [start, end): a jump where the drive differs on both sides."""
+        """Corners at those `times` (s) that lie in [start, end). One is a jump where the drive differs on its two
+        sides.
+        """
         time = np.unique(np.asarray(times, dtype=np.float64))
         time = time[(time >= start) & (time < end)]
         if not len(time):
@@ -45,12 +47,13 @@ class Corners:
         between = time + _BETWEEN * np.diff(time, append=end)
         count, jump = len(time), np.zeros(len(time), dtype=bool)
 
-        def judge(leaf: Any) -> None:
-            values = np.asarray(leaf).reshape(3, count, -1)
-            change = np.abs(values[1] - values[0]).max(axis=1, initial=0.0)
-            jump[:] |= change > _JUMP * np.abs(values).max(initial=0.0)
+        def mark_jumps(leaf: Any) -> None:
+            before, after, middle = np.asarray(leaf).reshape(3, count, -1)
+            change = np.abs(after - before).max(axis=1, initial=0.0)
+            largest = np.abs([before, after, middle]).max(initial=0.0)
+            jump[:] |= change > _JUMP * largest
 
-        each_leaf(judge, drive(np.concatenate([time - beside, time + beside, between])))
+        each_leaf(mark_jumps, drive(np.concatenate([time - beside, time + beside, between])))
         return Corners(time, jump)
 
     def felt_by(self, scheme: Scheme) -> Corners:
@@ -61,7 +64,8 @@ class Corners:
 @dataclass(frozen=True, eq=False)
 class Steps:
     """Steps in order, (t,) each: times at which they begin and end, and `first` and `last`, at which the drive is read,
-    just inside of a jump; `resume` and `following` are `first` and `length` of the next step.
+    just inside of a jump. `kept` steps end at a time of output, `jump` flags a jump at the end, and after `anew` the
+    scheme starts anew. `resume` and `following` are `first` and `length` of the next step.
     """
 
     begin: Floats
@@ -99,7 +103,9 @@ class Steps:
 
 
 def fitted(start: float, step: float, count: int, corners: Corners | None = None) -> Steps:
-    """Return `count` steps of length `step`, split at the corners within them; times are products and do not drift."""
+    """Return `count` steps of length `step`, split at the corners within them. Their times are products of the step, so
+    that they do not drift.
+    """
     if count > FEW:
         return _fitted(start, step, count, corners)
     key = None if corners is None else (corners.time.tobytes(), corners.jump.tobytes())
@@ -107,14 +113,13 @@ def fitted(start: float, step: float, count: int, corners: Corners | None = None
 
 
 def joined(parts: Sequence[Steps]) -> Steps:
-    """Steps of parts that follow one another; a scheme starts anew where their lengths differ."""
+    """Join steps of parts that follow one another. A scheme starts anew where their lengths differ."""
     if len(parts) == 1:
         return parts[0]
-    whole = Steps(
-        *(np.concatenate([getattr(part, field.name) for part in parts]) for field in dataclasses.fields(Steps))
-    )
+    names = [field.name for field in dataclasses.fields(Steps)]
+    whole = Steps(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
     last = np.cumsum([len(part) for part in parts[:-1]]) - 1
-    following, resume = (values.copy() for values in (whole.following, whole.resume))
+    following, resume = whole.following.copy(), whole.resume.copy()
     following[last], resume[last] = whole.length[last + 1], whole.first[last + 1]
     anew = whole.jump | (following != whole.length)
     return dataclasses.replace(whole, following=following, resume=resume, anew=anew)
@@ -122,29 +127,31 @@ def joined(parts: Sequence[Steps]) -> Steps:
 
 @lru_cache(maxsize=8)
 def _shared(start: float, step: float, count: int, corners: tuple[bytes, bytes] | None) -> Steps:
+    """Steps that have been made before, by numbers and the bytes of their corners, which can be keys of a cache."""
     restored = None if corners is None else Corners(np.frombuffer(corners[0]), np.frombuffer(corners[1], dtype=bool))
     return _fitted(start, step, count, restored)
 
 
 def _fitted(start: float, step: float, count: int, corners: Corners | None) -> Steps:
-    """Steps between even nodes, cut at corners; `kept` ends at a node, `jump` at a jump, after `anew` one restarts."""
+    """Steps between equidistant nodes, cut at the corners that lie off the nodes."""
     nodes = np.asarray(start + step * np.arange(count + 1), dtype=np.float64)
     if corners is None or not len(corners.time):
         ones, length = np.ones(count, dtype=bool), np.full(count, step)
         return Steps(nodes[:-1], length, nodes[1:], nodes[:-1], nodes[1:], ones, ~ones, ~ones, nodes[1:], length)
-    near = _NEAR * step + _ULPS * np.spacing(np.abs(nodes).max())
+    tolerance = _NEAR * step + _ULPS * np.spacing(np.abs(nodes).max())
     nearest = np.clip(np.round((corners.time - start) / step).astype(int), 0, count)
-    off_grid = np.abs(corners.time - nodes[nearest]) > near
+    off_grid = np.abs(corners.time - nodes[nearest]) > tolerance
     cuts = corners.time[off_grid & (corners.time > start) & (corners.time < nodes[-1])]
-    cuts = cuts[np.append(np.diff(cuts) > near, True)[: len(cuts)]]
+    cuts = cuts[np.append(np.diff(cuts) > tolerance, True)[: len(cuts)]]
     times, kept = np.concatenate([nodes, cuts]), np.arange(len(nodes) + len(cuts)) <= count
     order = np.argsort(times)
     times, kept = times[order], kept[order]
     jump = np.zeros(len(times), dtype=bool)
-    jump[np.searchsorted(times, corners.time[corners.jump] - near).clip(max=len(times) - 1)] = True
+    jump[np.searchsorted(times, corners.time[corners.jump] - tolerance).clip(max=len(times) - 1)] = True
     length = np.where(kept[1:] & kept[:-1], step, np.diff(times))
     # The drive is read just inside a step where it jumps at an end.
-    first, last = times[:-1] + 2 * near * jump[:-1], times[1:] - 2 * near * jump[1:]
+    inside = 2 * tolerance * jump
+    first, last = times[:-1] + inside[:-1], times[1:] - inside[1:]
     following, resume = np.append(length[1:], length[-1]), np.append(first[1:], times[-1])
     anew = jump[1:] | (following != length)
     return Steps(times[:-1], length, times[1:], first, last, kept[1:], jump[1:], anew, resume, following)

@@ -36,9 +36,11 @@ def tangent(
     within: System | None = None,
     accelerations: bool = True,
 ) -> tuple[Floats, Floats, Floats]:
-    """Derivatives (t + 1, n, p) of a run's q, q̇, q̈ with respect to p parameters, from those of its start, q and qd
-    (n, p), by the equations `system` linearised about its states; `within` are those that its fitted steps solve.
-    Without `accelerations` the result's q̈ may be those of the last stage.
+    """Derivatives (t + 1, n, p) of a run's q, q̇ and q̈ with respect to p parameters, from those at its start, q and qd
+    (n, p).
+
+    `system` gives the equations linearised about the run's states, `within` those that its fitted steps solve. Without
+    `accelerations` the result's q̈ may be those of the last stage.
     """
     shape = (len(steps) + 1, *q.shape)
     histories = np.empty(shape), np.empty(shape), np.empty(shape)
@@ -69,7 +71,9 @@ def _part(run: Trajectory, steps: slice) -> Trajectory:
 
 
 def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Floats, qd: Floats) -> Floats:
-    """δq̈ (k, n, p) demanded at δq, δq̇, `q` and `qd`, by equations linearised about the run's states of indices `at`."""
+    """δq̈ (k, n, p) that satisfy the linearised equations with δq, δq̇, `q` and `qd`, about the run's states of indices
+    `at`.
+    """
     mass, c, k, f = system(time, run.q[at], run.qd[at])
     return np.asarray(np.linalg.solve(mass, f - c @ qd - k @ q), dtype=np.float64)
 
@@ -77,7 +81,7 @@ def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Fl
 def _chunk(
     system: System, within: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory, accelerations: bool
 ) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
-    """Take steps from z (m, n, p): the next z, and δq, δq̇, δq̈ at their ends."""
+    """Take steps from z (m, n, p); return the next z, and δq, δq̇, δq̈ (t, n, p) at their ends."""
     t = scheme.tableau(steps.length)
     stages, (m, n, p) = len(scheme.offsets), z.shape
     states = _states(run, scheme, t)
@@ -101,14 +105,14 @@ def _chunk(
     ends += np.einsum("tis,tsnp->tinp", t.end_x, x)
     q, qd, qdd = ends[:, 0], ends[:, 1], x[:, -1]
     # The last stage's q̈ is that at the end, unless the stage lies before it, or just before a jump.
-    again = np.flatnonzero(steps.jump) if scheme.ends else np.arange(len(steps))
-    if again.size and accelerations:
-        qdd[again] = _accelerations(system, steps.end[again], run, again + 1, q[again], qd[again])
+    lacking = np.flatnonzero(steps.jump) if scheme.ends else np.arange(len(steps))
+    if lacking.size and accelerations:
+        qdd[lacking] = _accelerations(system, steps.end[lacking], run, lacking + 1, q[lacking], qd[lacking])
     return state.reshape(m, n, p), (q, qd, qdd)
 
 
 def _states(run: Trajectory, scheme: Scheme, t: Tableau) -> list[tuple[Floats, Floats]]:
-    """q and q̇ of the run at the stages of its steps."""
+    """q and q̇ of the run at each stage of its steps."""
     if scheme.ends:
         return [(run.q[1:], run.qd[1:])]
     # z is q and q̇: what a step adds to it says what its stages' accelerations were.

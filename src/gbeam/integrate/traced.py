@@ -95,23 +95,24 @@ class TracedLoop:
 
     @property
     def shapes(self) -> list[Samples]:
-        """Shapes of the samples."""
-        sizes = [part.stop - part.start for part in self.controllers.drives]
-        return [
-            Samples(
-                *(jax.ShapeDtypeStruct((len(at), n), float) for n in (law.references.shape[1], m, m, len(law.start)))
-            )
-            for at, m, law in zip(self.at, sizes, self.laws, strict=True)
-        ]
+        """Shapes of the samples of each controller."""
+        shapes = []
+        for steps, law, part in zip(self.at, self.laws, self.controllers.drives, strict=True):
+            commands = part.stop - part.start
+            widths = (law.references.shape[1], commands, commands, len(law.start))
+            shapes.append(Samples(*(jax.ShapeDtypeStruct((len(steps), width), float) for width in widths)))
+        return shapes
 
     def recorded(self, sampling: Sampling, inputs: Any) -> list[Samples]:
-        """Samples of each controller as arrays, NaN of those that were not taken; `inputs` have the first states."""
+        """Samples of each controller as arrays, with NaN for those that were not taken. `inputs` have the first
+        states.
+        """
         recorded = []
         for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
             arrays = Samples(*(np.full(field.shape, np.nan) for field in shapes))
-            before = [start, *(after for *_, after in taken[:-1])]
-            for k, ((*values, _), state) in enumerate(zip(taken, before, strict=False)):
-                for array, value in zip(arrays, (*values, state), strict=True):
+            states = [start, *(after for *_, after in taken[:-1])]
+            for k, ((measured, asked, limited, _), state) in enumerate(zip(taken, states, strict=False)):
+                for array, value in zip(arrays, (measured, asked, limited, state), strict=True):
                     array[k] = value
             recorded.append(arrays)
         return recorded
@@ -129,21 +130,25 @@ class TracedLoop:
         return jnp.concatenate([jnp.zeros((len(self.steps), 0)), *parts], axis=1)
 
     def changes(self, of: Any, by: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
-        """Changes of samples along a run: `of` are the residual and its drives where steps begin, `inputs` the laws'
-        values; `by` and `by_inputs` are their tangents.
+        """Changes of samples along a run.
+
+        `of` are the residual and its drives where steps begin, `inputs` the laws' values; `by` and `by_inputs` are the
+        tangents of both.
         """
         held = self.held(samples)
         before = jnp.concatenate([0 * held[:1], held[:-1]])
         laws = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
-        parts = [
-            self._along(c, of, by, [part[at] for part in run[:2]], before[at], at) + self._through(law, by_law, values)
-            for c, (at, law, by_law, values) in enumerate(laws)
-        ]
+        parts = []
+        for c, (at, law, by_law, values) in enumerate(laws):
+            measured = self._along(c, of, by, [part[at] for part in run[:2]], before[at], at)
+            parts.append(measured + self._through(law, by_law, values))
         return _Changes(self, parts)
 
     def _along(self, c: int, of: Any, by: Any, state: Any, before: Array, at: Array) -> tuple[Array, ...]:
-        """Derivatives of a controller's measurements by states (s, k, 2 n) and by the commands `before` (s, k, m), and
-        their change (s, k) by tangents of residual and drives alone; samples are taken at the beginning of steps `at`.
+        """Derivatives of a controller's measurements, which are taken at the beginnings of the steps `at`.
+
+        They are those by states (s, k, 2 n), those by the commands `before` (s, k, m), and the change (s, k) by the
+        tangents `by` of residual and drives alone.
         """
         q, qd = state
         (residual, driven), (by_residual, by_driven) = of, by
@@ -170,8 +175,8 @@ class TracedLoop:
         return *slope, direct
 
     def _through(self, law: TracedLaw, by: TracedLaw, values: Samples) -> tuple[Array, ...]:
-        """Derivatives of commands and next states, (s, 2 m + x, ...), by measurements and by states; their change by
-        the tangents `by` of parameters and references alone; the change of the first state.
+        """Derivatives of a law's commands and next states, (s, 2 m + x, ...), by measurements and by states; their
+        change by the tangents `by` of parameters and references alone; and the change of the first state.
         """
 
         def commands_and_state(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
@@ -210,8 +215,10 @@ class _Changes:
         return list(zip(self.starts, rings, strict=True)), jnp.zeros(sum(sizes))
 
     def step(self, carried: Any, dz: Array, at: Any) -> tuple[Any, Array, Any]:
-        """Changes of laws' states and rings after a step, of the commands that act in it and of its samples, by that of
-        its state, dz (m, n); `at` has the entries of `by_step` for this step.
+        """Carry the changes through one step whose state changes by dz (m, n); `at` has its entries of `by_step`.
+
+        Returns the changes of the laws' states and rings after the step, of the commands that act in it, and of the
+        samples at its beginning.
         """
         laws, before = carried
         after, acting, sampled = [], [], []
@@ -231,8 +238,10 @@ class _Changes:
 def traced(
     equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps
 ) -> tuple[tuple[Array, ...], TracedLoop | None]:
-    """q, q̇, q̈ (t + 1, n) at the beginning and the ends of steps, and the samples of controllers, if any; they and their
-    derivatives are NaN from a step on that fails.
+    """Integrate nonlinear equations that JAX traces; return q, q̇, q̈ (t + 1, n) at the start and the ends of steps,
+    and the samples of controllers, if any.
+
+    All values and their derivatives are NaN from a step on that fails.
     """
     ends = [] if scheme.ends else [steps.end]
     loop = TracedLoop(equations.controllers or Uncontrolled(), steps)
@@ -281,8 +290,10 @@ def traced(
 
 
 def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: Array, dqd: Array, in_loop: Any) -> Any:
-    """Changes of a run's `results`, q, q̇, q̈ (t + 1, n) and samples, by the tangents `by` of its residual and drives
-    `of`, by dq, dqd (n,) at the start, and by the tangents of its controllers' laws in `in_loop`.
+    """Changes of a run's `results`: q, q̇, q̈ (t + 1, n) and samples.
+
+    They follow from the tangents `by` of its residual and drives `of`, from dq, dqd (n,) at the start, and from the
+    tangents of its controllers' laws in `in_loop`.
     """
     (run, samples), (loop, *laws), t = results, in_loop, scheme.tableau(steps.length)
     (q, qd, qdd), (residual, drives), (by_residual, by_drives) = run, of, by
@@ -332,16 +343,18 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
         k, c, m = (matrices[part] for matrices in slope)
         if isinstance(residual, Fitted):
             c, m = c - residual.damping, m - residual.mass
-        left = direct[part] + (k @ dq[..., None] + c @ dqd[..., None] + onto[part] @ du[..., None])[..., 0]
-        return -jnp.linalg.solve(m, left[..., None])[..., 0]
+        force = direct[part] + (k @ dq[..., None] + c @ dqd[..., None] + onto[part] @ du[..., None])[..., 0]
+        return -jnp.linalg.solve(m, force[..., None])[..., 0]
 
     def by_stage(values: Array) -> Array:
+        """Values at the stages alone, (t, s, ...), of those at all states."""
         return jnp.moveaxis(values[1 : 1 + stages * count].reshape(stages, count, *values.shape[1:]), 0, 1)
 
     jacobian, by_z = t.jacobians(*map(by_stage, slope))
     inverse = jnp.linalg.inv(jacobian)
 
     def step(carried: Any, at: Any) -> Any:
+        """Take the changes of state and laws through one step: δx = −J⁻¹ (δr + L δz), δz₊ = g δz + d δx."""
         dz, law = carried
         inverse, by_z, by_command, direct, g, d, sampled = at
         law, du, taken = follow.step(law, dz, sampled)

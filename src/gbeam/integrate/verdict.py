@@ -112,8 +112,9 @@ class Verdict:
         return bool((self.corrections[0] * QUICKEST <= SETTLED * self.reach).all())
 
     def record(self, size: Array, x: Array) -> None:
-        """Record the sizes (t,) of corrections, which have led to accelerations x (t, s, n); `arrived` says whether
-        few of them have brought the last step near.
+        """Record the sizes (t,) of corrections, which have led to accelerations x (t, s, n).
+
+        `arrived` becomes true if the last step has come near its solution by few corrections.
         """
         self.before, was_near = self.corrections[0].copy(), self.near
         self.reach = reach(x)
@@ -121,64 +122,74 @@ class Verdict:
         self.corrections[2] += 1
         self.arrived = not was_near and self.near and bool(self.corrections[2, -1] <= QUICK)
 
-    def feel(self, accelerations: Array) -> None:
-        """Take the accelerations (t,) that the forces which cancel at steps would make, for the rounding that they
-        leave, and that of a window's first for a bound.
+    def set_rounding(self, accelerations: Array) -> None:
+        """Set the rounding of the steps from the accelerations (t,) that the forces which cancel there would make
+        alone.
+
+        The rounding of a window's first steps bounds that of all later ones.
         """
         self.corrections[4] = CANCELLED * accelerations
         if self.bound == np.inf:
             self.bound = GROWN * float(self.corrections[4].max())
 
     def judge(self, loads: Any, balanced: Flags, *, fresh: Flags, trusted: Flags) -> Judgement:
-        """Judge the corrections recorded last, beside accelerations (t,) that the `loads` would make. Derivatives are
-        `fresh` that no correction has been made by before. By those that are not `trusted`, interpolated from states
-        far away, which may be far too large, a correction may be small wherever a step is: its forces must be
-        `balanced`, too.
+        """Judge the corrections recorded last. `loads` (t,) are the accelerations that the loads alone would make.
+
+        Derivatives are `fresh` by which no correction has been made before. Those that are not `trusted` are
+        interpolated from states far away and may be far too large: a correction by them may be small wherever a step
+        is, so that the forces of such a step have to be `balanced`, too.
         """
         size, share, count, least, rounding = self.corrections
-        alone, noise = len(size) == 1, np.minimum(rounding, self.bound) + CANCELLED * loads
+        alone = len(size) == 1
+        noise = np.minimum(rounding, self.bound) + CANCELLED * loads
         # By derivatives of another state corrections may shrink slowly without being rounding.
         good = converged(size, self.before, self.reach, noise, fresh=fresh, quick=least <= FAST)
         doubtful = good & ~trusted & ~balanced
         good &= ~doubtful
-        least[:] = np.fmin(least, size / np.where(fresh | np.isinf(self.before), np.nan, self.before))
+        factor = size / np.where(fresh | np.isinf(self.before), np.nan, self.before)
+        least[:] = np.fmin(least, factor)
         slow = (~good & (count > 1) & ~(size <= SLOW * self.before)) | (alone & doubtful)
-        lost = ~np.isfinite(size) | (~(share <= MOVED) & (count >= (ALONE if alone else LATE)))
+        far = ~(share <= MOVED)
+        lost = ~np.isfinite(size) | (far & (count >= (ALONE if alone else LATE)))
         lost[0] |= count[0] >= ALONE
         return Judgement(good, slow, lost)
 
 
 def balanced(remaining: Array, forces: Array, loads: Array) -> Flags:
-    """Flags (t,) of steps whose `remaining` forces are small beside those that cancel there, and beside the rounding of
-    the loads, (t, n) each.
+    """Flags (t,) of steps in balance: their `remaining` forces are small beside the `forces` that cancel there, or no
+    more than the rounding of the `loads`; (t, n) each.
     """
-    left, whole, loaded = (np.abs(each).max(axis=1) for each in (remaining, forces, loads))
-    flags: Flags = left <= BALANCED * whole + CANCELLED * loaded
+    largest_remaining, largest_force, largest_load = (np.abs(sizes).max(axis=1) for sizes in (remaining, forces, loads))
+    flags: Flags = largest_remaining <= BALANCED * largest_force + CANCELLED * largest_load
     return flags
 
 
 def reach(x: Array) -> Array:
-    """Size (t,) of the accelerations x (t, s, n) of steps, to which errors are related: beside what came before."""
+    """Size (t,) of the accelerations x (t, s, n) of each step, beside which errors are measured. A share of the largest
+    before a step is added, since its own may all vanish.
+    """
     largest = np.abs(x).max(axis=(1, 2))
     return largest + EARLIER * np.maximum.accumulate(largest) + TINY
 
 
 def shrinkage(size: Any, before: Any) -> Any:
-    """Factor, 1 at most, by which corrections shrink, from the sizes of the last two; 0 after the first one, where the
-    size before is infinite.
+    """Factor, at most 1, by which corrections shrink, from the sizes of the last two. It is 0 after the first one,
+    where the size before is infinite.
     """
     xp = namespace(size, before)
     return xp.minimum(size / xp.maximum(before, 1e-300), 1.0)
 
 
 def converged(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Flags:
-    """Flags (t,) of steps whose last correction, `size`, leaves no more error than a tolerance and rounding, `noise`.
-    Corrections shrink by a constant factor, size / before; by `fresh` derivatives it is unknown and taken as 1. After
-    the first correction any error may be left. What is left is rounding, too, where small corrections stall: by fresh
-    derivatives, or after `quick` ones, for the rounding of earlier steps adds to a step's own.
+    """Flags (t,) of steps whose last correction, of a `size`, leaves an error below a tolerance and rounding, `noise`.
+
+    Corrections are taken to shrink by a constant factor, size / before. By `fresh` derivatives this factor is unknown
+    and taken as 1, and after the first correction any error may remain. A small correction that stalls is rounding, by
+    fresh derivatives or after `quick` ones: the rounding of earlier steps adds to a step's own.
     """
-    again, factor = np.isfinite(before), shrinkage(size, before)
-    left = np.where(again, size * np.where(fresh, 1.0, np.maximum(factor, QUICKEST)), np.inf)
-    stalled = (fresh & again & (factor > STALLED)) | (quick & (factor > SLOW) & (size <= SUMMED * reach))
-    flags: Flags = (left <= TOLERANCE * reach + noise) | (stalled & (size <= ROUNDING * reach))
+    repeated, factor = np.isfinite(before), shrinkage(size, before)
+    remaining = size * np.where(fresh, 1.0, np.maximum(factor, QUICKEST))
+    error = np.where(repeated, remaining, np.inf)
+    stalled = (fresh & repeated & (factor > STALLED)) | (quick & (factor > SLOW) & (size <= SUMMED * reach))
+    flags: Flags = (error <= TOLERANCE * reach + noise) | (stalled & (size <= ROUNDING * reach))
     return flags

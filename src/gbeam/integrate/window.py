@@ -57,14 +57,16 @@ class Window:
         self.z, self.x, self.start = z[None], np.zeros((0, len(self.scheme.offsets), len(x))), x
 
     def room(self, end: int, *, single: bool) -> int:
-        """Number of steps before `end` to append, if the last one is near: more where all have `single` derivatives."""
+        """Number of steps before `end` that may be appended, if the last one is near its solution. A window is longer
+        where all its steps have a `single` set of derivatives.
+        """
         count = len(self)
         if count and (self.sampling is not None or count > FEW or self.limit == 1):
             return 0
         return max(min(self.growth, end - self.first - count, (LONGEST if single else MOST) - count), 0)
 
     def extend(self, added: int) -> None:
-        """Append steps that are like the last one."""
+        """Append steps, and guess each like the last one."""
         last = self.x[-1:, -1:] if len(self) else self.start
         self.z = np.concatenate([self.z, np.repeat(self.z[-1:], added, axis=0)])
         self.x = np.concatenate([self.x, np.broadcast_to(last, (added, *self.x.shape[1:]))])
@@ -82,11 +84,14 @@ class Window:
             self._place()
 
     def leave(self, count: int) -> None:
-        """Move the first `count` steps, which have converged, out of the window to `done`."""
+        """Move the first `count` steps, which have converged, out of the window, and store their ends in `done`."""
         z, x, t = self.z[:count], self.x[:count], self.tableau
-        end_z, end_x = (weights if len(weights) == 1 else weights[:count] for weights in (t.end_z, t.end_x))
+        end_z, end_x = t.end_z, t.end_x
+        if len(end_z) > 1:  # steps of several lengths
+            end_z, end_x = end_z[:count], end_x[:count]
         ends = end_z @ z + end_x @ x
-        self.done.append((ends[:, 0], ends[:, 1], *([x[:, -1]] if self.scheme.ends else [])))
+        qdd = [x[:, -1]] if self.scheme.ends else []
+        self.done.append((ends[:, 0], ends[:, 1], *qdd))
         self.start, self.first, self.limit = x[-1, -1], self.first + count, LONGEST
         self._keep(slice(count, None))
 
@@ -102,7 +107,9 @@ class Window:
         self._keep(slice(count))
 
     def shrink(self) -> bool:
-        """Begin anew with fewer steps, a single one at last; return False where it has failed, too."""
+        """Begin again with a quarter of the steps, at last with a single one. Return False if a single step has
+        failed.
+        """
         if len(self) == self.limit == 1:
             return False
         self.growth = self.limit = max(min(len(self), self.limit) // 4, 1)
@@ -110,26 +117,29 @@ class Window:
         return True
 
     def stages(self) -> Stages:
-        """The stages of all steps, as the last iterate has them."""
+        """States and inputs at the stages of all steps, by the last iterate."""
         both = self.weights @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
         states = np.concatenate([both, self.x[:, None]], axis=1).swapaxes(0, 1).reshape(3, -1, self.x.shape[-1])
         return Stages(self.times, states, self.inputs)
 
     def correct(self, stages: Stages, maps: tuple[Array, Array, Array]) -> Array:
-        """Correct states and accelerations of all steps by Newton's method, a single step's in full only where that
-        makes the next correction smaller; return the largest correction of each step's accelerations, (t,).
+        """Correct states and accelerations of all steps by Newton's method; return the largest correction of each
+        step's accelerations, (t,). That of a single step is halved until it makes the next one smaller.
         """
-        (inverse, answer, step), t, count = maps, self.tableau, len(self)
+        inverse, answer, step = maps
+        t, count = self.tableau, len(self)
         self.residuals = self.residual(*stages.states, self.inputs).reshape(count, -1)
         by_residual = products(inverse, self.residuals)
+        # g z + d (x − J⁻¹ r) − z₊, the part of δz₊ that is there without a change of the state before
         defect = t.g @ self.z[:-1] + t.d @ (self.x - by_residual.reshape(self.x.shape)) - self.z[1:]
-        moved = self._moved(step, defect.reshape(count, -1))
-        change = (by_residual + products(answer, moved[:-1])).reshape(self.x.shape)
+        by_step = self._moved(step, defect.reshape(count, -1))
+        # −δx = J⁻¹ (r + L δz)
+        change = (by_residual + products(answer, by_step[:-1])).reshape(self.x.shape)
         commands = self._commands
         if commands is not None:
             change = change + commands.changed(self.x.shape)
             self.inputs = commands.driven(self.free, self.x.shape[1])
-        by_state = moved.reshape(self.z.shape)
+        by_state = by_step.reshape(self.z.shape)
         self.z += by_state
         self.x -= change
         if count == 1:
@@ -137,8 +147,10 @@ class Window:
         return np.asarray(np.abs(change).max(axis=(1, 2)))
 
     def loads(self, states: Array) -> Array:
-        """Sizes (t, s n) of the forces if every component of an input changed by the largest: a weight counts even
-        where it acts across all that a joint lets move.
+        """Sizes (t, s n) of the loads: the change of the forces if every component of an input changed by its largest
+        one.
+
+        So a weight counts even where it acts only across what a joint lets move.
         """
         shifted = each_leaf(lambda leaf: leaf + CANCELLED * np.abs(leaf).max(initial=0.0), self.inputs)
         change = self.residual(*states, shifted) - self.residual(*states, self.inputs)
@@ -150,7 +162,7 @@ class Window:
         return None if self.held is None or self.held.settled else self.held
 
     def _place(self) -> None:
-        """Set tableau, times and inputs of the steps under way; drives are evaluated for `AHEAD` steps at once."""
+        """Set tableau, times and inputs of the steps under way. Drives are evaluated for `AHEAD` steps at once."""
         stages, last = len(self.scheme.offsets), self.first + len(self)
         if last > self.ahead.stop:
             self.ahead = range(self.first, min(max(last, self.first + AHEAD), len(self.steps)))
@@ -161,8 +173,9 @@ class Window:
         lengths = length[:1] if (length == length[0]).all() else length
         if not np.array_equal(lengths, self.lengths):
             t: Tableau = self.scheme.tableau(lengths)
-            rows = [np.concatenate(pair, axis=-1) for pair in ((t.w_q, t.c_q), (t.w_v, t.c_v))]
-            self.lengths, self.tableau, self.weights = lengths, t, np.stack(rows, axis=1)
+            q_row = np.concatenate([t.w_q, t.c_q], axis=-1)
+            v_row = np.concatenate([t.w_v, t.c_v], axis=-1)
+            self.lengths, self.tableau, self.weights = lengths, t, np.stack([q_row, v_row], axis=1)
         under_way = slice(stages * begin, stages * (begin + len(length)))
         self.times = self.all_times[under_way]
         self.inputs = self.free = each_leaf(lambda leaf: leaf[under_way], self.driven)
@@ -172,12 +185,15 @@ class Window:
             self.inputs = self.held.driven(self.free, stages)
 
     def _moved(self, step: Array, defect: Array) -> Array:
-        """Changes δz (t + 1, m n) of states, δz₊ = S δz + defect, by `step` S (1 or t, m n, m n), `defect` (t, m n)."""
+        """Changes δz (t + 1, m n) of the states by the recurrence δz₊ = S δz + defect, from zero.
+
+        `step` S is (1 or t, m n, m n), `defect` (t, m n). Commands of controllers add what they change.
+        """
         count, commands = len(defect), self._commands
         if len(step) > 1 and commands is None:
             return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), np.zeros(defect.shape[1]))
         moved = np.zeros((count + 1, defect.shape[1]))
-        if commands is None:  # sums of powers of one map, each twice as long as the last
+        if commands is None:  # one map: each pass doubles the number of steps over which defects are summed
             moved[1:], power, reach = defect, step[0].T, 1
             while reach < count:
                 moved[1 + reach :] += moved[1:-reach] @ power
@@ -190,7 +206,9 @@ class Window:
         return moved
 
     def _shorten(self, inverse: Array, by_state: Array, change: Array) -> None:
-        """Halve a single step's correction until the next would be smaller: friction or a stop bends the residual."""
+        """Halve a single step's correction until the next one would be smaller. Friction or a stop bends the residual,
+        so that a full correction may go too far.
+        """
         share, whole = 1.0, np.linalg.norm(change)
         for _ in range(HALVINGS):
             following = inverse @ self.residual(*self.stages().states, self.inputs).reshape(1, -1, 1)

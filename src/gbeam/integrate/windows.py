@@ -31,8 +31,10 @@ ENOUGH = 100  # steps whose ends are found together, at least; it changes no cor
 def windows(
     equations: NonlinearEquations, scheme: Scheme, q: Array, qd: Array, steps: Steps, samples: Sampling | None = None
 ) -> Iterator[Piece]:
-    """Integrate, and take the `samples` of controllers; yields pieces of kept q, q̇, q̈ (k, n) and flags (k,) of those
-    solved, first the initial state. q̈ is left out unless the scheme's last stage is the end of the step.
+    """Integrate nonlinear equations, and take the `samples` of controllers.
+
+    Yields pieces of q, q̇, q̈ (k, n) at the ends of kept steps, with flags (k,) of those solved; the first piece is the
+    initial state. q̈ is missing unless the scheme's last stage is the end of the step.
     """
     if not q.size:  # all motion is prescribed
         empty = np.zeros((1 + np.count_nonzero(steps.kept), 0))
@@ -40,11 +42,11 @@ def windows(
         return
     drive, residual = equations.drive, stepped(equations, scheme, steps, len(q))
 
-    def demanded(t: Any, q: Array, qd: Array) -> Array:
+    def acceleration(t: Any, q: Array, qd: Array) -> Array:
         return accelerations(exact(residual), q[None], qd[None], drive(np.array([t])))[0]
 
     with np.errstate(all="ignore"):  # of iterates that diverge
-        qdd = demanded(steps.first[0], q, qd)
+        qdd = acceleration(steps.first[0], q, qd)
     yield *(x[None] for x in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
     window, begin = Window(residual, drive, scheme, steps, samples), 0
     solver = _Solver(window, Derivatives(residual, samples), Verdict())
@@ -58,7 +60,7 @@ def windows(
                     ended = window.ended()
                     q, qd = ended[0][-1], ended[1][-1]
                     if scheme.ends and window.first == end and steps.anew[end - 1]:
-                        qdd, ended[2][-1] = (demanded(time[end - 1], q, qd) for time in (steps.resume, steps.end))
+                        qdd, ended[2][-1] = (acceleration(time[end - 1], q, qd) for time in (steps.resume, steps.end))
                     kept = steps.kept[begin : window.first]
                     yield *(ends[kept] for ends in ended), np.ones(np.count_nonzero(kept), dtype=bool)
             if not solved:
@@ -83,7 +85,7 @@ class _Solver:
 
     def solve(self, end: int, enough: int) -> bool:
         """Correct the steps of the window, all before `end`, until the first `enough` steps of the run have converged
-        and left; return False where a single step fails.
+        and left. Return False if a single step fails.
         """
         while self.window.first < enough:
             self._follow(end)
@@ -108,30 +110,32 @@ class _Solver:
                 part.extend(added)
 
     def _correct(self) -> Judgement:
-        """Correct all steps once, by derivatives renewed where they are old."""
+        """Make one correction of all steps, by derivatives that are renewed where they are old, and judge it."""
         window, derivatives, verdict = self.parts
         stages = window.stages()
         derivatives.renew(stages)
         derivatives.factor(stages, window.tableau, window.held)
         forces, fresh, trusted = derivatives.forces(stages.states), derivatives.fresh, derivatives.trusted
-        if verdict.begun:  # a first correction hides rounding
-            verdict.feel(derivatives.accelerations(forces))
+        if verdict.begun:  # a first correction is far larger than rounding
+            verdict.set_rounding(derivatives.accelerations(forces))
         verdict.record(window.correct(stages, derivatives.maps), window.x)
         if verdict.arrived:
             window.grow()
         if window.held is not None:
             window.held.settled = verdict.settled
-        stuck = verdict.stuck.any()
-        loads = window.loads(stages.states) if stuck else 0 * forces
-        of_loads = derivatives.accelerations(loads) if stuck else 0.0
-        even = balanced(window.residuals, forces, loads)
-        judgement = verdict.judge(of_loads, even, fresh=fresh, trusted=trusted)
-        derivatives.correct(verdict.shares, judgement.slow, fast=verdict.fast)
+        # The rounding of loads is computed only where corrections do not shrink: it costs two more residuals.
+        loads, by_loads = 0 * forces, np.float64(0.0)
+        if verdict.stuck.any():
+            loads = window.loads(stages.states)
+            by_loads = derivatives.accelerations(loads)
+        in_balance = balanced(window.residuals, forces, loads)
+        judgement = verdict.judge(by_loads, in_balance, fresh=fresh, trusted=trusted)
+        derivatives.grow_old(verdict.shares, judgement.slow, fast=verdict.fast)
         return judgement
 
     def _withdraw(self, first: int) -> bool:
-        """Take out the steps from `first` on, which are lost, or begin anew with fewer where that is the window's own
-        first; return False where the window is a single step.
+        """Take out the steps from `first` on, which are lost. If that is the window's own first step, begin again with
+        fewer; return False if the window is a single step.
         """
         if first:
             for part in self.parts:
