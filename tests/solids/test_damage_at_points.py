@@ -14,7 +14,7 @@ import gbeam as gb
 from gbeam.analysis.imitation.fatigue import cyclic_at
 from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.report.study import comparison_lines
-from gbeam.solids.stress import ranging
+from gbeam.solids.stress import critical_plane_stress
 
 from .bodies import STIFF, block, solid
 
@@ -154,11 +154,11 @@ def test_the_plane_where_a_stress_ranges_most() -> None:
         stress = rng.normal(size=(50, 6))
         x, y, z = ways.T
         on_planes = stress @ np.stack([x * x, y * y, z * z, 2 * y * z, 2 * x * z, 2 * x * y])
-        chosen = np.ptp(ranging(stress))
+        chosen = np.ptp(critical_plane_stress(stress))
         assert chosen >= np.ptp(on_planes, axis=0).max() * (1 - 1e-12)
         assert chosen < 1.02 * np.ptp(on_planes, axis=0).max()
     pulled = np.outer(np.sin(np.arange(30.0)), np.outer(ways[0], ways[0])[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]])
-    np.testing.assert_allclose(ranging(pulled), np.sin(np.arange(30.0)), atol=1e-9)
+    np.testing.assert_allclose(critical_plane_stress(pulled), np.sin(np.arange(30.0)), atol=1e-9)
 
 
 def test_every_section_has_its_fibre() -> None:
@@ -181,4 +181,4 @@ def test_a_stress_that_ranges_by_rounding_only_has_a_plane_too() -> None:
         generator = np.random.default_rng(seed)
         steady = np.tile(1e4 * generator.normal(size=6), (101, 1))
         sides = np.where(generator.random((101, 6)) < 0.5, -np.inf, np.inf)
-        assert np.ptp(ranging(np.nextafter(steady, sides))) < 1e-10
+        assert np.ptp(critical_plane_stress(np.nextafter(steady, sides))) < 1e-10

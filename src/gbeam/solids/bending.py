@@ -33,8 +33,11 @@ def bending(
     stiffness: Floats,
     solve: Callable[[Floats], Floats],
 ) -> Bending:
-    """Return forces of higher order of a solid in shapes (u, n) of unit mass with a stiffness (n, n); `solve` answers
-    loads on the unknowns, and `stations` reads displacements (k, 3, m) of the nodes at the stations, (s, 3, m).
+    """Forces of higher order in the lowest modes of a solid that moves in shapes (u, n) of unit mass, with a stiffness
+    (n, n).
+
+    `solve` answers loads on the unknowns. `stations` reads displacements (k, 3, m) of the nodes at the stations, (s, 3,
+    m).
     """
     squares, basis = np.linalg.eigh(stiffness)
     reached = squares <= REACH**2 * squares[modes - 1]
@@ -46,15 +49,16 @@ def bending(
     answers = -solve(loads)
     condensed = (loads.T @ answers).reshape(b, r, b, r).swapaxes(1, 2)
     displaced = linked.displacements(answers)[:count].reshape(count, 3, b, r)
-    # Of second order to each pair of modes that bend it, after those that do.
+    # Displacements of the modes that bend the solid, then those of second order to each pair of these.
     static = np.concatenate([moved[..., :b], displaced[..., :b].reshape(count, 3, b * b)], axis=2)
     halves = geometric_stiffness(mesh.points, mesh.blocks, static, moved)
     halves = halves + halves.swapaxes(2, 3)
     linear, of_second = np.split(halves.sum(axis=0), [b])
     close = near(squares)
-    first = (linear - halves[0, :b]) * ~close  # of near modes the model has it
+    first = (linear - halves[0, :b]) * ~close  # the model has it between modes near in frequency
     alone = quartic + of_second.reshape(b, b, r, r) / 2 + condensed
-    by_modes, by_first = (np.einsum("kim,lmj->klmij", each, each) for each in (linear, first))
+    by_modes = np.einsum("kim,lmj->klmij", linear, linear)
+    by_first = np.einsum("kim,lmj->klmij", first, first)
     # The first modes while all others follow statically.
     held = alone + ((by_modes + by_first / 2)[:, :, :b] / squares[:b, None, None]).sum(axis=2)
     drawn, bent = (first - linear / 2)[:, :b, :b], held[..., :b, :b] / 3
@@ -72,8 +76,10 @@ def bending(
 
 
 def _of_higher_order(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
-    """Forces of second order (k, 3, b, r) on the nodes, by shapes (k, 3, r) that the solid moves in while the first b
-    bend it, and the stiffness (b, b, r, r) by the strains of second order of those.
+    """Forces of second order on the nodes, (k, 3, b, r), and stiffness of fourth degree, (b, b, r, r).
+
+    The solid moves in shapes (k, 3, r) while the first b of them bend it. The stiffness is that by the strains of
+    second order.
     """
     count, _, r = moved.shape
     forces, quartic, of_bend = np.zeros((count, b, 3, r)), np.zeros((b * r, b * r)), np.zeros((b, b, r, r))
@@ -88,6 +94,7 @@ def _of_higher_order(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]
         strain = products[:, :, ROWS, COLUMNS]
         strain[:, :, 3:] += products[:, :, COLUMNS[3:], ROWS[3:]]
         stretched = part.elasticity @ strain * volume[..., 0]
+        # The stress of the bend in the slopes of the shapes, and that of the shapes in the slopes of the bend.
         pull = (np.moveaxis(stress[..., :b], 3, 1) @ wide).reshape(shape)
         pull += np.swapaxes((bent.swapaxes(2, 3) @ stress.reshape(-1, 1, 3, 3 * r)).reshape(shape), 2, 3)
         pull = pull * volume + stretched[:, :, TENSOR]
@@ -95,8 +102,9 @@ def _of_higher_order(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]
         along = part.gradients.swapaxes(1, 2).reshape(e, n, 3 * q)
         at_nodes = along @ pull.swapaxes(1, 2).reshape(e, 3 * q, 3 * b * r)
         add_to_rows(forces, part.nodes.ravel(), at_nodes.reshape(-1, b, 3, r))
-        tall = (np.moveaxis(each, 2, 1).reshape(-1, b * r) for each in (strain, stretched))
-        quartic += next(tall).T @ next(tall)
+        tall_strain = np.moveaxis(strain, 2, 1).reshape(-1, b * r)
+        tall_stress = np.moveaxis(stretched, 2, 1).reshape(-1, b * r)
+        quartic += tall_strain.T @ tall_stress
         for k, l in np.ndindex(b, b):
             turned = stretched[:, k, :, l][:, TENSOR] @ wide[:, 0]
             of_bend[k, l] += slopes.reshape(-1, r).T @ turned.reshape(-1, r) / 2

@@ -27,7 +27,9 @@ FINEST = 10  # how much shorter than the given size edges may be there
 
 
 def mesh_of(source: Any, unit: str | None, element_size: float | None, *, cards: bool = False) -> tuple[Any, float]:
-    """Return the mesh as of meshio of a source, itself or a file with `cards` or not, and the size of its unit, m."""
+    """Return a mesh with meshio's fields and the size of its unit, m. The source is a file, read with its `cards` or
+    without, or the mesh itself; a file of STEP is meshed by elements of a size.
+    """
     path = Path(source) if isinstance(source, (str, os.PathLike)) else None
     if path is not None and path.suffix.lower() in ENDINGS:
         if unit is not None:
@@ -44,8 +46,11 @@ def mesh_of(source: Any, unit: str | None, element_size: float | None, *, cards:
 
 
 def meshed(path: Path, size: float) -> FileMesh:
-    """Return the mesh, in m, of tetrahedra of 10 nodes with edges of a size (m), finer where surfaces are curved;
-    solids and surfaces are groups by their names, or numbers in the order of the file, and `info` says where they are.
+    """Mesh the solids of a STEP file by tetrahedra of 10 nodes with edges of a size (m), finer where surfaces are
+    curved.
+
+    Places are in m. Solids and surfaces are groups by their names, or by their numbers in the file, and `info` says
+    where they are.
     """
 
     def refuse(problem: str) -> InputError:
@@ -58,7 +63,9 @@ def meshed(path: Path, size: float) -> FileMesh:
 
 
 def _mesh_into(path: str, size: float, out: str) -> dict[str, Any]:
-    """Mesh the solids of a file into another one, `out`; return the parts of that, with the places of its groups."""
+    """Mesh the solids of a file into another one, `out`; return the parts of that mesh, and the places of its groups in
+    words.
+    """
     try:
         import gmsh
     except ModuleNotFoundError:

@@ -18,25 +18,29 @@ APART = 1e-6  # of the size of a mesh: nodes that are farther apart are not one 
 def with_cards(
     cards: Cards, links: Links, placed: Placed, clamped: Flags, size: float, mass: float
 ) -> tuple[Links, Floats]:
-    """Links of a solid with those of a file's cards added, and the cards' masses (k,) on its points, kg; `size` and
-    `mass` are the file's units, m and kg, of time the second.
+    """Add the masses, rigid links and springs of a file to the links of a solid.
+
+    Returns these links, and the masses (k,) of the file on single points, kg. `size` and `mass` are the file's units, m
+    and kg; its unit of time is the second.
     """
     ends = np.cumsum(np.bincount(placed.numbers, minlength=len(placed.places)))[:-1]
     points_of = np.split(np.argsort(placed.numbers, kind="stable"), ends)
-    listed = np.asarray(cards.nodes).tolist()
-    solid_of = dict(zip(listed, points_of, strict=False))
-    place_of = dict(zip(listed, placed.places, strict=False))
+    node_numbers = np.asarray(cards.nodes).tolist()
+    solid_of = dict(zip(node_numbers, points_of, strict=False))
+    place_of = dict(zip(node_numbers, placed.places, strict=False))
     within = float(np.linalg.norm(np.ptp(placed.places, axis=0))) * APART
     members, places, owner = dict(links.nodes), dict(links.places), dict[int, str]()
     mean = dict[str, Floats]()
-    base, weights = "the base", np.zeros(len(clamped))
+    base, lumped = "the base", np.zeros(len(clamped))
 
     def refuse_unknown(name: str, numbers: Iterable[int]) -> None:
         if unknown := [number for number in numbers if number not in solid_of]:
             raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
 
     def link(name: str, numbers: tuple[int, ...]) -> None:
-        """Make nodes of the file, by number, a rigid link, or let the base own them if all their points are clamped."""
+        """Make a rigid link of nodes of the file, by their numbers. If all their points are clamped, the base owns
+        them.
+        """
         refuse_unknown(name, numbers)
         chosen = np.unique(np.concatenate([solid_of[number] for number in numbers]))
         if len(chosen) and clamped[chosen].all():
@@ -69,14 +73,14 @@ def with_cards(
         coupling(f"mesh, {name}:", placed.points[members[name]], mean[name])
         places[name], owner[number] = place_of[number], name
     carried: dict[str, list[tuple[float, Floats, Floats]]] = {}
-    # First those that turn, which a mass on the same node joins.
+    # Lumps that turn come first: a mass without inertia on the same node then joins their link.
     for lump in sorted(cards.lumps, key=lambda lump: not (lump.inertia.any() or lump.offset.any())):
         tensor = mass * size**2 * placed.rotation @ lump.inertia @ placed.rotation.T
         offset = size * placed.rotation @ lump.offset
         points = solid_of.get(lump.node, ())
         if lump.node not in owner and len(points):
             if not tensor.any() and not offset.any():
-                weights[points] += mass * lump.mass / len(points)
+                lumped[points] += mass * lump.mass / len(points)
                 continue
             if len(points) == 1:
                 fix = "join it to the solid by a rigid link"
@@ -117,26 +121,28 @@ def with_cards(
     for name, chosen in members.items():
         if not len(chosen):
             _refuse_unheld(name, tied)
-    return tied, weights
+    return tied, lumped
 
 
 def _refuse_unheld(name: str, links: Links) -> None:
-    """Refuse a link of no node of the solid that no spring holds."""
+    """Refuse a link without nodes of the solid that its springs let move freely in some direction."""
     stiffness = sum((values for between, values, _ in links.springs.values() if name in between), np.zeros(6))
     body = links.bodies.get(name)
-    resisting = np.zeros(3) if body is None else np.diag(body.tensor) + np.abs(body.centre).sum()
-    loose = stiffness[:3].min() == 0 or (stiffness[3:] == 0)[resisting > 0].any()
-    if loose:
+    inertia = np.zeros(3) if body is None else np.diag(body.tensor) + np.abs(body.centre).sum()
+    shifts = stiffness[:3].min() == 0
+    turns = (stiffness[3:] == 0)[inertia > 0].any()  # a rotation without inertia is no coordinate
+    if shifts or turns:
         raise refused(name, "is on no node of the solid, and its springs leave it a way to move", "hold it")
 
 
 def _together(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody:
-    """One body of several parts, each its mass, kg, centre (3,) m and inertia (3, 3) about that, kg m²."""
+    """Join parts into one body. Each part is its mass, kg, centre (3,) m and inertia (3, 3) about that, kg m²."""
     whole = sum(mass for mass, *_ in parts)
-    centre = sum((mass * part_centre for mass, part_centre, _ in parts), np.zeros(3)) / whole if whole else np.zeros(3)
+    moment = sum((mass * part_centre for mass, part_centre, _ in parts), np.zeros(3))
+    centre = moment / whole if whole else np.zeros(3)
     tensor = np.zeros((3, 3))
     for mass, part_centre, inertia in parts:
-        arm = part_centre - centre
+        arm = part_centre - centre  # Steiner's theorem
         tensor += inertia + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     if tensor.any() and not whole:
         raise refused(name, "has inertia and no mass")

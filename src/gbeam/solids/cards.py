@@ -51,9 +51,9 @@ _CARRYING = re.compile(
 
 @dataclass
 class Cards:
-    """Statements of a file besides its mesh: numbers (k,) of its nodes, and by them the nodes of each rigid link by its
-    name, masses, springs, and by name the node that has the `mean` motion of others, with their weights; `words` are
-    the statements that are read.
+    """Statements of a file besides its mesh: the numbers (k,) of its nodes, the nodes of each rigid link by its name,
+    masses, and springs. `mean` names the node that has the mean motion of others, with the weights of these. `words`
+    are the statements that are read.
     """
 
     nodes: Any = ()
@@ -64,25 +64,28 @@ class Cards:
     words: tuple[str, ...] = ()
 
     def parts(self) -> dict[str, Any]:
-        """Return them as plain values and arrays."""
+        """Return the statements as plain values and arrays, which another process can pass on."""
         mean = {name: [node, [*shares], [*shares.values()]] for name, (node, shares) in self.mean.items()}
-        lumps, springs = ([tuple(each) for each in listed] for listed in (self.lumps, self.springs))
+        lumps, springs = [tuple(lump) for lump in self.lumps], [tuple(spring) for spring in self.springs]
         return {"rigid": self.rigid, "lumps": lumps, "springs": springs, "mean": mean, "words": self.words}
 
     @classmethod
     def of(cls, nodes: Any, parts: Mapping[str, Any]) -> Cards:
-        """Make them of their parts; there are none besides a mesh of another kind."""
+        """Make the statements of what :meth:`parts` returned. Empty parts are those of a mesh of another kind of
+        file.
+        """
         if not parts:
             return cls(nodes)
         mean: dict[str, tuple[int, Mapping[int, float]]] = {
-            name: (node, dict(zip(*shares, strict=True))) for name, (node, *shares) in parts["mean"].items()
+            name: (node, dict(zip(numbers, weights, strict=True)))
+            for name, (node, numbers, weights) in parts["mean"].items()
         }
-        lumps, springs = [Lump(*each) for each in parts["lumps"]], [Spring(*each) for each in parts["springs"]]
+        lumps, springs = [Lump(*values) for values in parts["lumps"]], [Spring(*values) for values in parts["springs"]]
         return cls(nodes, parts["rigid"], lumps, springs, mean, parts["words"])
 
 
 def carrying(mesh: TextMesh) -> dict[str, int]:
-    """Count the statements of a file on masses, stiffness and constraints by their names."""
+    """Count the statements of a file that carry mass, stiffness or constraints, by their names."""
     counts = Counter[str]()
     for word, options, _ in mesh.statements:
         name = ", ".join([word, *(option for option in ("COMPOSITE", "OFFSET") if option in options)])
@@ -91,9 +94,12 @@ def carrying(mesh: TextMesh) -> dict[str, int]:
 
 
 def read_cards(path: str, mesh: TextMesh) -> Cards:
-    """Read the statements of a file besides its mesh: none unless it is one of Nastran, Abaqus or CalculiX."""
+    """Read the statements of a file besides its mesh. Files of other programs than Nastran, Abaqus and CalculiX have
+    none.
+    """
     ending = ending_of(path)
-    cards = (_Nastran if ending in NASTRAN else _Abaqus if ending in ABAQUS else _Reader)(mesh)
+    reader = _Nastran if ending in NASTRAN else _Abaqus if ending in ABAQUS else _Reader
+    cards = reader(mesh)
     try:
         cards.read()
     except InputError:
@@ -131,19 +137,22 @@ class _Nastran(_Reader):
     known = ("CONM2", "RBE2", "RBE3", "RBAR", "CELAS1", "CELAS2", "CBUSH")
 
     def read(self) -> None:
-        usual = next((row[5] for row in self._rows("GRDSET")), "")
-        self._turned = {row[0] for row in self._rows("GRID") if (usual if row[5] == "" else row[5]) not in ("", 0)}
+        """Read properties first, then each card by its method, and join rigid links that share nodes."""
+        default_system = next((row[5] for row in self._rows("GRDSET")), "")
+        systems = [(row[0], default_system if row[5] == "" else row[5]) for row in self._rows("GRID")]
+        self._turned = {node for node, system in systems if system not in ("", 0)}
         self._scalar = {row[i]: row[i + 1] for row in self._rows("PELAS") for i in (0, 4) if row[i] != ""}
         self._bush = {row[0]: _numbers(row[2:8]) for row in self._rows("PBUSH") if row[1] == "K"}
         for word in self.words:
             for row in self._rows(word):
                 getattr(self, f"_{word.lower()}")(f"{word} {row[0]}", row)
-        pinned = {f"RBE2 {row[0]}" for row in self._rows("RBE2") if row[2] == 123}
-        whole = {name: nodes for name, nodes in self.rigid.items() if name not in pinned}
-        self.rigid = {name: nodes for name, nodes in self.rigid.items() if name in pinned} | _joined(whole)
+        # Links that hold displacements alone are pinned to one another, and not joined.
+        names = {f"RBE2 {row[0]}" for row in self._rows("RBE2") if row[2] == 123}
+        pinned = {name: nodes for name, nodes in self.rigid.items() if name in names}
+        self.rigid = pinned | _joined({name: nodes for name, nodes in self.rigid.items() if name not in names})
 
     def _rows(self, word: str) -> Iterator[list[Any]]:
-        """Rows of a card, with as many blanks behind as any has fields."""
+        """Rows of values of all cards of a name. Blanks are appended, so that every field may be asked for."""
         return ([*map(_value, card.rows[0]), *[""] * 24] for card in self.mesh.statements if card.word == word)
 
     def _rbe2(self, name: str, row: list[Any]) -> None:
@@ -158,10 +167,11 @@ class _Nastran(_Reader):
         self.rigid[name] = int(row[1]), int(row[2])
 
     def _rbe3(self, name: str, row: list[Any]) -> None:
-        """Read the components held, then groups of a weight (with a point), components and nodes, up to a word."""
+        """Read the components held, then groups of a weight, its components and its nodes, up to a word."""
         held, *rest = [field for field in row[3:] if field != ""]
         end = next((i for i, field in enumerate(rest) if isinstance(field, str)), len(rest))
-        weights, starts = dict[int, float](), [i for i, field in enumerate(rest[:end]) if isinstance(field, float)]
+        starts = [i for i, field in enumerate(rest[:end]) if isinstance(field, float)]  # weights have a decimal point
+        weights = dict[int, float]()
         for start, stop in pairwise([*starts, end]):
             weight, ways, *nodes = rest[start:stop]
             if ways not in (123, 123456) or held not in (123, 123456):
@@ -202,7 +212,7 @@ class _Nastran(_Reader):
 
 
 def _value(entry: str) -> Any:
-    """Value of a field of Nastran: an int, a float or a text."""
+    """Value of a field of Nastran, an int, a float or a text."""
     for read in (int, real):
         try:
             return read(entry) if entry else ""
@@ -216,12 +226,12 @@ def _numbers(values: list[Any]) -> Floats:
 
 
 def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
-    """Rigid links by the names of the first ones, those that share a node as one."""
+    """Join rigid links that share a node into one, which has the name of the first."""
     joined = dict[str, tuple[int, ...]]()
     for name, nodes in rigid.items():
-        shared = [other for other, held in joined.items() if set(nodes) & set(held)]
-        before = [number for other in shared for number in joined.pop(other)]
-        joined[shared[0] if shared else name] = tuple(dict.fromkeys([*before, *nodes]))
+        sharing = [other for other, held in joined.items() if set(nodes) & set(held)]
+        before = [number for other in sharing for number in joined.pop(other)]
+        joined[sharing[0] if sharing else name] = tuple(dict.fromkeys([*before, *nodes]))
     return joined
 
 
@@ -232,13 +242,16 @@ class _Abaqus(_Reader):
              "DISTRIBUTING COUPLING")  # fmt: skip
 
     def read(self) -> None:
+        """Read each statement by its method, with the nodes of the elements in its set."""
         self._coupled = dict[str, str]()
         for word, options, rows in self.mesh.statements:
-            if word in self.words:
-                name = f"*{word} {options.get('ELSET', options.get('NSET', ''))}".strip()
-                group = [[options["ELSET"]]] if "ELSET" in options else []
-                elements = [self.mesh.elements[number][1] for number in members(group, self.mesh.groups)]
-                getattr(self, f"_{word.lower().replace(' ', '_')}")(name, options, rows, elements)
+            if word not in self.words:
+                continue
+            name = f"*{word} {options.get('ELSET', options.get('NSET', ''))}".strip()
+            group = [[options["ELSET"]]] if "ELSET" in options else []
+            elements = [self.mesh.elements[number][1] for number in members(group, self.mesh.groups)]
+            read = getattr(self, f"_{word.lower().replace(' ', '_')}")
+            read(name, options, rows, elements)
 
     def _mass(self, name: str, _: Options, rows: Rows, elements: Nodes) -> None:
         self.lumps += [Lump(name, nodes[0], float(rows[0][0]), np.zeros(3), np.zeros((3, 3))) for nodes in elements]
@@ -250,10 +263,10 @@ class _Abaqus(_Reader):
         self.lumps += [Lump(name, nodes[0], 0.0, np.zeros(3), np.diag(moments[:3])) for nodes in elements]
 
     def _spring(self, name: str, options: Options, rows: Rows, elements: Nodes) -> None:
-        count = {len(nodes) for nodes in elements}
-        ways = {int(float(cell or 0)) for cell in rows[0][: max(count, default=1)]}
+        counts = {len(nodes) for nodes in elements}  # of nodes: two between nodes, one to the base
+        ways = {int(float(cell or 0)) for cell in rows[0][: max(counts, default=1)]}
         axial = not ways <= {*range(1, 7)}
-        if len(ways) != 1 or len(count) > 1 or axial or {"ORIENTATION", "NONLINEAR"} & {*options}:
+        if len(ways) != 1 or len(counts) > 1 or axial or {"ORIENTATION", "NONLINEAR"} & {*options}:
             raise refused(name, "joins unlike components, is not linear, or has axes of its own")
         stiffness = float(rows[1][0]) * np.eye(6)[min(ways) - 1]
         self.springs += [Spring(name, nodes, stiffness) for nodes in elements]
@@ -275,8 +288,11 @@ class _Abaqus(_Reader):
 
     def _kinematic(self, _: str, __: Options, rows: Rows, ___: Nodes) -> None:
         name, node, weights = self._surface()
-        spans = [[int(cell) for cell in row if cell] for row in rows]  # first and last component
-        held = {way for span in spans if span for way in range(span[0], span[min(1, len(span) - 1)] + 1)}
+        held = set[int]()
+        for row in rows:  # first and last component, or one alone
+            span = [int(cell) for cell in row if cell]
+            if span:
+                held |= {*range(span[0], span[min(1, len(span) - 1)] + 1)}
         if held and not held >= {1, 2, 3}:
             raise refused(name, f"holds the components {', '.join(map(str, sorted(held)))} alone")
         self.rigid[name] = node, *sorted({*weights} - {node})
@@ -291,7 +307,9 @@ class _Abaqus(_Reader):
 
 
 def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
-    """Weights of the nodes of a surface of nodes, or of the faces of elements by Abaqus's numbers: their areas."""
+    """Weights of the nodes of a surface. Nodes that are listed have the weight 1, those of faces of elements their
+    shares of the area.
+    """
     surfaces = [statement for statement in mesh.statements if statement.word == "SURFACE"]
     named = [surface for surface in surfaces if surface.options.get("NAME", "").upper() == name.upper()]
     if not named:

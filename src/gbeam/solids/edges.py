@@ -14,8 +14,10 @@ SHARP = np.cos(np.radians(30.0))  # between the normals of two faces; in a fille
 
 
 def without_limit(mesh: Mesh) -> Flags:
-    """Flags (k,) of nodes where stress has no limit: on the edges of clamps and rigid links, where its growth is slow,
-    and of the elements at re-entrant edges.
+    """Flags (k,) of nodes where stress has no limit as a mesh gets finer.
+
+    They are on the edges of clamps and rigid links, where the stress grows slowly, and in the elements at re-entrant
+    edges.
     """
     flags, corner = _edges_of_held(mesh), _re_entrant(mesh)
     for block in mesh.blocks:
@@ -24,7 +26,9 @@ def without_limit(mesh: Mesh) -> Flags:
 
 
 def _edges_of_held(mesh: Mesh) -> Flags:
-    """Flags (k,) of nodes that a clamp or a rigid link holds, on outer faces that it does not hold as a whole."""
+    """Flags (k,) of nodes at the edge of what a clamp or a rigid link holds: they are on an outer face that is held in
+    part.
+    """
     flags = np.zeros(len(mesh.points), dtype=bool)
     rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
     for nodes in (np.flatnonzero(mesh.clamped), *rigid):
@@ -37,14 +41,16 @@ def _edges_of_held(mesh: Mesh) -> Flags:
 
 
 def _re_entrant(mesh: Mesh) -> Flags:
-    """Flags (k,) of nodes on edges that two outer faces meet at from outside, at an angle that no fillet has."""
-    parts = [_edges_of_faces(mesh, *each) for each in outer_faces(mesh)]
+    """Flags (k,) of nodes on re-entrant edges, whose two outer faces meet at a sharper angle than those of a fillet."""
+    parts = [_edges_of_faces(mesh, *faces) for faces in outer_faces(mesh)]
     ends, normals, centres = (np.concatenate(part) for part in zip(*parts, strict=True))
     order = np.argsort(ends[:, 0] * len(mesh.points) + ends[:, 1], kind="stable")
     ends, normals, centres = ends[order], normals[order], centres[order]
-    _, first, faces = np.unique(ends[:, :2], axis=0, return_index=True, return_counts=True)
-    one, other = (first[faces == 2] + k for k in (0, 1))
+    _, first, count = np.unique(ends[:, :2], axis=0, return_index=True, return_counts=True)
+    one = first[count == 2]
+    other = one + 1  # equal edges follow one another
     sharp = (normals[one] * normals[other]).sum(axis=2).max(axis=1) < SHARP
+    # At a re-entrant edge the other face lies on the side to which the normal of the one points.
     away = centres[other] - mesh.points[ends[one, :2]].mean(axis=1)
     met = one[sharp & ((away * normals[one].mean(axis=1)).sum(axis=1) > 0)]
     flags = np.zeros(len(mesh.points), dtype=bool)
@@ -53,12 +59,15 @@ def _re_entrant(mesh: Mesh) -> Flags:
 
 
 def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> tuple[Indices, Floats, Floats]:
-    """Edges of one face of some elements: nodes (m, 3) at its ends, ascending, and in its middle, or again at an end;
-    outward normals at both ends (m, 2, 3), and the middle of the face (m, 3).
+    """Edges of the face of a number of some elements.
+
+    Returns the nodes (m, 3) at their ends, ascending, and in their middle, or at an end once more; the outward normals
+    at both ends, (m, 2, 3); and the middle of the face, (m, 3).
     """
     on, places = on_face(block.kind, face), reference(block.kind)
     count = len(FACES[corners_of(block.kind)][face])
     corners = on[:count]
+    # The outward normal in the reference element, which maps to places by the inverse of the Jacobian.
     normal = np.cross(places[corners[1]] - places[corners[0]], places[corners[2]] - places[corners[0]])
     normal *= np.sign(normal @ (places[corners[0]] - places[: corners_of(block.kind)].mean(axis=0)))
     nodes = block.nodes[elements]

@@ -38,8 +38,9 @@ class Block(Value):
 
 
 class Part(NamedTuple):
-    """Elements of a block at the points of a rule: nodes (e, k), volumes (e, q), gradients (e, q, k, 3), of shells the
-    strains (e, q, 6, k, 3) that stand for those of the gradients, and elasticity (..., 6, 6).
+    """Elements of a block at the q points of a rule: nodes (e, k), volumes (e, q), gradients (e, q, k, 3) of the shape
+    functions, and elasticity (..., 6, 6). Shells have strains (e, q, 6, k, 3) assumed per displacement, in place of
+    those of the gradients.
     """
 
     block: Block
@@ -50,24 +51,26 @@ class Part(NamedTuple):
     elasticity: Floats
 
     def slopes(self, u: Floats) -> Floats:
-        """Slopes (e, q, 3, 3, m) of displacements (k, 3, m) of all nodes: along an axis, of a component."""
+        """Slopes (e, q, 3, 3, m) of displacements (k, 3, m) of all nodes: the axis along which, then the component."""
         (e, q, k, _), m = self.gradients.shape, u.shape[-1]
         along = self.gradients.swapaxes(2, 3).reshape(e, 3 * q, k)
         return (along @ u[self.nodes].reshape(e, k, 3 * m)).reshape(e, q, 3, 3, m)
 
     def stress(self, u: Floats, slopes: Floats | None = None) -> Floats:
-        """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, of which the slopes may be known."""
+        """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, whose slopes may be passed if they are
+        known.
+        """
         if self.assumed is not None:
             e, q, _, k, _ = self.assumed.shape
             strained = self.assumed.reshape(e, q * 6, 3 * k) @ u[self.nodes].reshape(e, 3 * k, u.shape[-1])
             return np.asarray(self.elasticity @ strained.reshape(e, q, 6, u.shape[-1]))
         slopes = self.slopes(u) if slopes is None else slopes
-        law = (self.elasticity @ STRAIN.reshape(6, 9)).reshape(6, 3, 3).swapaxes(1, 2).reshape(6, 9)
+        law = (self.elasticity @ STRAIN.reshape(6, 9)).reshape(6, 3, 3).swapaxes(1, 2).reshape(6, 9)  # of slopes
         return np.asarray(law @ slopes.reshape(*slopes.shape[:2], 9, slopes.shape[-1]))
 
 
 def determinants(points: Floats, block: Block) -> Floats:
-    """Determinants (e, q) of elements' maps from the reference at the rule of mass."""
+    """Determinants (e, q) of the maps from the reference element, at the points of the rule of mass."""
     slopes = shape_functions(block.kind, KINDS[block.kind].mass)[-1]
     return np.linalg.det(jacobians(points, block.nodes, slopes))
 
@@ -79,8 +82,9 @@ def masses(points: Floats, block: Block) -> Floats:
 
 
 def chunks(points: Floats, blocks: Sequence[Block], degree: str, most: int = CHUNK) -> Iterator[Part]:
-    """Parts of all elements at the rule of `degree`, stiffness or stress, of at most `most` points; at that of stress
-    shells have no transverse shear, which vanishes on their faces.
+    """Yield all elements in parts of at most `most` points of the rule for a `degree`, "stiffness" or "stress".
+
+    For stress, shells have no transverse shear, which vanishes on their faces.
     """
     for block in blocks:
         rule = getattr(KINDS[block.kind], degree)
@@ -97,8 +101,9 @@ def chunks(points: Floats, blocks: Sequence[Block], degree: str, most: int = CHU
 
 
 def _assembled(size: int, blocks: Sequence[Block], width: int, parts: Iterable[Floats]) -> Any:
-    """Sparse sum of the matrices of elements, for `size` nodes of `width` unknowns each. The parts, in the order of
-    the blocks, have a matrix (width, width) for each pair of an element's nodes.
+    """Assemble the matrices of elements into a sparse one, for `size` nodes of `width` unknowns each.
+
+    The parts, in the order of the blocks, have a matrix (width, width) for each pair of an element's nodes.
     """
     from scipy.sparse import bsr_array, csr_array
 
@@ -111,18 +116,19 @@ def _assembled(size: int, blocks: Sequence[Block], width: int, parts: Iterable[F
         flat = part.reshape(-1, width**2)
         entries[start : start + len(flat)] = flat
         start += len(flat)
-    shape = (len(first), len(order))
-    total = csr_array((np.ones(len(order)), order, np.append(first, len(order))), shape=shape) @ entries
+    # A row of ones over the entries of each pair sums them.
+    summing = csr_array((np.ones(len(order)), order, np.append(first, len(order))), shape=(len(first), len(order)))
+    total = summing @ entries
     rows = np.searchsorted(pairs[first], size * np.arange(size + 1))
     matrix = bsr_array((total.reshape(-1, width, width), pairs[first] % size, rows), shape=(width * size,) * 2)
     return matrix.tocsr()
 
 
 def stiffness_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
-    """Elastic stiffness (3 k, 3 k), node by node."""
+    """Elastic stiffness (3 k, 3 k), with the three displacements of each node in turn."""
 
     def parts() -> Iterator[Floats]:
-        """Matrices of elements, those (3, 3) of all pairs of their nodes, part by part."""
+        """Yield the matrices (3, 3) of all pairs of an element's nodes, part by part."""
         for part in chunks(points, blocks, "stiffness"):
             e, q, k, _ = part.gradients.shape
             if part.assumed is not None:
@@ -142,7 +148,7 @@ def stiffness_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
 
 
 def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
-    """Consistent mass (k, k) of one component of the displacement."""
+    """Consistent mass (k, k), which is the same for each component of the displacement."""
 
     def parts() -> Iterator[Floats]:
         for block in blocks:
@@ -154,23 +160,24 @@ def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
 
 
 def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats) -> Floats:
-    """Two halves (2, m, n, n) of the stiffness that static displacements (k, 3, m) add in `shapes` (k, 3, n), to first
-    order: with Green's strain, the static stress in the squares of the slopes, and the stress of the shapes in their
-    slopes as they turn; see :func:`coupled`.
+    """Geometric stiffness of static displacements (k, 3, m) in `shapes` (k, 3, n), to first order, as two halves (2, m,
+    n, n).
+
+    With Green's strain the first is the static stress in the squares of the shapes' slopes, and the second the stress
+    of the shapes in their slopes as the static displacement turns them; :func:`coupled` joins them.
     """
     m, n = static.shape[-1], shapes.shape[-1]
     stressed, turned = np.zeros((2, m, n, n))
     for part in chunks(points, blocks, "stiffness", FEW):
         weights = part.volume.ravel()[:, None, None, None]
-        slopes, moved = (part.slopes(u) for u in (shapes, static))
-        of_shapes, stress = (
-            part.stress(u, slopes_of_u).reshape(len(weights), 6, -1)[:, TENSOR] * weights
-            for u, slopes_of_u in ((shapes, slopes), (static, moved))
-        )
+        slopes, moved = part.slopes(shapes), part.slopes(static)
+        of_shapes = part.stress(shapes, slopes).reshape(len(weights), 6, -1)[:, TENSOR] * weights
+        of_static = part.stress(static, moved).reshape(len(weights), 6, -1)[:, TENSOR] * weights
         tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
         across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
         # Load by load in one piece each: products of small matrices that lie apart take four times as long.
-        pulls, turns = (np.moveaxis(tensors.reshape(-1, 3, 3, m), -1, 0).copy() for tensors in (stress, moved))
+        pulls = np.moveaxis(of_static.reshape(-1, 3, 3, m), -1, 0).copy()
+        turns = np.moveaxis(moved.reshape(-1, 3, 3, m), -1, 0).copy()
         for load in range(m):
             stressed[load] += tall.T @ (pulls[load] @ wide).reshape(-1, n)
             turned[load] += of_shapes.reshape(-1, n).T @ (turns[load] @ across).reshape(-1, n)
@@ -178,10 +185,12 @@ def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats,
 
 
 def coupled(halves: Floats, stiffness: Floats) -> Floats:
-    """Geometric stiffness (m, n, n) of two halves (2, m, n, n), in coordinates of unit mass with a stiffness (n, n).
+    """Geometric stiffness (m, n, n) from its two halves (2, m, n, n), in coordinates of unit mass with a stiffness (n,
+    n).
 
     The second half couples soft modes with stiff ones in proportion to the stiff ones' stiffness. That acts to second
-    order, where terms of fourth degree, which are left out, would cancel it: only modes near in frequency are coupled.
+    order, where terms of fourth degree, which are left out, would cancel it. So only modes near in frequency are
+    coupled.
     """
     squares, modes = np.linalg.eigh(stiffness)
     total = halves[0] + modes @ (modes.T @ halves[1] @ modes * near(squares)) @ modes.T
@@ -189,5 +198,5 @@ def coupled(halves: Floats, stiffness: Floats) -> Floats:
 
 
 def near(squares: Floats) -> Flags:
-    """Flags (n, n) of pairs of modes near in frequency, by the squares (n,) of frequencies."""
+    """Flags (n, n) of pairs of modes that are near in frequency, from the squares (n,) of the frequencies."""
     return np.maximum.outer(squares, squares) < NEAR**2 * np.minimum.outer(squares, squares)

@@ -64,6 +64,7 @@ def read_exodus(path: Path) -> TextMesh:
 
 
 def _classic(path: Path) -> dict[str, _Variable]:
+    """Variables of a file of netCDF 3."""
     from scipy.io import netcdf_file  # 0.4 s to import
 
     with netcdf_file(path, mmap=False) as file:
@@ -75,25 +76,28 @@ def _classic(path: Path) -> dict[str, _Variable]:
 
 
 def _of_hdf5(path: Path) -> dict[str, _Variable]:
+    """Variables of a file of netCDF 4."""
     with opened(path) as file:
         chosen = {name: data for name, data in file.items() if _READ.fullmatch(name)}
         return {name: _Variable(data[()], _text(data.attrs.get("elem_type", b""))) for name, data in chosen.items()}
 
 
 def _text(value: Any) -> str:
+    """Text of an array of letters, or of a text, in bytes or not."""
     letters = np.ravel(value).tolist()
-    return "".join(each.decode(errors="replace") if isinstance(each, bytes) else each for each in letters).strip("\0 ")
+    decoded = (part.decode(errors="replace") if isinstance(part, bytes) else part for part in letters)
+    return "".join(decoded).strip("\0 ")
 
 
 def _numbered(stored: Mapping[str, _Variable], prefix: str) -> Iterator[tuple[int, _Variable]]:
-    """Numbers and values of the variables whose names are a prefix and a number, in order."""
+    """Yield the variables whose names are a prefix and a number, with these numbers, in order."""
     matches = (re.fullmatch(rf"{prefix}(\d+)", name) for name in stored)
     for k in sorted(int(match[1]) for match in matches if match):
         yield k, stored[f"{prefix}{k}"]
 
 
 def _numbers(stored: Mapping[str, _Variable], noun: str, count: int) -> list[int]:
-    """Numbers of nodes or elements, from 1 where the file says none, or one twice."""
+    """Numbers of nodes or elements. They count from 1 where the file has none, or repeats one."""
     listed = stored[f"{noun}_num_map"].values.tolist() if f"{noun}_num_map" in stored else []
     return listed if len({*listed}) == count else list(range(1, count + 1))
 
@@ -113,7 +117,9 @@ def _kind(element_type: str, count: int) -> str:
 
 
 def _on_side(kind: str, element_type: str, side: int) -> Any:
-    """Indices of an element's nodes on a side, by its number; all nodes if it has no sides, or is not computed."""
+    """Indices of an element's nodes on a side, by the side's number. They are all nodes where the element has no sides,
+    or is of a kind that is not computed.
+    """
     if DIMENSIONS[kind] == 3 and kind in KINDS:
         return on_face(kind, _SIDES[corners_of(kind)][side - 1])
     corners = 3 if kind.startswith("triangle") else 4

@@ -53,9 +53,11 @@ SHEET = 1e-3  # thickness of a shell that is shown, of the size of the mesh
 
 @dataclass
 class FileMesh:
-    """A mesh of a file, with the fields of meshio's: places (k, 3), elements of each kind, groups of nodes and of
-    elements by name, whole numbers of elements, and Gmsh's groups; also the numbers (k,) of its nodes, its statements
-    that carry mass, stiffness or constraints, counted by name, those that were read, and places of groups in words.
+    """A mesh of a file with the fields of meshio's: places (k, 3), elements of each kind, groups of nodes and of
+    elements by name, whole numbers of elements, and Gmsh's groups.
+
+    Besides, it has the numbers (k,) of the nodes, the number of statements on mass, stiffness or constraints by their
+    names, those statements that were read, and places of groups in words.
     """
 
     points: Floats
@@ -72,30 +74,36 @@ class FileMesh:
     @classmethod
     def of(cls, parts: Mapping[str, Any]) -> FileMesh:
         """Make a mesh of the parts that :func:`parts_of` returned in another process."""
-        cells = [Cells(*each) for each in parts["cells"]]
+        cells = [Cells(*values) for values in parts["cells"]]
         return cls(**{**parts, "cells": cells, "cards": Cards.of(parts["numbers"], parts["cards"])})
 
 
 def read_mesh(source: str | os.PathLike[str] | Any, *, cards: bool = False) -> Any:
-    """Return a mesh as of meshio in a file, with `cards` those beside it, or the mesh itself that is given."""
+    """Read the mesh in a file, and with `cards` its masses, links and springs. A mesh of meshio is returned as it
+    is.
+    """
     if not isinstance(source, (str, os.PathLike)):
         return source
     path = os.fspath(source)
     _refuse_unread(path)
-    if (size := os.path.getsize(path)) > BINARY_BYTES:
+    size = os.path.getsize(path)
+    if size > BINARY_BYTES:
         refuse_cost("mesh", size / UNKNOWN_BYTES, f"has {in_bytes(size)}, as files of meshes have with some")
     refuse_large_file("mesh", path, BINARY_BYTES, "mesh it more coarsely")
 
     def refuse(problem: str) -> InputError:
         return InputError("mesh", f"{path} {problem}", "mesh it more coarsely, or write it again")
 
-    more = {"memory": READER_BYTES + TEXT_TIMES * size, "seconds": READER_SECONDS + size // TEXT_RATE}
-    return FileMesh.of(remembered(parts_of, path, cards, refuse=refuse, **(more if ending_of(path) in TEXTS else {})))
+    limits = dict[str, int]()
+    if ending_of(path) in TEXTS:
+        limits = {"memory": READER_BYTES + TEXT_TIMES * size, "seconds": READER_SECONDS + size // TEXT_RATE}
+    return FileMesh.of(remembered(parts_of, path, cards, refuse=refuse, **limits))
 
 
 def _refuse_unread(path: str) -> None:
-    """Refuse a file that is empty, or in a form whose groups are not read, or lie in other files."""
-    if unread := _UNREAD.get(ending_of(path)):
+    """Refuse a file that is empty, or of a format whose groups are not read or lie in other files."""
+    unread = _UNREAD.get(ending_of(path))
+    if unread is not None:
         raise InputError("mesh", f"{path} is {unread[0]}", unread[1])
     if not os.path.getsize(path):
         raise InputError("mesh", f"{path} is empty", "write it again")
@@ -118,7 +126,7 @@ def parts_of(path: str, cards: bool) -> dict[str, Any]:
                 name: [np.asarray([] if chosen is None else chosen, dtype=int) for chosen in members]
                 for name, members in mesh.cell_sets.items()
             },
-            "cell_data": {name: [np.asarray(each) for each in values] for name, values in tags_of(mesh).items()},
+            "cell_data": {name: [np.asarray(tags) for tags in values] for name, values in tags_of(mesh).items()},
             "field_data": {name: np.asarray(pair) for name, pair in mesh.field_data.items() if np.shape(pair) == (2,)},
             "numbers": np.array([*mesh.nodes] if text else range(1, len(points) + 1), dtype=int),
             "carrying": carrying(mesh) if text else {},
@@ -143,13 +151,16 @@ def parts_of(path: str, cards: bool) -> dict[str, Any]:
 
 
 def _nodes_of(block: Any) -> Indices:
-    """Nodes (e, k) of the elements of a block; none of general polygons and polyhedra, which have unlike numbers."""
+    """Nodes (e, k) of the elements of a block. General polygons and polyhedra, whose elements have unlike numbers of
+    nodes, count as having none.
+    """
     return np.zeros((len(block.data), 0), int) if block.type.startswith("poly") else np.asarray(block.data)
 
 
 def _read(path: Path) -> Any:
-    """Return a mesh as of meshio in a file."""
-    if (mesh := text_mesh(path)) is not None:
+    """Read the mesh in a file by gbeam's readers of text and of Exodus, or by meshio."""
+    mesh = text_mesh(path)
+    if mesh is not None:
         return mesh
     ending = ending_of(path)
     if ending in EXODUS:
@@ -160,27 +171,29 @@ def _read(path: Path) -> Any:
     if ending in _XML:
         _refuse_in_parts(path)
     if ending in _HDF5:
-        with opened(path):  # all of it is in it
+        with opened(path):  # which refuses a file with links to others
             pass
     mesh = meshio.read(path)
     return _with_masks(_of_med(mesh) if ending == ".med" else mesh)
 
 
 def _refuse_node_0(path: Path) -> None:
-    """Refuse a binary file of Gmsh 2 with a node 0, which meshio takes for the one with the largest number."""
+    """Refuse a binary file of Gmsh 2 with a node 0, which meshio takes for the node with the largest number."""
     content = path.read_bytes() if path.suffix.lower() == ".msh" else b""
-    form = re.search(rb"\$MeshFormat\s+2\S* 1 ", content)
-    if form and (head := re.compile(rb"\$Nodes\s+(\d+)\n").search(content, form.end())):
+    binary = re.search(rb"\$MeshFormat\s+2\S* 1 ", content)
+    head = re.compile(rb"\$Nodes\s+(\d+)\n").search(content, binary.end()) if binary else None
+    if head:
         numbers = np.frombuffer(content, [("", "<i4"), ("", "<f8", 3)], int(head[1]), head.end())["f0"]
         if numbers.min() < 1:
             raise InputError("mesh", f"has node {numbers.min()}", "write it as text, or number its nodes from 1")
 
 
 def _refuse_in_parts(path: Path) -> None:
-    """Refuse XML whose numbers are in another file, which a result would not hold, as XDMF may; and text by entities,
-    of which a few lines may make any number of them.
+    """Refuse an XML file that keeps its numbers in another file, or that defines entities.
+
+    A result would not hold the other file, as XDMF may have it. A few lines of entities may make any amount of text.
     """
-    inside, other = False, ""
+    inside, other = False, ""  # of an element that names another file, and the text in it
 
     def begin(_: str, attributes: Mapping[str, str]) -> None:
         nonlocal inside
@@ -206,27 +219,30 @@ def _refuse_in_parts(path: Path) -> None:
 
 
 def _of_med(mesh: Any) -> Any:
-    """A mesh of MED with groups by their names, which families of elements and of nodes have, and the nodes of elements
-    in the order of VTK, in which meshio writes them there.
+    """Give a mesh of MED its groups by their names, and its elements the order of nodes of VTK.
+
+    In MED elements and nodes belong to families, and a family belongs to any number of groups. Elements of negative
+    volume are in MED's order; meshio writes others in VTK's.
     """
     for block in mesh.cells:
         if block.type in MED_ORDER and len(block.data):
-            first, *along = mesh.points[block.data[0, [0, 1, 3, 4] if "hexa" in block.type else [0, 1, 2, 3]]]
-            if np.linalg.det(along - first) < 0:
+            corners = [0, 1, 3, 4] if "hexa" in block.type else [0, 1, 2, 3]
+            first, *others = mesh.points[block.data[0, corners]]
+            if np.linalg.det(others - first) < 0:
                 block.data = block.data[:, MED_ORDER[block.type]]
     for tags, values, sets in (
         (getattr(mesh, "cell_tags", {}), mesh.cell_data.get("cell_tags"), mesh.cell_sets),
         (getattr(mesh, "point_tags", {}), [mesh.point_data.get("point_tags")], mesh.point_sets),
     ):
         for name in dict.fromkeys(name for names in tags.values() for name in names):
-            numbers = [number for number, names in tags.items() if name in names]
-            chosen = [np.flatnonzero(np.isin(families, numbers)) for families in values]
+            families = [number for number, names in tags.items() if name in names]
+            chosen = [np.flatnonzero(np.isin(family, families)) for family in values]
             sets[name] = chosen if sets is mesh.cell_sets else chosen[0]
     return mesh
 
 
 def _with_masks(mesh: Any) -> Any:
-    """A mesh with its arrays of 0 and 1, as selections of ParaView are, as groups by their names."""
+    """Add the arrays of 0 and 1 of a mesh to its groups, by their names, as ParaView writes selections."""
     for sets, arrays in (
         (mesh.point_sets, {name: [values] for name, values in mesh.point_data.items()}),
         (mesh.cell_sets, mesh.cell_data),
@@ -241,19 +257,20 @@ def _with_masks(mesh: Any) -> Any:
 
 
 def skin(path: str) -> dict[str, Any]:
-    """Outer faces of a mesh file: vertices (v, 3), in its unit, triangles (f, 3), and a list of its groups, each with
-    name, number of its nodes that belong to elements, and indices of its vertices.
+    """Outer faces of a mesh file: vertices (v, 3) in its unit, triangles (f, 3), and a list of its groups.
+
+    Each group has its name, the number of its nodes that belong to elements, and the indices of its vertices.
     """
     _refuse_unread(path)
     mesh = FileMesh.of(parts_of(path, False))
     points = np.asarray(mesh.points, dtype=float)
     no_solids = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
     elements = elements_of(mesh, SHEET * float(np.ptp(points)) if no_solids else None)
-    used = np.unique(np.concatenate([each.nodes.ravel() for each in elements]))
+    used = np.unique(np.concatenate([block.nodes.ravel() for block in elements]))
     if points.ndim != 2 or points.shape[1] != 3 or used[-1] >= len(points) or not np.isfinite(points[used]).all():
         raise InputError("mesh", "has elements whose nodes have no place in space", "write it again")
     points, numbers, nodes_of = points_of(points, elements)
-    blocks = [each._replace(nodes=inside) for each, inside in zip(elements, nodes_of, strict=True)]
+    blocks = [block._replace(nodes=inside) for block, inside in zip(elements, nodes_of, strict=True)]
     outer, triangles = surface_of(SimpleNamespace(points=points, blocks=blocks), VERTICES)
     groups = list[dict[str, Any]]()
     seen = set[bytes]()

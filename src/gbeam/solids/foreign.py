@@ -42,7 +42,9 @@ def unit_size(where: str, unit: str, kind: str) -> float:
 
 
 def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
-    """Warning of a file's statements on masses, stiffness and constraints that are not read."""
+    """Warn of a file's statements on masses, stiffness and constraints that are not read, but for the names in
+    `read`.
+    """
     counts = {name: count for name, count in getattr(mesh, "carrying", {}).items() if name not in read}
     if not counts:
         return []
@@ -51,8 +53,8 @@ def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
 
 
 class Elements(NamedTuple):
-    """Elements of one block of a mesh: the index of the block, theirs in it, their kind, their nodes (e, k) and, of
-    shells, their thicknesses (e,), m.
+    """Elements of one block of a mesh: the index of the block, their indices in it, their kind, their nodes (e, k) and,
+    for shells, their thicknesses (e,), m.
     """
 
     block: int
@@ -63,7 +65,9 @@ class Elements(NamedTuple):
 
 
 def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> list[Elements]:
-    """Elements that are computed, solids and surfaces with a thickness; InputError where there are none or others."""
+    """Elements that are computed: solids, and surfaces with a thickness. InputError where there are none, or some of a
+    kind that is not computed.
+    """
     counts: Counter[str] = Counter()
     for block in mesh.cells:
         counts[block.type] += len(block.data)
@@ -100,14 +104,14 @@ def elements_of(mesh: Any, thickness: float | Mapping[str, float] | None) -> lis
 
 
 def numbers_of(mesh: Any) -> list[Indices]:
-    """Numbers of the elements of each block, by which a text file names them, or from 1."""
+    """Numbers of the elements of each block: those of a text file, or counted from 1."""
     ends = np.cumsum([len(block.data) for block in mesh.cells])
     counted = [np.arange(end - len(block.data), end) + 1 for end, block in zip(ends, mesh.cells, strict=True)]
     return [getattr(block, "numbers", default) for block, default in zip(mesh.cells, counted, strict=True)]
 
 
 def node_numbers_of(mesh: Any) -> Indices:
-    """Numbers of the nodes, by which a text file names them, or from 1."""
+    """Numbers of the nodes: those of a text file, or counted from 1."""
     return np.asarray(getattr(mesh, "numbers", range(1, len(mesh.points) + 1)))
 
 
@@ -121,8 +125,9 @@ def refuse_missing(mesh: Any, elements: Iterable[Elements]) -> None:
 
 
 def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[int, Indices]:
-    """Return, by block, the index (e,) in `values` of the value that each element has, -1 if it is in no group of
-    these; 0 everywhere if `values` is a single value.
+    """Assign the `values` of groups to elements. The result has, by block, the index (e,) of each element's value.
+
+    It is -1 for an element in none of the groups, and 0 for all if `values` is a single value.
     """
     owner = {i: np.full(len(mesh.cells[i].data), -1 if isinstance(values, Mapping) else 0) for i in blocks}
     if not isinstance(values, Mapping):
@@ -143,20 +148,23 @@ def assigned(mesh: Any, where: str, values: Any, blocks: Iterable[int]) -> dict[
 
 
 def group_names(mesh: Any) -> list[str]:
-    """Names of all groups of nodes and elements."""
-    numbers = dict.fromkeys(str(tag) for values in _tags(mesh) for block in values for tag in np.unique(block).tolist())
+    """Names of all groups of nodes and elements. Groups without a name are their numbers, with the kind where several
+    kinds have one.
+    """
+    tags = {tag for values in _tags(mesh) for block in values for tag in np.unique(block).tolist()}
+    named = [*mesh.point_sets, *mesh.cell_sets, *mesh.field_data]
     names = list[str]()
-    for name in dict.fromkeys([*mesh.point_sets, *mesh.cell_sets, *mesh.field_data, *sorted(numbers, key=int)]):
+    for name in dict.fromkeys([*named, *map(str, sorted(tags))]):
         dims = _dims(mesh, _numbered(mesh, name)) if _BARE.fullmatch(name) and name not in mesh.field_data else []
         names += [f"{_OF_DIM[dim]} {name}" for dim in dims] if len(dims) > 1 else [name]
     return [name for name in names if not name.startswith(_INTERNAL)]
 
 
 def elements_in(mesh: Any, where: str, name: str, dims: Collection[int] = tuple(_OF_DIM)) -> list[Indices] | None:
-    """Elements of a group in each block of the mesh; None where it is none of elements.
+    """Elements of a group in each block of the mesh; None where no elements have this group.
 
-    A group without a name is its number, such as "3", or its kind and number, such as "surface 3". An InputError, of
-    what `where` gives, refuses a number that surfaces and volumes have, of those in `dims`.
+    A group without a name is its number, such as "3", or its kind and number, such as "surface 3". A number that both
+    surfaces and volumes have, among those in `dims`, is refused by an InputError about what `where` names.
     """
     if name in mesh.cell_sets and not _BARE.fullmatch(name):
         return _set(mesh, name)
@@ -179,11 +187,12 @@ def elements_in(mesh: Any, where: str, name: str, dims: Collection[int] = tuple(
 
 
 def _set(mesh: Any, name: str) -> list[Indices]:
+    """Elements of each block in a set of the mesh."""
     return [np.asarray([] if members is None else members, dtype=int) for members in mesh.cell_sets[name]]
 
 
 def _numbered(mesh: Any, number: str) -> list[Indices] | None:
-    """Elements of each block in a group that has this number; None where there is none."""
+    """Elements of each block in a group with this number; None if there is no such group."""
     if number in mesh.cell_sets:
         return _set(mesh, number)
     for values in _tags(mesh):
@@ -194,13 +203,13 @@ def _numbered(mesh: Any, number: str) -> list[Indices] | None:
 
 
 def _dims(mesh: Any, chosen: list[Indices] | None) -> list[int]:
-    """Dimensions of the elements of a group, ascending."""
+    """Dimensions of the elements of a group, in ascending order."""
     pairs = zip(chosen or (), mesh.cells, strict=chosen is not None)
     return sorted({block.dim for members, block in pairs if len(members)})
 
 
 def nodes_in(mesh: Any, where: str, name: str) -> Indices:
-    """Nodes of a group, of nodes or of elements; an InputError where there is none."""
+    """Nodes of a group of nodes or of elements. InputError if there is no such group."""
     if name in mesh.point_sets:
         return np.unique(np.asarray(mesh.point_sets[name], dtype=int))
     elements = elements_in(mesh, where, name)
@@ -211,21 +220,23 @@ def nodes_in(mesh: Any, where: str, name: str) -> Indices:
 
 
 def no_group(mesh: Any, where: str, name: str) -> InputError:
-    """Error of a group that is not in the mesh."""
-    names = [f"{group}, {place}" for group, place in (mesh.info or {}).items()] or group_names(mesh)
-    listed = shortened("; ".join(names) if mesh.info else ", ".join(names), 2000 if mesh.info else 200)
-    known = f"choose from {listed}" if names else "the mesh has no groups: name some in it"
-    return InputError(where, f"is {name!r}, which is no group of the mesh", known)
+    """Error that a group is not in the mesh; it lists the groups that are, and their places where these are known."""
+    if mesh.info:
+        listed = shortened("; ".join(f"{group}, {place}" for group, place in mesh.info.items()), 2000)
+    else:
+        listed = shortened(", ".join(group_names(mesh)), 200)
+    fix = f"choose from {listed}" if listed else "the mesh has no groups: name some in it"
+    return InputError(where, f"is {name!r}, which is no group of the mesh", fix)
 
 
 def tags_of(mesh: Any) -> dict[str, list[Any]]:
     """Whole numbers of the elements, such as physical groups or properties, by name and block by block."""
-    return {
-        name: values
-        for name, values in mesh.cell_data.items()
-        if name != _ENTITIES
-        and all(np.asarray(tags).ndim == 1 and np.asarray(tags).dtype.kind in "iu" for tags in values)
-    }
+
+    def whole(tags: Any) -> bool:
+        return np.asarray(tags).ndim == 1 and np.asarray(tags).dtype.kind in "iu"
+
+    data = {name: values for name, values in mesh.cell_data.items() if name != _ENTITIES}
+    return {name: values for name, values in data.items() if all(map(whole, values))}
 
 
 def _tags(mesh: Any) -> list[list[Any]]:

@@ -119,8 +119,8 @@ class ImportedModel(Value):
 
     def __repr__(self) -> str:
         modes = int((np.asarray(self.unknowns)[:, 1] == OWN).sum())
-        more = f", {modes} of them modes" if modes else ""
-        return f"ImportedModel({len(np.asarray(self.nodes))} nodes, {self.mass.shape[0]} unknowns{more})"
+        of_modes = f", {modes} of them modes" if modes else ""
+        return f"ImportedModel({len(np.asarray(self.nodes))} nodes, {self.mass.shape[0]} unknowns{of_modes})"
 
     @classmethod
     @typed
@@ -277,7 +277,7 @@ class ImportedModel(Value):
         return reduction.structure(build, damping_ratio)
 
     def _node(self, where: str, number: int) -> int:
-        """Place of the node with a number; InputError without one."""
+        """Index of the node with a number. InputError about `where` if there is none."""
         numbers = np.asarray(self.numbers)
         which = np.flatnonzero(numbers == number)
         if not which.size:
@@ -289,7 +289,7 @@ class ImportedModel(Value):
         return int(np.asarray(self.numbers)[node])
 
     def _attached(self, interfaces: Sequence[str], named: Mapping[str, int]) -> Floats:
-        """Unit forces and moments (u, 6 i) on the interfaces."""
+        """Unit forces and moments on the interfaces as loads (u, 6 i) on the unknowns."""
         columns = []
         for i, name in enumerate(interfaces):
             choice(f"interfaces[{i}]", name, tuple(named))
@@ -301,7 +301,9 @@ class ImportedModel(Value):
         return np.concatenate([np.zeros((self.mass.shape[0], 0)), *columns], axis=1)
 
     def _outputs(self, nodes: list[int], shapes: Floats) -> tuple[Floats, Floats]:
-        """Displacements and rotations (s, 3, n) of nodes per coordinate, not a number where the matrices lack them."""
+        """Displacements and rotations (s, 3, n) of nodes per coordinate, in shapes (u, n). Rotations that the matrices
+        lack are NaN.
+        """
         moved = np.full((len(nodes), 6, shapes.shape[1]), np.nan)
         for i, node in enumerate(nodes):
             for row in np.flatnonzero(np.asarray(self.unknowns)[:, 0] == node):
@@ -316,8 +318,10 @@ class ImportedModel(Value):
     def _terms(
         self, shapes: Floats, stiffness: Floats, products: Floats, body: Floats, stress: Geometric
     ) -> tuple[Coefficients, tuple[Floats, Places], list[str]]:
-        """Coefficients, particles with their places, and warnings of what is left out; `products` (3, 4, n) are those
-        of the shapes with the fields 1, x, y, z along each axis, `body` (10,) that of :func:`rigid_body`.
+        """Coefficients of the equations, particles with their places, and warnings of what the matrices leave out.
+
+        `products` (3, 4, n) are those of the shapes with the fields 1, x, y, z along each axis, `body` (10,) is that of
+        :func:`rigid_body`.
         """
         nodes, rows = displaced(np.asarray(self.unknowns), len(np.asarray(self.nodes)))
         of_nodes, moved = mass_of_nodes(self.mass, rows), shapes[rows]
@@ -344,7 +348,7 @@ class ImportedModel(Value):
 
 
 def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
-    """Turn the rows and columns of nodes that have axes (k, 3, 3) of their own into the base's."""
+    """Transform a matrix into base axes, at the nodes that have axes (k, 3, 3) of their own."""
     from scipy.sparse import lil_array
 
     turn = lil_array(matrix.shape)
@@ -364,7 +368,7 @@ def _in_base_axes(matrix: Any, unknowns: Indices, axes: Floats) -> Any:
 
 
 def _geometric(geometric: Mapping[InertialLoad, Any] | None, shapes: Floats) -> tuple[Geometric, list[str]]:
-    """Geometric stiffness in the coordinates of shapes (u, n), and a warning of the loads for which it is missing."""
+    """Geometric stiffness in the coordinates of shapes (u, n), and a warning of the loads for which none is given."""
     n = shapes.shape[1]
     matrices: dict[str, Any] = {}
     for name, matrix in (geometric or {}).items():

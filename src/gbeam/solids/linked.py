@@ -18,9 +18,12 @@ for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
 
 
 class Linked:
-    """Displacements of all points, of a mesh, of its bodies and of ends of springs, as linear maps of the independent
-    unknowns: displacements of free nodes, and displacement and rotation of each link. A node of a shell is a link of
-    its points, which does not turn about the line on which they are. Tied points are those of links.
+    """Displacements of all points as linear maps of the independent unknowns. The points are those of a mesh, of its
+    bodies and of the ends of springs; the unknowns are displacements of free nodes, and displacement and rotation of
+    each link.
+
+    A node of a shell is a link of its points, which does not turn about the line on which they are. Tied points are
+    those of links.
     """
 
     def __init__(self, mesh: Mesh) -> None:
@@ -104,7 +107,7 @@ class Linked:
             self._follow(self._number[name], members[name], links.nodes[name], weights)
 
     def _follow(self, link: int, members: list[int], nodes: Indices, weights: Floats) -> None:
-        """Let the `members` of a link, points, and its rotation follow the mean motion of nodes."""
+        """Let the `members` of a link, points, and its rotation follow the mean motion of `nodes` with weights."""
         from scipy.sparse import coo_array
 
         centre, mean = coupling("", self.points[nodes], weights)
@@ -123,22 +126,26 @@ class Linked:
         self._map = self._map + on_unknowns(rows, moved, points)
 
     def _about(self, arms: Floats) -> Floats:
-        """Displacements (p, 3, 3) of tied points by turns about the axes of their links, in columns."""
+        """Displacements (p, 3, 3) of tied points by unit rotations of their links about these links' axes, in
+        columns.
+        """
         return np.einsum("pai,pb,abc->pci", self._axes[self._of], arms, CROSS, optimize=True)
 
     def widened(self, matrix: Any, unknowns: int) -> Any:
-        """A matrix of the nodes with empty rows and columns for the other points, as many as `unknowns` of each."""
+        """Append empty rows and columns to a matrix of the nodes for the other points, as many as `unknowns` for
+        each.
+        """
         from scipy.sparse import block_diag, csr_array
 
         added = unknowns * (len(self.points) - self.count)
         return block_diag([matrix, csr_array((added, added))], format="csr") if added else matrix
 
     def widened_loads(self, loads: Floats) -> Floats:
-        """Loads (3 k, m) of the nodes, and none on the other points."""
+        """Append rows of zeros to loads (3 k, m) on the nodes for the other points."""
         return np.concatenate([loads, np.zeros((3 * (len(self.points) - self.count), loads.shape[1]))])
 
     def elastic(self, matrix: Any) -> Any:
-        """Stiffness of all points by that of the nodes, with the springs along x, y and z."""
+        """Stiffness of all points: that of the nodes, and the springs along x, y and z."""
         from scipy.sparse import coo_array
 
         total = self.widened(matrix, 3)
@@ -147,23 +154,22 @@ class Linked:
             signs = np.array([1.0, -1.0])[: len(ends)]
             rows = 3 * np.array(ends)[:, None] + np.arange(3)
             values = np.einsum("i,j,a->ija", signs, signs, stiffness[:3])
-            pairs = np.broadcast_to(rows[:, None], values.shape), np.broadcast_to(rows[None], values.shape)
-            total = (
-                total + coo_array((values.ravel(), tuple(index.ravel() for index in pairs)), shape=(size, size)).tocsr()
-            )
+            row = np.broadcast_to(rows[:, None], values.shape).ravel()
+            column = np.broadcast_to(rows[None], values.shape).ravel()
+            total = total + coo_array((values.ravel(), (row, column)), shape=(size, size)).tocsr()
         return total
 
     def condensed(self, matrix: Any) -> Any:
-        """A sparse matrix, or loads, of all points in terms of the independent unknowns."""
+        """Express a sparse matrix, or loads, of all points by the independent unknowns: Tᵀ A T, or Tᵀ f."""
         from scipy.sparse import issparse
 
         if not len(self._tied):
             return matrix[self._kept][:, self._kept] if issparse(matrix) else matrix[self._kept]
-        left = self._map.T @ matrix
-        return left @ self._map if issparse(matrix) else left
+        by_unknowns = self._map.T @ matrix
+        return by_unknowns @ self._map if issparse(matrix) else by_unknowns
 
     def condensed_stiffness(self, matrix: Any) -> Any:
-        """A stiffness of all points in terms of the unknowns, with the springs about x, y and z between links added."""
+        """Express a stiffness of all points by the unknowns, and add the springs about x, y and z between links."""
         from scipy.sparse import diags_array
 
         total = self.condensed(matrix)
@@ -184,11 +190,11 @@ class Linked:
 
     @property
     def _rows(self) -> Indices:
-        """Rows of the tied points in matrices of all."""
+        """Rows of the tied points in matrices of all points."""
         return np.asarray((3 * self._tied[:, None] + np.arange(3)).ravel())
 
     def held(self, stiffness: Any) -> Any:
-        """Rows of the tied points in a stiffness of all points."""
+        """Rows of the tied points in a stiffness of all points: what they take up of a displacement."""
         return stiffness[self._rows]
 
     def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
@@ -217,8 +223,10 @@ class Linked:
         return halves
 
     def _moments(self, forces: Floats) -> Floats:
-        """Matrices (l, 3, 3, m) with f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ), summed over links, of forces
-        (p · 3, m) on the tied points at r from their middles.
+        """Moments (l, 3, 3, m) of forces (p · 3, m) on the tied points, which are at r from the middles of their links.
+
+        Each matrix is f · (θ × (ϑ × r)) = (f · ϑ)(θ · r) − (f · r)(θ · ϑ) in the rotations θ and ϑ, summed over the
+        points of a link.
         """
         moments = np.zeros((len(self._axes), 3, 3, forces.shape[-1]))
         tied = forces.reshape(len(self._tied), 1, 3, -1)
@@ -231,8 +239,12 @@ class Linked:
 
 
 def _particles(body: RigidBody) -> tuple[Floats, Floats]:
-    """Places (6, 3) from the root and masses (6,) of particles with the mass, centre and inertia of a body."""
+    """Places (6, 3) from the root and masses (6,) of six particles with the mass, centre and inertia of a body.
+
+    They are equal, two on each principal axis at ± the square root of 3 ∫ x² dm / m.
+    """
     moments, axes = np.linalg.eigh(body.tensor)
-    spread = np.sqrt(np.maximum(1.5 * (moments.sum() - 2 * moments), 0.0) / body.mass) if body.mass else np.zeros(3)
+    squares = 1.5 * (moments.sum() - 2 * moments)  # 3 ∫ x² dm by the principal moments
+    spread = np.sqrt(np.maximum(squares, 0.0) / body.mass) if body.mass else np.zeros(3)
     arms = (axes * spread).T
     return np.asarray(body.centre) + np.concatenate([arms, -arms]), np.full(6, body.mass / 6)

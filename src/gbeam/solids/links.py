@@ -31,11 +31,11 @@ WAYS = get_args(Direction)
 
 
 def coupling(where: str, points: Floats, weights: Floats | None = None) -> tuple[Floats, Floats]:
-    """Centre (3,) of nodes (g, 3) with weights (g,), and its mean displacement and rotation (6, g, 3) by those of the
-    nodes.
+    """Centre (3,) of nodes (g, 3) with weights (g,), and the mean displacement and rotation (6, g, 3) there per
+    displacement of each node.
 
-    The rotation is that which leaves the least squares; forces and moments on the centre are shared out by the
-    transpose, so that the nodes may move between themselves.
+    The rotation is the one that fits the nodes by least squares. By the transpose, forces and moments on the centre are
+    shared out over the nodes, which may move relative to one another.
     """
     share = np.full(len(points), 1 / len(points)) if weights is None else weights / weights.sum()
     centre = share @ points
@@ -54,8 +54,9 @@ def coupling(where: str, points: Floats, weights: Floats | None = None) -> tuple
 
 
 def attached(points: Floats, interfaces: Mapping[str, Indices]) -> tuple[Floats, Floats]:
-    """Centres (i, 3) of interfaces, and unit forces and moments on them as loads (3 k, 6 i) on the nodes, by which
-    displacements of the nodes also give theirs.
+    """Centres (i, 3) of interfaces, and unit forces and moments on them as loads (3 k, 6 i) on the nodes.
+
+    The transpose of these loads gives the interfaces' displacements and rotations by those of the nodes.
     """
     centres, loads = np.zeros((len(interfaces), 3)), np.zeros((len(points), 3, 6 * len(interfaces)))
     for i, (name, nodes) in enumerate(interfaces.items()):
@@ -65,7 +66,7 @@ def attached(points: Floats, interfaces: Mapping[str, Indices]) -> tuple[Floats,
 
 
 def refuse_names(interfaces: Mapping[str, str], points: Mapping[str, int]) -> None:
-    """Refuse names of interfaces that points have, or that are none."""
+    """Refuse names of interfaces that cannot be names of points, or that points have already."""
     for name in interfaces:
         try:
             checked_name(name)
@@ -77,10 +78,12 @@ def refuse_names(interfaces: Mapping[str, str], points: Mapping[str, int]) -> No
 
 @dataclass(frozen=True, eq=False)
 class Links(Value):
-    """Links of a mesh: nodes (g,) that move as one rigid body, bodies whose roots are in the middle of a link's nodes,
-    and springs, N/m and N m/rad along and about x, y, z, from a link to another one or to the base, where the middle of
-    the first is or at a place; places (3,) m of links, in place of the middles of their nodes; and weights (g,) of the
-    nodes of a link that leaves them free, and has their mean motion.
+    """Links of a mesh: nodes (g,) that move as one rigid body.
+
+    A link may carry a body, whose root is in the middle of the link's nodes. Springs, N/m and N m/rad along and about
+    x, y and z, join a link to another one or to the base: where the middle of the first is, or at a place. Places (3,)
+    m of links replace the middles of their nodes. A link with weights (g,) leaves its nodes free, and has their mean
+    motion.
     """
 
     nodes: dict[str, Indices] = field(default_factory=dict)
@@ -102,8 +105,8 @@ class Links(Value):
         """Read links by the groups of a mesh."""
         nodes: dict[str, Indices] = {}
         for name, groups in links.items():
-            listed = [groups] if isinstance(groups, str) else groups
-            nodes[name] = np.unique(np.concatenate([group(f"links.{name}", part) for part in listed]))
+            parts = [groups] if isinstance(groups, str) else groups
+            nodes[name] = np.unique(np.concatenate([group(f"links.{name}", part) for part in parts]))
             coupling(f"links.{name}", points[nodes[name]])
             for other in list(nodes)[:-1]:
                 if shared := len(np.intersect1d(nodes[name], nodes[other])):
@@ -113,14 +116,15 @@ class Links(Value):
                 fix = "leave those out, or clamp the whole group"
                 raise InputError(f"links.{name}", f"has {clamped[nodes[name]].sum()} clamped nodes", fix)
 
-        def known(where: str, name: str) -> str:
+        def existing(where: str, name: str) -> str:
+            """Return the name of a link, or refuse it."""
             if name not in nodes:
                 fix = f"choose from {', '.join(nodes)}" if nodes else "name its groups in links"
                 raise InputError(where, f"is {name!r}, which is no rigid link", fix)
             return name
 
         for name in carried:
-            known(f"carried.{name}", name)
+            existing(f"carried.{name}", name)
         held: dict[str, tuple[tuple[str, ...], Floats, Floats | None]] = {}
         for name, spring in springs.items():
             for key in spring:
@@ -128,7 +132,7 @@ class Links(Value):
             for key in LinkSpring.__annotations__:
                 if key not in spring:
                     raise InputError(f"springs.{name}.{key}", "is missing", "give between and stiffness")
-            between = tuple(known(f"springs.{name}.between[{i}]", end) for i, end in enumerate(spring["between"]))
+            between = tuple(existing(f"springs.{name}.between[{i}]", end) for i, end in enumerate(spring["between"]))
             if len(between) not in (1, 2) or len(set(between)) < len(between):
                 fix = "name one link, for a spring to the base, or two"
                 raise InputError(f"springs.{name}.between", f"is {list(between)}", fix)
@@ -144,15 +148,18 @@ class Links(Value):
 
     @property
     def joined(self) -> list[Indices]:
-        """Groups of nodes that hang together: those of every rigid link, and one of each link that a spring joins."""
-        pairs = [
-            [self.nodes[name][0] for name in between if len(self.nodes[name])] for between, *_ in self.springs.values()
-        ]
-        rigid = [nodes for name, nodes in self.nodes.items() if name not in self.weights]
-        return [nodes for nodes in (*rigid, *map(np.array, pairs)) if len(nodes) > 1]
+        """Groups of nodes that hang together: those of every rigid link, and one node of each link that a spring
+        joins.
+        """
+        groups = [nodes for name, nodes in self.nodes.items() if name not in self.weights]
+        for between, *_ in self.springs.values():
+            groups.append(np.array([self.nodes[name][0] for name in between if len(self.nodes[name])]))
+        return [nodes for nodes in groups if len(nodes) > 1]
 
     def moving(self, name: str) -> Any:
-        """Flags (6,) of the ways in which a link moves; one of a single node turns only if a spring or body resists."""
+        """Flags (6,) of the directions in which a link moves. A link of a single node turns only where a spring or a
+        body resists.
+        """
         if len(self.nodes[name]) > 1:
             return np.ones(6, dtype=bool)
         held = [stiffness[3:] > 0 for between, stiffness, _ in self.springs.values() if name in between]

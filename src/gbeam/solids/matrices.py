@@ -24,8 +24,8 @@ NEAR = 0.01  # of a given mass, or of the size of the structure
 
 
 def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
-    """A matrix as a sparse one; InputError unless it is square, of `size`, finite, symmetric, and 0 or more on the
-    diagonal.
+    """Convert a matrix to a sparse one. InputError unless it is square, of `size`, finite, symmetric, and 0 or more on
+    the diagonal.
     """
     from scipy.sparse import csr_array
 
@@ -52,8 +52,8 @@ def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
 
 
 def every_unknown(places: Floats, unknowns: int) -> Indices:
-    """Nodes and directions (u, 2) of matrices that have three or six unknowns a node, node by node; InputError if they
-    have others.
+    """Nodes and directions (u, 2) of matrices that have three or six unknowns for each node in turn. InputError if they
+    have other numbers of rows.
     """
     nodes = len(places) if places.ndim else 0
     if not nodes or unknowns not in (3 * nodes, 6 * nodes):
@@ -64,8 +64,8 @@ def every_unknown(places: Floats, unknowns: int) -> Indices:
 
 
 def fields_of(points: Floats, unknowns: Indices) -> Floats:
-    """Motions (u, 12) of unknowns in twelve displacement fields, 1, x, y and z along x, then along y, then along z;
-    nodes turn by half the curl.
+    """Motions (u, 12) of the unknowns in twelve displacement fields: 1, x, y and z along x, then along y, then along z.
+    Nodes turn by half the curl of the field.
     """
     node, way = unknowns.T
     linear = linear_fields(points)
@@ -78,13 +78,17 @@ def fields_of(points: Floats, unknowns: Indices) -> Floats:
 
 
 def rigid_motions(fields: Floats) -> Floats:
-    """Motions (u, 6) of unknowns in translations along and rotations about the axes, by those of :func:`fields_of`."""
+    """Motions (u, 6) of the unknowns in translations along and rotations about the axes, from their motions in the
+    twelve fields of :func:`fields_of`.
+    """
     by_axis = fields.reshape(-1, 3, 4)
     return np.concatenate([by_axis[:, :, 0], np.einsum("acf,uaf->uc", EPSILON, by_axis[:, :, 1:])], axis=1)
 
 
 def rigid_body(mass: Any, rigid: Floats) -> Floats:
-    """Mass, first moments and second moments xx, yy, zz, xy, yz, zx about the root, (10,), of a mass matrix."""
+    """Mass, first moments and second moments xx, yy, zz, xy, yz, zx about the root, (10,), of a mass matrix with rigid
+    motions (u, 6).
+    """
     body = rigid.T @ (mass @ rigid)
     total = float(np.trace(body[:3, :3])) / 3
     if not total > 0:
@@ -100,20 +104,23 @@ def rigid_body(mass: Any, rigid: Floats) -> Floats:
     return np.array([total, *first, *pairs])
 
 
-def extent_of(at: Floats, body: Floats) -> float:
-    """Reach of a structure from the root, m: its farthest node (k, 3); where its mass is beyond all of them, as of one
-    interface and modes, the length of an even beam with the radius of gyration of the body (10,).
+def extent_of(places: Floats, body: Floats) -> float:
+    """Reach of a structure from the root, m: the distance of its farthest node, at places (k, 3).
+
+    Where its mass lies beyond all nodes, as with one interface and modes, it is the length of a uniform beam with the
+    radius of gyration of the body (10,).
     """
-    farthest, gyration = float(np.linalg.norm(at, axis=1).max()), float(np.sqrt(body[4:7].sum() / body[0]))
+    farthest = float(np.linalg.norm(places, axis=1).max())
+    gyration = float(np.sqrt(body[4:7].sum() / body[0]))
     return farthest if farthest >= gyration else 3**0.5 * gyration
 
 
 def refuse_held(stiffness: Any, rigid: Floats) -> None:
-    """Refuse a stiffness that resists rigid motion: it is held, or its nodes lie elsewhere."""
-    force, sum_of = np.abs(stiffness @ rigid), abs(stiffness) @ np.abs(rigid)
-    worst = force.max(axis=0) / np.maximum(sum_of.max(axis=0), 1e-300)
-    if worst.max() > STRAINED:
-        i = int(worst.argmax())
+    """Refuse a stiffness that resists rigid motions (u, 6): the structure is held, or its nodes lie elsewhere."""
+    force, magnitude = np.abs(stiffness @ rigid), abs(stiffness) @ np.abs(rigid)
+    share = force.max(axis=0) / np.maximum(magnitude.max(axis=0), 1e-300)
+    if share.max() > STRAINED:
+        i = int(share.argmax())
         name = f"moving along {'xyz'[i]}" if i < 3 else f"turning about {'xyz'[i - 3]}"
         problem = f"resists {name} as a rigid body, in row {int(force[:, i].argmax())}"
         fix = "are nodes, units and the order of rows right? Give the matrices of the free structure, or no clamp"
@@ -130,11 +137,12 @@ def displaced(unknowns: Indices, nodes: int) -> tuple[Indices, Indices]:
     return complete, rows[complete]
 
 
-def with_tip(points: dict[str, int], at: Floats, held: Sequence[int] = ()) -> dict[str, int]:
-    """Nodes of points by name, the tip the last: where none is called so, of nodes at (k, 3) that are not held the one
-    farthest from the root.
+def with_tip(points: dict[str, int], places: Floats, held: Sequence[int] = ()) -> dict[str, int]:
+    """Nodes of points by name, with the tip as the last.
+
+    Where no point is called so, the tip is the node farthest from the root, at places (k, 3), that is not held.
     """
-    distance = np.linalg.norm(at, axis=1)
+    distance = np.linalg.norm(places, axis=1)
     distance[[*held]] = 0.0
     tip = points.get(TIP, int(distance.argmax()))
     return {name: node for name, node in points.items() if name != TIP} | {TIP: tip}
@@ -159,17 +167,17 @@ def left_out(of_nodes: Any, moved: Floats) -> float:
 
 
 def compare_mass(body: Floats, size: float, total: float | None, centre: Any, inertia: Any) -> None:
-    """Refuse a mass, centre of mass or inertia about it that a body (10,) does not have."""
-    known, middle = body[0], body[1:4] / body[0]
+    """Refuse a mass, a centre of mass or an inertia about it that differs from that of the matrices' body (10,)."""
+    mass, middle = body[0], body[1:4] / body[0]
     xx, yy, zz, xy, yz, zx = body[4:]
-    second = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - known * np.outer(middle, middle)
+    second = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - mass * np.outer(middle, middle)
     about_centre = np.trace(second) * np.eye(3) - second
     fix = "are the units those of SI, and the places in the order of the matrices?"
-    if total is not None and abs(known / total - 1) > NEAR:
-        raise InputError("total_mass", f"is {total:.6g} kg, and the matrix has {known:.6g} kg", fix)
+    if total is not None and abs(mass / total - 1) > NEAR:
+        raise InputError("total_mass", f"is {total:.6g} kg, and the matrix has {mass:.6g} kg", fix)
     if centre is not None and np.linalg.norm(np.subtract(centre, middle)) > NEAR * size:
-        shown = ", ".join(f"{x:.4g}" for x in np.where(np.abs(middle) < ROUNDING * size, 0.0, middle))
-        raise InputError("centre", f"is not that of the matrix, ({shown}) m", fix)
+        words = ", ".join(f"{x:.4g}" for x in np.where(np.abs(middle) < ROUNDING * size, 0.0, middle))
+        raise InputError("centre", f"is not that of the matrix, ({words}) m", fix)
     if inertia is not None and np.abs(np.subtract(inertia, about_centre)).max() > NEAR * np.trace(about_centre):
-        shown = ", ".join(f"{moment:.4g}" for moment in np.diagonal(about_centre))
-        raise InputError("inertia", f"is not that of the matrix, {shown} kg m² on the diagonal", fix)
+        words = ", ".join(f"{moment:.4g}" for moment in np.diagonal(about_centre))
+        raise InputError("inertia", f"is not that of the matrix, {words} kg m² on the diagonal", fix)

@@ -160,11 +160,11 @@ class ModalTest(Value):
         doubts = ["no geometric stiffness is given: what the stress of loads stiffens or softens is left out"]
         if missing > EXACT:
             doubts.append(f"the masses of the nodes are up to {100 * missing:.2g} % away from a modal mass")
-        known, numbers = list(np.asarray(self.numbers)), points or {}
-        for name, number in numbers.items():
-            if number not in known:
+        numbers, named = list(np.asarray(self.numbers)), points or {}
+        for name, number in named.items():
+            if number not in numbers:
                 raise InputError(f"points.{name}", f"is {number}, which is no node", "give the number of one")
-        chosen = with_tip({name: known.index(number) for name, number in numbers.items()}, at)
+        chosen = with_tip({name: numbers.index(number) for name, number in named.items()}, at)
         n = shapes.shape[-1]
         zero = np.zeros((3, n, n))
         stiffness = np.diag(modal * (2 * np.pi * np.asarray(self.frequency)) ** 2)
@@ -188,7 +188,7 @@ _RATES = ("frequency", "damping_ratio")
 
 
 def _numbers(where: str, value: Any) -> Any:
-    """An array of real or complex numbers."""
+    """Convert values to an array of real or complex numbers."""
     numbers = np.asarray(value)
     if numbers.dtype.kind not in "iufc":
         raise InputError(where, f"is {type(value).__name__}", "give numbers, real or complex")
@@ -196,14 +196,15 @@ def _numbers(where: str, value: Any) -> Any:
 
 
 def _in_phase(shapes: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """Real shapes: the parts in phase of complex ones (k, 3, m), with the modal masses (m,) that go with them."""
+    """Real shapes of complex ones (k, 3, m), turned in phase, and the modal masses (m,) that go with them."""
     if np.isrealobj(shapes):
         return shapes.astype(float), np.real(mass).astype(float)
+    # The phase at which the sum of squares is real and positive: what remains imaginary is then smallest.
     turn = np.exp(-0.5j * np.angle((shapes**2).sum(axis=(0, 1))))
     turned = shapes * turn
-    out = np.linalg.norm(turned.imag, axis=(0, 1)) / np.linalg.norm(turned, axis=(0, 1))
-    if out.max() > CURVED:
-        i = int(out.argmax())
-        problem = f"moves out of phase by {100 * out[i]:.0f} %"
+    imaginary = np.linalg.norm(turned.imag, axis=(0, 1)) / np.linalg.norm(turned, axis=(0, 1))
+    if imaginary.max() > CURVED:
+        i = int(imaginary.argmax())
+        problem = f"moves out of phase by {100 * imaginary[i]:.0f} %"
         raise InputError(f"shapes[{i}]", problem, "give normal modes: gbeam's damping does not couple modes")
     return turned.real, np.real(mass * turn**2)

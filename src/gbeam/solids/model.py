@@ -52,8 +52,8 @@ class SolidModel(Value):
 
     @property
     def mesh_error(self) -> Floats:
-        """Estimated errors (m,) of the frequencies at rest by the mesh, as fractions: their differences to those of a
-        coarser mesh; NaN where there is none, or elements lock.
+        """Estimated errors (m,) of the frequencies at rest by the mesh, as fractions: their differences from those of a
+        coarser mesh. They are NaN where there is none, or where elements lock.
         """
         if self.structure.coarser is None:
             return np.full(len(self.frequency), np.nan)
@@ -119,8 +119,10 @@ class SolidModel(Value):
 
 
 def beside(coarser: SolidModel, finer: Structure) -> Structure:
-    """The `finer` structure with that of a coarser mesh as its `coarser`: in coordinates whose shapes are most like its
-    own, with the same named points, and with stress compared at the same places.
+    """Join the structure of a coarser mesh to the `finer` one as its `coarser`.
+
+    The coarser one is expressed in coordinates whose shapes are most like the finer one's, with the same named points,
+    and with stress compared at the same places.
     """
     from scipy.spatial import cKDTree
 
@@ -139,18 +141,18 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
         if set(have) != set(want):
             problem = f"has the {noun} {', '.join(have)}, and the mesh {', '.join(want)}"
             raise InputError("coarser", problem, "give it the same")
-    known, mesh = max(n, coarser.structure.size), rough.mesh
-    shapes = rough.every_shape[..., :known]
+    size_of_basis, mesh = max(n, coarser.structure.size), rough.mesh
+    shapes = rough.every_shape[..., :size_of_basis]
     mass = mass_matrix(mesh.points, mesh.blocks)
     moved = (mass @ shapes.reshape(len(shapes), -1)).reshape(shapes.shape) + mesh.point_masses[:, None, None] * shapes
-    _, near = cKDTree(fine.mesh.points).query(mesh.points)
-    likeness = np.tensordot(moved, fine.shapes[near], ((0, 1), (0, 1)))  # products of inertia of both meshes' shapes
-    # Of stiff shapes a soft one has what the coarser mesh bends by the forces that hold it: less would strain it more.
+    _, nearest = cKDTree(fine.mesh.points).query(mesh.points)
+    likeness = np.tensordot(moved, fine.shapes[nearest], ((0, 1), (0, 1)))  # mass products of both meshes' shapes
+    # A soft shape takes only as much of a stiff one as the forces that hold it bend: more of it would strain the mesh.
     rough_rates, fine_rates = (np.diagonal(s.coefficients.stiffness) for s in (structure, finer))
-    forced = np.minimum(1.0, 1 / np.divide.outer(rough_rates[:known], fine_rates))
+    forced = np.minimum(1.0, 1 / np.divide.outer(rough_rates[:size_of_basis], fine_rates))
     turn, size = np.linalg.qr(likeness * forced)
     basis = np.zeros((structure.size, n))
-    basis[:known] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
+    basis[:size_of_basis] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     padded = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
     without = without_limit(fine.mesh)
     excess = int(without.sum()) if without.mean() > MOST else 0
@@ -158,7 +160,7 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     # Where both have a node: stress changes fast near those where it is largest.
     of_both = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
     shared = of_both[~singular[of_both]]
-    felt_at = fine.most(shared if len(shared) else np.flatnonzero(~singular))
+    felt_at = fine.most_stressed(shared if len(shared) else np.flatnonzero(~singular))
     compared = replace(fine, singular=singular, compared=True, excess=excess, felt_at=felt_at)
     nodal = replace(
         rough,
@@ -180,19 +182,21 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
 
 
 def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:
-    """Pairs of the mesh `of` that are nearest to `pairs` of the mesh `to`, of the same materials."""
+    """Pairs of node and material in one mesh that are nearest to `pairs` of another mesh, in the same materials."""
     from scipy.spatial import cKDTree
 
-    nearest, kinds, wanted = np.zeros_like(pairs), np.array(of.material), np.array(to.material)[pairs]
+    nearest, materials, wanted = np.zeros_like(pairs), np.array(of.material), np.array(to.material)[pairs]
     for name in np.unique(wanted):
-        candidates, which = np.flatnonzero(kinds == name), wanted == name
+        candidates, which = np.flatnonzero(materials == name), wanted == name
         tree = cKDTree(of.mesh.points[of.node[candidates]])
         nearest[which] = candidates[tree.query(to.mesh.points[to.node[pairs[which]]])[1]]
     return nearest
 
 
 def hardly_coarser(coarser: Mesh, finer: Mesh) -> tuple[str, ...]:
-    """Warn of a coarser mesh whose elements are hardly larger in any direction."""
+    """Warn if the elements of a coarser mesh are hardly larger than those of the finer one, in all directions on
+    average.
+    """
 
     def size(mesh: Mesh) -> Floats:
         boxes = [np.ptp(mesh.points[block.nodes], axis=1) for block in mesh.blocks]

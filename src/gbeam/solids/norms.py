@@ -22,7 +22,7 @@ class LargestNorms:
     Along the few directions in which coordinates move most, squares of all norms are one product of two matrices, of
     quadratic forms and of products of coordinates. The other directions change a norm by no more than the sum of the
     norms of their columns, each times its largest coordinate. By these bounds cells of times are left out that hold the
-    largest norm neither of a map nor of a time, then single times, and of the rest norms are computed.
+    largest norm neither of a map nor of a time, then single times. For the remaining times norms are computed.
     """
 
     def __init__(self, maps: Floats, q: Floats) -> None:
@@ -64,7 +64,7 @@ class LargestNorms:
                 self._compute(times[kept], which)
 
     def _compute(self, times: Indices, which: Indices) -> None:
-        """Compute the norms of some maps at ascending times, among which they are largest, and keep the largest."""
+        """Compute the norms of some maps at ascending times, among which they are largest, and record the largest."""
         norms = np.sqrt(np.square(self.maps[:, which] @ self.q[times].T).sum(axis=0))
         self.size[which] = size = norms.max(axis=1)
         self.when[which] = times[(norms >= (1 - ROUNDING) * size[:, None]).argmax(axis=1)]
@@ -72,23 +72,28 @@ class LargestNorms:
 
 
 def _could_be_largest(squares: Any, rounding: Any, rest: Any, over: Floats, spread: Any = 0.0) -> Any:
-    """Flags of times (t,) at which a norm could be the largest of its map, or exceed `over` (t,), the largest so far of
-    all maps. Norms are known by their squares (p, t) but for rounding, and for what the rest of the coordinates (p, 1)
-    and other times of a cell, `spread` (p, t), may add.
+    """Flags of times (t,) at which a norm could be the largest of its map, or could exceed `over` (t,), the largest of
+    all maps so far.
+
+    A norm lies between bounds about the root of its square (p, t): it differs by `rounding`, by the `rest` of the
+    coordinates (p, 1), and by the `spread` (p, t) of times in a cell.
     """
-    most = np.sqrt(np.maximum(squares + rounding, 0)) + rest + spread
-    least = np.sqrt(np.maximum(squares.max(axis=1, keepdims=True) - rounding, 0)) - rest
-    return (most >= least).any(axis=0) | (most.max(axis=0) >= over)
+    upper = np.sqrt(np.maximum(squares + rounding, 0)) + rest + spread
+    lower = np.sqrt(np.maximum(squares.max(axis=1, keepdims=True) - rounding, 0)) - rest
+    return (upper >= lower).any(axis=0) | (upper.max(axis=0) >= over)
 
 
 def _cells(q: Floats) -> tuple[Indices, Any, Indices]:
-    """The times (c,) in the middles of cells of coordinates (t, n), how far others in a cell are apart (n, c), and the
-    cells of all times (t,).
+    """Divide the times of coordinates q (t, n) into cells of nearly equal coordinates.
+
+    Returns the time (c,) in the middle of each cell, how far others in the cell are apart from it, (n, c), and the cell
+    (t,) of each time.
     """
-    grid = np.floor((q - q.min(axis=0)) / WIDTH)
+    scaled = (q - q.min(axis=0)) / WIDTH
+    grid = np.floor(scaled)
     cell = np.unique(grid, axis=0, return_inverse=True)[1].ravel()
-    off = np.abs((q - q.min(axis=0)) / WIDTH - grid - 0.5).sum(axis=1)
-    order = np.lexsort((off, cell))
+    distance = np.abs(scaled - grid - 0.5).sum(axis=1)
+    order = np.lexsort((distance, cell))
     middle = order[np.unique(cell[order], return_index=True)[1]]
     spread = np.zeros((len(middle), q.shape[1]))
     np.maximum.at(spread, cell, np.abs(q - q[middle[cell]]))

@@ -24,9 +24,10 @@ MIDDLE = 1e-6  # of half of the thickness of a shell: a place that is nearer to 
 
 @dataclass(frozen=True)
 class Placed:
-    """Mesh of a file, as of meshio: places (f, 3) m of its nodes in base axes, and rotation to these from the file's;
-    points (k, 3) of the solid, and the indices (k,) of the nodes for which they stand; elements, block by block, and
-    their points.
+    """The mesh of a file in base axes: places (f, 3) m of its nodes, and the rotation to base axes from the file's.
+
+    The solid has points (k, 3), which stand for the nodes of indices (k,) in `numbers`; shells have two for a node. The
+    elements are listed block by block, and `points_of` has their points.
     """
 
     mesh: Any
@@ -39,7 +40,9 @@ class Placed:
 
     @classmethod
     def of(cls, mesh: Any, size: float, thickness: Any, *, origin: Numbers, turn: Numbers, scale: Numbers) -> Placed:
-        """Place a mesh in a unit of a `size`, m: scaled, moved from the origin, turned by a rotation vector."""
+        """Place a mesh whose unit of length has a `size`, m: scale it, move its origin to the root, and turn it by a
+        rotation vector.
+        """
         from scipy.spatial.transform import Rotation
 
         places = np.asarray(mesh.points, dtype=float)
@@ -59,19 +62,19 @@ class Placed:
 
     @property
     def middles(self) -> Floats:
-        """Places (k, 3) of the nodes for which the points stand: of shells on their middle surface."""
+        """Places (k, 3) of the nodes for which the points stand. For shells they are on the middle surface."""
         return self.places[self.numbers]
 
     def group(self, where: str, name: str) -> Indices:
-        """Points of a group of nodes or elements; an InputError about `where` refuses one without."""
+        """Points of a group of nodes or elements. An InputError about `where` refuses a group without any."""
         points = np.flatnonzero(np.isin(self.numbers, nodes_in(self.mesh, where, name)))
         if not len(points):
             raise InputError(where, f"is {name!r}, which has no node of a solid element or shell", "merge their nodes")
         return points
 
     def nearest(self, name: str, place: Any) -> int:
-        """Point nearest to a place, or of a group's only node; of a shell on the face on the place's side, or the upper
-        one.
+        """Point nearest to a place, or the point of a group's only node. On a shell it is on the face on the side of
+        the place, or on the upper one.
         """
         where = f"points.{name}"
         if name != TIP:
@@ -82,8 +85,9 @@ class Placed:
         middles = self.middles
         if isinstance(place, str):
             points = self.group(where, place)
-            if len(count := np.unique(middles[points], axis=0)) != 1:
-                raise InputError(where, f"is the group {place!r} of {len(count)} nodes", "give one node, or a place")
+            count = len(np.unique(middles[points], axis=0))
+            if count != 1:
+                raise InputError(where, f"is the group {place!r} of {count} nodes", "give one node, or a place")
             return int(points[0])
         place = np.asarray(place, dtype=float)
         if place.shape != (3,) or not np.isfinite(place).all():
@@ -94,12 +98,15 @@ class Placed:
             x, y, z = middles[away.argmin()]
             fix = f"give a place on the solid, in m: that node is at ({x:.4g}, {y:.4g}, {z:.4g}) m"
             raise InputError(where, f"is {away.min():.3g} m from the nearest node", fix)
-        points = np.flatnonzero(away == away.min())
+        points = np.flatnonzero(away == away.min())  # two on a shell, at arms from its middle
         arms = self.points[points] - middles[points]
-        return int(points[(arms @ (place - middles[points[0]]) > MIDDLE * (arms**2).sum(axis=1)).argmax()])
+        on_side = arms @ (place - middles[points[0]]) > MIDDLE * (arms**2).sum(axis=1)
+        return int(points[on_side.argmax()])
 
     def blocks(self, materials: Any) -> tuple[Block, ...]:
-        """Elements of each kind and material, one or by groups, whose axes are turned with the mesh."""
+        """Blocks of elements of each kind and material. Materials are one, or given by groups; their axes are turned
+        with the mesh.
+        """
         owner = assigned(self.mesh, "materials", materials, (part.block for part in self.elements))
         without = sum(int((owner[part.block][part.which] < 0).sum()) for part in self.elements)
         if without:
@@ -108,25 +115,27 @@ class Placed:
         numbers, names, blocks = numbers_of(self.mesh), shared_names(by_group), []
         for m, (name, material) in enumerate(by_group.items()):
             where = f"materials.{name}" if name else "materials"
+            has_axes = isinstance(material, Orthotropic)
             try:
-                turned = isinstance(material, Orthotropic)
-                along = replace(material, axes=np.asarray(material.axes) @ self.rotation.T) if turned else material
-                elasticity = along.elasticity
+                turned = replace(material, axes=np.asarray(material.axes) @ self.rotation.T) if has_axes else material
+                elasticity = turned.elasticity
             except InputError as error:
                 raise error.within(where) from None
             for (i, which, kind, _, thickness), nodes in zip(self.elements, self.points_of, strict=True):
                 chosen = owner[i][which] == m
-                if thickness is not None and turned:
-                    refuse_oblique(where, self.points, nodes[chosen], kind, along.axes)
+                if thickness is not None and has_axes:
+                    refuse_oblique(where, self.points, nodes[chosen], kind, turned.axes)
                 if chosen.any():
-                    named = numbers[i][which[chosen]]
-                    blocks.append(Block(kind, nodes[chosen], named, names[name], float(material.density), elasticity))
+                    element_numbers, density = numbers[i][which[chosen]], float(material.density)
+                    blocks.append(Block(kind, nodes[chosen], element_numbers, names[name], density, elasticity))
         return tuple(blocks)
 
 
 def shared_names(materials: Mapping[str, Material | Orthotropic]) -> dict[str, str]:
-    """Names of materials by those of their groups: of groups of the same material all, for stress is shared by them."""
-    return {
-        name: ", ".join(other for other, alike in materials.items() if alike == each)
-        for name, each in materials.items()
-    }
+    """Names of materials by their groups. Groups with equal materials share one name, which lists them all: stress is
+    averaged over their elements together.
+    """
+    names = dict[str, str]()
+    for name, material in materials.items():
+        names[name] = ", ".join(other for other, alike in materials.items() if alike == material)
+    return names

@@ -22,7 +22,7 @@ PART = 0.1  # of the linear elements: fewer that fill a thickness are at edges
 
 
 def refuse_far(where: str, places: Floats, unit: float = 1.0) -> None:
-    """Refuse nodes, places (k, 3) in a `unit`, m, that are farther than anything that moves."""
+    """Refuse nodes, at places (k, 3) in a `unit`, m, that are farther away than the limit of any place."""
     farthest = float(np.abs(places).max(initial=0.0))
     if farthest > BOUNDLESS / unit:
         raise InputError(where, f"has a node at {farthest:.4g} in a unit of {unit:g} m", "write it again")
@@ -42,13 +42,14 @@ def refuse_folded(mesh: Mesh) -> None:
 
 
 def refuse_twice(mesh: Mesh) -> None:
-    """Refuse elements on the corners of others, which would count twice."""
+    """Refuse elements on the corners of other elements, which would count twice."""
     by_corners: dict[bytes, int] = {}
     pairs = list[tuple[int, int]]()
     for block in mesh.blocks:
         corners = np.sort(block.nodes[:, : corners_of(block.kind)], axis=1)
         for number, nodes in zip(block.numbers.tolist(), corners, strict=True):
-            if (key := nodes.tobytes()) in by_corners:
+            key = nodes.tobytes()
+            if key in by_corners:
                 pairs.append((number, by_corners[key]))
             by_corners.setdefault(key, number)
     if pairs:
@@ -75,7 +76,7 @@ def refuse_loose(mesh: Mesh) -> None:
     for i in range(count):
         nodes = part == i
         if any(nodes[sprung].any() for sprung in mesh.links.on_base):
-            continue  # whether the springs hold it the factors say
+            continue  # the factorisation says whether the springs hold it
         held = mesh.points[nodes & mesh.clamped]
         size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
         if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):
@@ -87,7 +88,7 @@ def refuse_loose(mesh: Mesh) -> None:
 
 
 def doubts_of(mesh: Mesh, unit: str) -> list[str]:
-    """Warnings of what is implausible in a mesh, or known to be inaccurate."""
+    """Warn of what is implausible in a mesh, or known to be inaccurate."""
     size, mass = float(np.linalg.norm(np.ptp(mesh.points, axis=0))), mesh.mass
     doubts = []
     if size > LARGE or mass > HEAVY or size < SMALL:
@@ -105,7 +106,7 @@ def doubts_of(mesh: Mesh, unit: str) -> list[str]:
 
 
 def locking(mesh: Mesh) -> list[str]:
-    """Warnings of elements that are too stiff, by more than meshes of them differ."""
+    """Warn of elements that are too stiff by more than meshes of them differ from one another."""
     doubts, of_blocks = list[str](), _slenderness(mesh)
     linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
     if linear:
@@ -138,8 +139,8 @@ def locking(mesh: Mesh) -> list[str]:
 
 
 def _unmerged(mesh: Mesh, distance: float) -> Indices:
-    """Pairs (p, 2) of points within `distance` of each other, of different nodes that share no element and are not both
-    in rigid links.
+    """Pairs (p, 2) of points within `distance` of each other that belong to different nodes. They share no element and
+    are not both in rigid links.
     """
     from scipy.sparse import coo_array
     from scipy.spatial import KDTree
@@ -157,8 +158,9 @@ def _unmerged(mesh: Mesh, distance: float) -> Indices:
 
 
 def _slenderness(mesh: Mesh) -> list[Floats]:
-    """Ratios (e,) of length to thickness of the elements of each block, along principal axes of their corners; NaN of
-    an element with a corner inside the solid, which does not fill the solid's thickness alone.
+    """Ratios (e,) of length to thickness of the elements of each block, along principal axes of their corners.
+
+    They are NaN for an element with a corner inside the solid, which does not fill the solid's thickness alone.
     """
     outside = np.zeros(len(mesh.points), dtype=bool)
     outside[outer_triangles(mesh)] = True

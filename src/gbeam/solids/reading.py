@@ -46,7 +46,7 @@ def read_solid(
     scale: Numbers,
     mass_unit: str | None,
 ) -> M:
-    """Read a solid of some type; :meth:`gbeam.SolidMesh.read` says of each argument its meaning."""
+    """Read a solid of some type. :meth:`gbeam.SolidMesh.read` explains the arguments."""
     mesh, size = mesh_of(source, unit, element_size, cards=mass_unit is not None)
     placed = Placed.of(mesh, size, thickness, origin=origin, turn=turn, scale=scale)
     clamps = {name: placed.group("clamp", name) for name in ([clamp] if isinstance(clamp, str) else clamp)}
@@ -76,10 +76,10 @@ def read_solid(
         numbers=node_numbers_of(mesh)[placed.numbers],
         point_masses=weights,
         stations=stations,
-        strengths={name: each.yield_strength for name, each in kinds.items() if each.yield_strength is not None},
+        strengths={name: kind.yield_strength for name, kind in kinds.items() if kind.yield_strength is not None},
         interfaces=hung,
         links=tied,
-        exponents={name: float(each.fatigue_exponent) for name, each in kinds.items()},
+        exponents={name: float(material.fatigue_exponent) for name, material in kinds.items()},
         turns={name: tuple(place.turn) for name, place in points.items() if isinstance(place, Place)},
         clamps={name: len(np.unique(placed.numbers[nodes])) for name, nodes in clamps.items()},
     )
@@ -93,8 +93,8 @@ def read_solid(
 
 
 def _spread(placed: Placed, stations: Mapping[str, int], point_masses: Mapping[str, float]) -> Floats:
-    """Masses (k,) on the points, kg, of those by the name of a station, or of a group over whose points one is
-    spread.
+    """Masses (k,) on the points, kg: each mass is named by its station, or by a group over whose points it is spread
+    evenly.
     """
     weights = np.zeros(len(placed.points))
     for name, mass in point_masses.items():

@@ -200,19 +200,20 @@ class RigidSpecimen(Value):
         return replace(self._loads(time, moving.base(time), name, kind_of(motion)), notes=notes_on({name: motion}))
 
     def _loads(self, time: Floats, base: Any, name: str, environment: str) -> SpecimenLoads:
-        """Loads at times (t,), s, by the motion of the root there."""
+        """Loads at times (t,), s, from the motion `base` of the root at these times."""
         corners = np.asarray(self.corners)
         vectors = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
         a, w, alpha = (np.broadcast_to(vector, (len(time), 3)) for vector in vectors)
 
         def accelerations(places: Floats) -> Floats:
+            """Accelerations (t, k, 3) of places (k, 3): a + α × r + ω × (ω × r)."""
             spin, turn = w[:, None], alpha[:, None]
             return a[:, None] + np.cross(turn, places) + np.cross(spin, np.cross(spin, places))
 
         centre, inertia = np.asarray(self.centre), np.asarray(self.inertia)
         of_centre = accelerations(centre[None])[:, 0]
         force = self.mass * of_centre
-        about_centre = alpha @ inertia + np.cross(w, w @ inertia)  # Euler's equations; the inertia is symmetric
+        about_centre = alpha @ inertia + np.cross(w, w @ inertia)  # I α + ω × I ω; the inertia is symmetric
         moment = about_centre + np.cross(centre, force)
         of_bolts: dict[str, Any] = {} if self.bolts is None else self._shared(np.asarray(self.bolts), force, moment)
         return SpecimenLoads(
@@ -231,7 +232,9 @@ class RigidSpecimen(Value):
 
     @property
     def structure(self) -> Structure:
-        """The specimen as analyses take it, without coordinates; its tip is the farthest corner unless it is named."""
+        """The specimen as a structure without coordinates. Its tip is the farthest corner unless a point has this
+        name.
+        """
         corners, centre, inertia = map(np.asarray, (self.corners, self.centre, self.inertia))
         second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
         products = (second[i, j] for i, j in PAIRS)
@@ -327,8 +330,11 @@ class RigidSpecimen(Value):
         raise InputError("at", f"is {point!r}, on a rigid body, which has no strain", "give a mesh, or leave it out")
 
     def _shared(self, bolts: Floats, force: Floats, moment: Floats) -> dict[str, Any]:
-        """Fields of the bolts: forces (t, b, 3) that share a force and a moment (t, 3), as of bolts alike between rigid
-        bodies, their places and direction.
+        """Fields of the bolts: the forces (t, b, 3) by which they share a force and a moment (t, 3), their places and
+        their direction.
+
+        Bolts are alike between rigid bodies: each has an equal part of the force, and takes up the moment in proportion
+        to its arm.
         """
         centroid, axis = bolts.mean(axis=0), np.asarray(self.bolt_axis)
         turn = np.linalg.solve(_second_moments(bolts), (moment - np.cross(centroid, force)).T).T
@@ -337,6 +343,8 @@ class RigidSpecimen(Value):
 
 
 def _second_moments(bolts: Floats) -> Floats:
-    """Second moments (3, 3) of points (b, 3) about their centroid, m²: a moment over a rotation of bolts alike."""
+    """Second moments Σ (r² − r r) (3, 3) of points (b, 3) about their centroid, m²: the moment per rotation of bolts of
+    unit stiffness.
+    """
     arms = bolts - bolts.mean(axis=0)
     return np.asarray((arms**2).sum() * np.eye(3) - arms.T @ arms)

@@ -25,10 +25,13 @@ _HEXAHEDRON = np.array([*_CORNERS, *((np.add(_CORNERS[i], _CORNERS[j]) / 2) for 
 
 @dataclass(frozen=True)
 class Kind:
-    """Kind of element by meshio's name: scikit-fem's, and the degrees of the quadrature of stiffness, mass and stress;
-    the monomials in which stress is extrapolated, by their exponents; the ratio of length to thickness above which a
-    layer of one locks in bending: of eight across a clamped plate by 3 % and more (`tests/solids/test_thin.py`); the
-    number of its corners in a shell's surface; the degree of the quadrature along a wedge where that is another one.
+    """Kind of element by meshio's name: scikit-fem's name, and the degrees of the quadrature of stiffness, mass and
+    stress.
+
+    `monomials` are those in which stress is extrapolated, by their exponents. `long` is the ratio of length to
+    thickness above which a layer of one locks in bending: of eight across a clamped plate by 3 % and more
+    (`tests/solids/test_thin.py`). `shell` is the number of its corners in a shell's surface, `along` the degree of the
+    quadrature along a wedge where that is another one.
     """
 
     element: str
@@ -94,7 +97,9 @@ def _element(kind: str) -> Any:
 
 @cache
 def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Floats]:
-    """Points (q, 3), weights (q,), shape functions (q, k) and their derivatives (q, k, 3) at a rule of some degree."""
+    """Points (q, 3), weights (q,), shape functions (q, k) and their derivatives (q, k, 3) at the quadrature rule of a
+    degree.
+    """
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefLine, RefTri
 
@@ -112,44 +117,50 @@ def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Flo
 
 
 def shapes_at(kind: str, points: Floats) -> tuple[Floats, Floats]:
-    """Shape functions (q, k) and their derivatives (q, k, 3) at points (q, 3) of the reference element."""
+    """Shape functions (q, k) and their derivatives (q, k, 3) at points (q, 3) of the reference element.
+
+    Those of a shell are its surface's, times 1 − z for the lower face and z for the upper one.
+    """
     if not KINDS[kind].shell:
         return _basis(kind, points)
-    (values, flat), height = _basis(kind, points[:, :2]), points[:, 2, None]
-    below = np.concatenate([flat * (1 - height)[..., None], -values[..., None]], axis=2)
-    above = np.concatenate([flat * height[..., None], values[..., None]], axis=2)
+    values, slopes = _basis(kind, points[:, :2])
+    height = points[:, 2, None]
+    below = np.concatenate([slopes * (1 - height)[..., None], -values[..., None]], axis=2)
+    above = np.concatenate([slopes * height[..., None], values[..., None]], axis=2)
     return both_faces(kind, values * (1 - height), values * height), both_faces(kind, below, above)
 
 
 def _basis(kind: str, points: Floats) -> tuple[Floats, Floats]:
-    """Shape functions (q, k) and their derivatives (q, k, d) at points (q, d) of the reference element."""
-    if kind in _NODES:
+    """Shape functions (q, k) and their derivatives (q, k, d) at points (q, d), for the nodes in meshio's order."""
+    if kind in _NODES:  # polynomials that are 1 at one node and 0 at the others
         of_nodes = np.linalg.inv(_monomials(_NODES[kind], _WEDGE15))
-        slopes = [_monomials(points, _WEDGE15, along) @ of_nodes for along in range(3)]
+        slopes = [_monomials(points, _WEDGE15, axis) @ of_nodes for axis in range(3)]
         return _monomials(points, _WEDGE15) @ of_nodes, np.stack(slopes, axis=2)
     element, columns = _element(kind)(), np.ascontiguousarray(points.T)
     pairs = [element.lbasis(columns, i) for i in _order(kind)]
     values = np.stack([np.broadcast_to(value, len(points)) for value, _ in pairs], axis=1)
-    slopes = [np.stack([np.broadcast_to(along, len(points)) for along in slope], axis=1) for _, slope in pairs]
+    slopes = [np.stack([np.broadcast_to(part, len(points)) for part in slope], axis=1) for _, slope in pairs]
     return values, np.stack(slopes, axis=1)
 
 
-def _monomials(at: Floats, powers: Sequence[tuple[int, int, int]], along: int | None = None) -> Floats:
-    """Monomials (q, m) of some powers at points (q, 3), or their derivatives along an axis."""
+def _monomials(points: Floats, powers: Sequence[tuple[int, int, int]], axis: int | None = None) -> Floats:
+    """Monomials (q, m) with the exponents `powers` at points (q, 3), or their derivatives along an axis."""
     exponents, factor = np.array(powers), np.ones(len(powers))
-    if along is not None:
-        factor = exponents[:, along].astype(float)
-        exponents = np.maximum(exponents - np.eye(3, dtype=int)[along], 0)
-    return np.asarray(factor * np.prod(at[:, None, :] ** exponents, axis=-1))
+    if axis is not None:
+        factor = exponents[:, axis].astype(float)
+        exponents = np.maximum(exponents - np.eye(3, dtype=int)[axis], 0)
+    return np.asarray(factor * np.prod(points[:, None, :] ** exponents, axis=-1))
 
 
 def tangents(kind: str, points: Floats, nodes: Indices, at: Floats) -> Floats:
-    """Tangents (e, q, 2, 3) of the middle surfaces of shells at points (q, 2) of the reference element."""
+    """Two tangents (e, q, 2, 3) of the middle surfaces of shells at points `at` (q, 2) of the reference element."""
     return np.einsum("ekc,qkd->eqdc", points[nodes], _basis(kind, at)[1], optimize=True)
 
 
 def shared_area(kind: str, places: Floats) -> Floats:
-    """Integrals (k,) of the shape functions of a triangle or quadrilateral, with nodes at places (k, 3), over it."""
+    """Shares (k,) of its nodes in the area of a triangle or quadrilateral with nodes at places (k, 3): integrals of the
+    shape functions.
+    """
     from skfem.quadrature import get_quadrature
 
     at, weights = get_quadrature(_element(kind)().refdom, KINDS[kind].mass)
@@ -158,7 +169,7 @@ def shared_area(kind: str, places: Floats) -> Floats:
 
 
 def both_faces(kind: str, below: Any, above: Any) -> Any:
-    """Values (e, 2 k, ...) in the order of a shell's nodes, of those (e, k, ...) of the nodes of its two faces."""
+    """Join values (e, k, ...) at the nodes of a shell's two faces into the order of its nodes, (e, 2 k, ...)."""
     corners = KINDS[kind].shell
     return np.concatenate([below[:, :corners], above[:, :corners], below[:, corners:], above[:, corners:]], axis=1)
 
@@ -171,12 +182,12 @@ def extrapolation(kind: str) -> Floats:
 
 
 def middle_nodes(kind: str) -> Floats:
-    """Places of the nodes in the reference element, of shells that of the middle surface, in scikit-fem's order."""
+    """Places of the nodes in the reference element, for shells those of the middle surface, in scikit-fem's order."""
     return _NODES[kind] if kind in _NODES else np.array(_element(kind).doflocs)
 
 
 def reference(kind: str) -> Floats:
-    """Places of the nodes in the reference element, (k, 3)."""
+    """Places (k, 3) of the nodes in the reference element, in meshio's order."""
     places = middle_nodes(kind)
     if KINDS[kind].shell:
         low, high = (np.insert(places, 2, height, axis=1)[None] for height in (0.0, 1.0))
@@ -186,12 +197,15 @@ def reference(kind: str) -> Floats:
 
 @cache
 def _order(kind: str) -> tuple[int, ...]:
-    """Numbers in scikit-fem of an element's nodes, of shells those of its middle surface."""
+    """Numbers that scikit-fem gives the nodes of an element, for shells those of the middle surface."""
     theirs = middle_nodes(kind)
-    distance = np.abs((theirs if KINDS[kind].shell else reference(kind))[:, None] - theirs).max(axis=-1)
+    ours = theirs if KINDS[kind].shell else reference(kind)
+    distance = np.abs(ours[:, None] - theirs).max(axis=-1)
     return tuple(int(i) for i in distance.argmin(axis=1))
 
 
 def jacobians(points: Floats, nodes: Indices, slopes: Floats) -> Floats:
-    """Derivatives (e, q, 3, 3) of places by those in the reference, of shape functions' derivatives (q, k, 3)."""
+    """Derivatives (e, q, 3, 3) of places with respect to those in the reference element, from the derivatives (q, k, 3)
+    of the shape functions.
+    """
     return np.einsum("ekd,qkc->eqdc", points[nodes], slopes, optimize=True)

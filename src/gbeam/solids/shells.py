@@ -42,8 +42,10 @@ TYING = {
 
 
 def _tied(kind: str, at: Floats) -> tuple[Floats, Floats]:
-    """Points (p, 2) of the middle surface from which transverse shear is interpolated, and the shares (q, 2, p, 2) of
-    its two components there in those at points (q, 2).
+    """Points (p, 2) of the middle surface from which transverse shear is interpolated, and its interpolation to points
+    `at` (q, 2).
+
+    The latter are the shares (q, 2, p, 2) of the two components at the first points in those at the second.
     """
     x, y = at.T
     if kind not in TYING:
@@ -58,8 +60,10 @@ def _tied(kind: str, at: Floats) -> tuple[Floats, Floats]:
 
 
 def _covariant(base: Floats, slopes: Floats, pair: tuple[int, int]) -> Floats:
-    """Covariant component a, b of strain per displacement of nodes, (e, q, k, 3), by base vectors (e, q, 3, 3) and
-    slopes (q, k, 3) of shape functions.
+    """Covariant component a, b of the strain per displacement of the nodes, (e, q, k, 3).
+
+    With base vectors g, (e, q, 3, 3), it is (g_a · u_,b + g_b · u_,a)/2; `slopes` (q, k, 3) are those of the shape
+    functions.
     """
     a, b = pair
     slope_a, slope_b = slopes[None, ..., a, None], slopes[None, ..., b, None]
@@ -67,7 +71,9 @@ def _covariant(base: Floats, slopes: Floats, pair: tuple[int, int]) -> Floats:
 
 
 def _cartesian(dual: Floats, pair: tuple[int, int]) -> Floats:
-    """Strains (..., 6) xx, yy, zz, yz, xz, xy of a unit component, by the dual base vectors (..., 3, 3), in columns."""
+    """Strains (..., 6) xx, yy, zz, yz, xz, xy of a unit covariant component, from the dual base vectors (..., 3, 3) in
+    columns. Shear is twice that of the tensor.
+    """
     a, b = dual[..., pair[0]], dual[..., pair[1]]
     factor = 1.0 if pair[0] == pair[1] else 2.0
     normal = factor * a * b
@@ -76,7 +82,7 @@ def _cartesian(dual: Floats, pair: tuple[int, int]) -> Floats:
 
 
 def plane_stress(elasticity: Floats, normal: Floats) -> Floats:
-    """Elasticity (..., 6, 6) without stress along unit normals (..., 3)."""
+    """Elasticity (..., 6, 6) of plane stress: without stress along unit normals (..., 3)."""
     across = _cartesian(normal[..., None], (0, 0))
     stress = across @ elasticity
     return elasticity - stress[..., :, None] * stress[..., None, :] / (across * stress).sum(axis=-1)[..., None, None]
@@ -85,8 +91,10 @@ def plane_stress(elasticity: Floats, normal: Floats) -> Floats:
 def shell_strains(
     points: Floats, nodes: Indices, kind: str, elasticity: Floats, degree: int, shear: Any
 ) -> tuple[Floats, Floats]:
-    """Strains (e, q, 6, k, 3) per displacement of nodes, transverse shear times a factor `shear`, and elasticity in
-    plane stress (e, q, 6, 6).
+    """Strains (e, q, 6, k, 3) per displacement of the nodes of shells, and their elasticity in plane stress (e, q, 6,
+    6).
+
+    Transverse shear is multiplied by `shear`.
     """
     at, weights, _, slopes = shape_functions(kind, degree)
     base = jacobians(points, nodes, slopes).swapaxes(2, 3)
@@ -118,35 +126,39 @@ def shell_strains(
 
 
 def _enhanced(points: Floats, nodes: Indices, kind: str, at: Floats, volume: Floats) -> Floats:
-    """Enhanced strains (e, q, 6, 4) of quadrilaterals at points (q, 3), where `volume` (e, q) is the determinant."""
+    """Enhanced strains (e, q, 6, 4) of quadrilaterals at points `at` (q, 3), where the Jacobian has the determinant
+    `volume` (e, q): linear there, and turned to the axes by the base vectors in the middle.
+    """
     middle = jacobians(points, nodes, shapes_at(kind, np.full((1, 3), 0.5))[1]).swapaxes(2, 3)
     dual = np.asarray(np.linalg.inv(middle), dtype=float)
     ratio = np.linalg.det(middle) / volume
-    return np.stack(
-        [_cartesian(dual, PAIRS[pair]) * (ratio * (2 * at[:, i] - 1))[..., None] for pair, i in ENHANCED], axis=-1
-    )
+    strains = []
+    for pair, i in ENHANCED:
+        size = ratio * (2 * at[:, i] - 1)
+        strains.append(_cartesian(dual, PAIRS[pair]) * size[..., None])
+    return np.stack(strains, axis=-1)
 
 
 def _normals(places: Floats, kind: str, nodes: Indices) -> Floats:
-    """Unit normals (e, k, 3) of elements at their nodes, all on the side of the normal in the middle."""
+    """Unit normals (e, k, 3) of elements at their nodes, all on the side of the normal in the element's middle."""
 
-    def across(at: Floats) -> Floats:
-        first, second = np.moveaxis(tangents(kind, places, nodes, at), 2, 0)
+    def normals_at(points: Floats) -> Floats:
+        first, second = np.moveaxis(tangents(kind, places, nodes, points), 2, 0)
         return np.cross(first, second)
 
     corners = middle_nodes(kind)
-    normals, middle = across(corners), across(corners[: KINDS[kind].shell].mean(axis=0, keepdims=True))
+    normals = normals_at(corners)
+    middle = normals_at(corners[: KINDS[kind].shell].mean(axis=0, keepdims=True))
     size = np.linalg.norm(normals, axis=-1, keepdims=True)
     side = np.where((normals * middle).sum(axis=-1, keepdims=True) < 0, -1.0, 1.0)
     return normals / np.where(size > 0, size, 1.0) * side
 
 
 def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> tuple[Floats, Indices, list[Indices]]:
-    """Points (p, 3) on the faces of shells, the upper one of two on a normal first, the nodes (p,) for which they
-    stand, and the points (e, 2 k) of elements; by places (k, 3) of nodes and the kinds, nodes (e, k) and thicknesses
-    (e,) of elements.
+    """Points (p, 3) on the faces of shells, the nodes (p,) for which they stand, and the points (e, 2 k) of elements.
 
-    Elements that meet at a node share a normal, the mean of theirs, where theirs are nearly one.
+    Of the two points on a normal the upper one is first. Nodes are at places (k, 3); elements have a kind, nodes (e, k)
+    and thicknesses (e,). Those that meet at a node share a normal, the mean of theirs, where theirs are nearly one.
     """
     normal = np.concatenate([_normals(places, kind, nodes).reshape(-1, 3) for kind, nodes, _ in elements])
     node = np.concatenate([nodes.ravel() for _, nodes, _ in elements])
@@ -154,14 +166,17 @@ def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> 
     # A family shares one normal at a node; `along` is 1 where an element's has its sense, −1 where not, 0 if undecided.
     along, family = np.zeros(len(node)), np.zeros(len(node), dtype=int)
     rounds = 0
-    while (left := np.flatnonzero(along == 0)).size:
+    undecided = np.arange(len(node))
+    while undecided.size:
         first = np.full(len(places), -1)
-        first[node[left[::-1]]] = left[::-1]
-        leader = first[node[left]]
-        together = (normal[left] * normal[leader]).sum(axis=1)
-        same = ((np.abs(together) >= SMOOTH) & (thickness[left] == thickness[leader])) | (left == leader)
-        along[left[same]] = np.where(together[same] < 0, -1.0, 1.0)
-        family[left[same]] = rounds * len(places) + node[left[same]]
+        first[node[undecided[::-1]]] = undecided[::-1]
+        leader = first[node[undecided]]
+        cosine = (normal[undecided] * normal[leader]).sum(axis=1)
+        smooth = (np.abs(cosine) >= SMOOTH) & (thickness[undecided] == thickness[leader])
+        same = smooth | (undecided == leader)
+        along[undecided[same]] = np.where(cosine[same] < 0, -1.0, 1.0)
+        family[undecided[same]] = rounds * len(places) + node[undecided[same]]
+        undecided = np.flatnonzero(along == 0)
         rounds += 1
     _, index, family = np.unique(family, return_index=True, return_inverse=True)
     total = np.zeros((len(index), 3))
@@ -180,26 +195,30 @@ def layered(places: Floats, elements: Sequence[tuple[str, Indices, Floats]]) -> 
 
 
 def points_of(places: Floats, elements: Sequence[Any]) -> tuple[Floats, Indices, list[Indices]]:
-    """Points (p, 3), the nodes (p,) for which they stand, and the points (e, k) of the elements of each block: a node
-    of solids is one, a node of shells two or more.
+    """Points (p, 3), the nodes (p,) for which they stand, and the points (e, k) of the elements of each block.
+
+    A node of solids is one point, a node of shells two or more.
     """
     solids = [block for block in elements if block.thickness is None]
     used = np.unique(np.concatenate([np.empty(0, dtype=int), *(block.nodes.ravel() for block in solids)]))
-    new = np.full(len(places), -1)
-    new[used] = np.arange(len(used))
+    point_of_node = np.full(len(places), -1)
+    point_of_node[used] = np.arange(len(used))
     shells = [(block.kind, block.nodes, block.thickness) for block in elements if block.thickness is not None]
     points, numbers, nodes = layered(places, shells) if shells else (np.empty((0, 3)), np.empty(0, dtype=int), [])
-    rest = iter(nodes)
-    of_elements = [new[block.nodes] if block.thickness is None else len(used) + next(rest) for block in elements]
+    of_shells = iter(nodes)
+    of_elements = []
+    for block in elements:
+        of_elements.append(point_of_node[block.nodes] if block.thickness is None else len(used) + next(of_shells))
     return np.concatenate([places[used], points]), np.concatenate([used, numbers]), of_elements
 
 
 def refuse_oblique(where: str, points: Floats, nodes: Indices, kind: str, axes: Any) -> None:
-    """Refuse shells (e, 2 k) whose normal is not the third axis of their material, of which the first two are given."""
+    """Refuse shells (e, 2 k) whose normal is not the third axis of their material; `axes` are the first two."""
     corners = KINDS[kind].shell
     normal = (points[nodes[:, corners : 2 * corners]] - points[nodes[:, :corners]]).mean(axis=1)
     third = np.cross(*np.asarray(axes, dtype=float))
-    along = np.abs(normal @ third) / np.linalg.norm(normal, axis=1) / np.linalg.norm(third)
-    if oblique := int((along < UPRIGHT).sum()):
+    cosine = np.abs(normal @ third) / np.linalg.norm(normal, axis=1) / np.linalg.norm(third)
+    oblique = int((cosine < UPRIGHT).sum())
+    if oblique:
         fix = "give the elements of each plane a group, and a material with axes 1 and 2 in it"
         raise InputError(f"{where}.axes", f"do not lie in {oblique} elements of shells", fix)

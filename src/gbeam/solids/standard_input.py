@@ -108,50 +108,59 @@ def read_sid(
 
 
 def _slope(block: Mapping[str, Floats], count: int) -> Floats:
-    """Change of a polynomial with the coordinates (rows, n, columns), zero where the file ends before it."""
+    """Change of a polynomial with the coordinates, (rows, n, columns); zero where the file has the constant part
+    alone.
+    """
     slope = block["m1"]
     return slope if slope.shape[1] == count else np.zeros((slope.shape[0], count, slope.shape[2]))
 
 
 def _coefficients(body: Mapping[str, Any], path: str) -> Coefficients:
-    """Coefficients of the linear equations by the blocks of a body, named as in the standard."""
+    """Coefficients of the linear equations from the blocks of a body, named as in the standard: `m0` is the constant
+    part of each, `m1` its change with the coordinates.
+    """
     n = body["Me"]["m0"].shape[0]
     if "ksigma" in body and body["ksigma"]["m0"].any():
         raise InputError("path", f"{path} has stress at rest (ksigma)", "export the body at rest, without a load")
-    total, (x, y, z), inertia = float(body["mass"]), body["mdCM"]["m0"][:, 0], body["J"]["m0"]
-    second = np.trace(inertia) / 2 * np.eye(3) - inertia
-    f_ww = np.moveaxis(_slope(body["J"], n), 1, -1) / 2  # J = J₀ + J₁ q, ½ ω J₁ ω is the centrifugal force
-    along = -body["Oe"]["m0"]
-    for order in ORDERS:
-        f_oe = _by_pairs(along.T[:, :, None], order)[..., 0]
-        if np.abs(f_oe - f_ww).max() <= ALIKE * np.abs(along).max():
-            break
-    else:
-        if f_ww.any():
-            fix = "export it again: ½ dJ/dq is the force of a rotation"
-            raise InputError("path", f"{path} has centrifugal terms Oe that its inertia J contradicts", fix)
-        order = ORDERS[0]
-        f_ww = _by_pairs(along.T[:, :, None], order)[..., 0]
-    k_ww = _by_pairs(np.moveaxis(_slope(body["Oe"], n), -1, 0), order)
+    f_ww, order = _centrifugal(body, path, n)
     ge = body["Ge"]["m0"].reshape(n, n, 3)  # [row, coordinate, axis]
+    inertia = body["J"]["m0"]
+    second = np.trace(inertia) / 2 * np.eye(3) - inertia
     pairs = (second[i, j] for i, j in PAIRS)
     return Coefficients(
         mass=body["Me"]["m0"],
         damping=body["De"]["m0"] if "De" in body and body["De"]["m0"].any() else np.zeros((n, n)),
         stiffness=body["Ke"]["m0"],
         gyroscopic=np.moveaxis(ge, -1, 0),
-        k_ww=k_ww,
+        k_ww=_by_pairs(np.moveaxis(_slope(body["Oe"], n), -1, 0), order),
         k_al=np.moveaxis(_slope(body["Cr"], n), -1, 0),
         k_a=np.moveaxis(_slope(body["Ct"], n), -1, 0),
         f_ww=f_ww,
         f_al=-body["Cr"]["m0"].T,
         f_a=-body["Ct"]["m0"].T,
-        rigid=np.array([total, x, y, z, *pairs]),
+        rigid=np.array([float(body["mass"]), *body["mdCM"]["m0"][:, 0], *pairs]),
     )
 
 
+def _centrifugal(body: Mapping[str, Any], path: str, n: int) -> tuple[Floats, Any]:
+    """Centrifugal loads (3, 3, n), and the order of the rates' products in the file's terms Oe.
+
+    It is the order in which Oe agrees with the inertia J = J₀ + J₁ q, where ½ ω J₁ ω is the load.
+    """
+    f_ww = np.moveaxis(_slope(body["J"], n), 1, -1) / 2
+    along = -body["Oe"]["m0"]
+    for order in ORDERS:
+        f_oe = _by_pairs(along.T[:, :, None], order)[..., 0]
+        if np.abs(f_oe - f_ww).max() <= ALIKE * np.abs(along).max():
+            return f_ww, order
+    if f_ww.any():
+        fix = "export it again: ½ dJ/dq is the force of a rotation"
+        raise InputError("path", f"{path} has centrifugal terms Oe that its inertia J contradicts", fix)
+    return _by_pairs(along.T[:, :, None], ORDERS[0])[..., 0], ORDERS[0]
+
+
 def _by_pairs(columns: Floats, order: Any) -> Floats:
-    """Coefficients (3, 3, ...) of pairs of rates, symmetric, by those (6, ...) of their products in an order."""
+    """Symmetric coefficients (3, 3, ...) of pairs of rates, from those (6, ...) of their six products in an order."""
     full = np.zeros((3, 3, *columns.shape[1:]))
     for column, (i, j) in zip(columns, order, strict=True):
         full[i, j] += column / 2
@@ -160,7 +169,9 @@ def _by_pairs(columns: Floats, order: Any) -> Floats:
 
 
 def _moments(terms: Coefficients) -> Floats:
-    """Σ m r_b ∂r_a/∂q (3, 3, n): its symmetric part by the centrifugal, its antisymmetric one by Euler's force."""
+    """Moments Σ m r_b ∂r_a/∂q (3, 3, n). The centrifugal loads give their symmetric part, Euler's force the
+    antisymmetric one.
+    """
     half = np.einsum("aai->i", terms.f_ww) / 2
     even = -terms.f_ww + np.eye(3)[..., None] * half
     return even + np.einsum("cab,ci->abi", EPSILON, terms.f_al) / 2

@@ -14,8 +14,10 @@ from gbeam.solids.links import attached
 
 @dataclass(frozen=True)
 class Stations:
-    """Named points of a mesh: `nodes` (s,) at places (s, 3) m, the last of which is the tip; and interfaces, before the
-    tip, by their centres (i, 3) m and unit `forces` and moments on these (3 k, 6 i), as loads on all nodes.
+    """Named points of a mesh: `nodes` (s,) at places (s, 3) m, the last of which is the tip, and interfaces.
+
+    Interfaces have centres (i, 3) m, and unit `forces` and moments on these, (3 k, 6 i), as loads on all nodes. In
+    results they come before the tip.
     """
 
     nodes: Indices
@@ -25,19 +27,21 @@ class Stations:
 
     @classmethod
     def of(cls, mesh: Mesh) -> Stations:
-        """Named points of a mesh, of whose interfaces the clamp takes the forces on its nodes."""
+        """Named points of a mesh. The clamp takes the forces that interfaces have on its nodes."""
         centres, forces = attached(mesh.points, mesh.interfaces)
         forces[np.repeat(mesh.clamped, 3)] = 0.0
         nodes = np.array([*mesh.stations.values()])
         return cls(nodes, mesh.points[nodes], centres, forces)
 
     def displacements(self, fields: Floats) -> Floats:
-        """Displacements (s + i, 3, m) of the points by those (k, 3, m) of all nodes."""
+        """Displacements (s + i, 3, m) of the points from those (k, 3, m) of all nodes."""
         return self._before_tip(fields[self.nodes], self._mean(fields)[:, 0])
 
     def expansion(self, shapes: Floats, pushed: Floats) -> tuple[Places, Floats | None]:
-        """Places of the points, of interfaces to second order by what forces on them add to the stiffness, `pushed`
-        (3 i, n, n); and rotations (s + i, 3, n), not a number where unknown, or None without interfaces.
+        """Places of the points as functions of the coordinates, and rotations (s + i, 3, n) per coordinate.
+
+        Interfaces move to second order by what unit forces on them add to the stiffness, `pushed` (3 i, n, n).
+        Rotations are NaN where unknown, and None without interfaces.
         """
         count, n = len(self.centres), shapes.shape[-1]
         r0, first = self._before_tip(self.places, self.centres), self.displacements(shapes)
@@ -49,10 +53,12 @@ class Stations:
         return Places(r0, first, second), turns
 
     def _mean(self, fields: Floats) -> Floats:
-        """Mean displacements and rotations (i, 2, 3, m) of the interfaces by displacements (k, 3, m) of all nodes."""
+        """Mean displacements and rotations (i, 2, 3, m) of the interfaces, from displacements (k, 3, m) of all
+        nodes.
+        """
         columns = fields.shape[-1]
         return (self.forces.T @ fields.reshape(-1, columns)).reshape(len(self.centres), 2, 3, columns)
 
     def _before_tip(self, of_nodes: Floats, of_interfaces: Floats) -> Floats:
-        """Values of the nodes with those of the interfaces before the tip's."""
+        """Insert the values of the interfaces into those of the nodes, before the tip's."""
         return np.insert(of_nodes, [len(self.nodes) - 1] * len(self.centres), of_interfaces, axis=0)

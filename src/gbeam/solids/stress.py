@@ -36,10 +36,12 @@ FACES = {
 @dataclass(frozen=True, eq=False)
 class NodalStress(Value):
     """Stresses of a mesh by the first `size` of n coordinates: displacements `every_shape` (k, 3, n) of its nodes and
-    stresses `every_table` (p, 6, n) per unit coordinate. A pair is a node and a material of its elements, `known` (p,)
-    its number, material · nodes + node. `felt_at` are the pairs that some coordinate stresses most. Once a coarser mesh
-    was `compared`, `singular` (p,) flags those where stress grows without limit as a mesh gets finer; where these would
-    be too many, `excess` is the number of their nodes, and none is flagged.
+    stresses `every_table` (p, 6, n) per unit coordinate.
+
+    A pair is a node and a material of its elements; `known` (p,) is its number, material · nodes + node. `felt_at` are
+    the pairs that some coordinate stresses most. Once a coarser mesh was `compared`, `singular` (p,) flags those where
+    stress grows without limit as a mesh gets finer; where these would be too many, `excess` is the number of their
+    nodes, and none is flagged.
     """
 
     mesh: Mesh
@@ -55,7 +57,9 @@ class NodalStress(Value):
 
     @classmethod
     def of(cls, mesh: Mesh, shapes: Floats) -> Self:
-        """Stresses in shapes (k, 3, n) of nodes, extrapolated to these, and averaged over elements of one material."""
+        """Stresses in shapes (k, 3, n) of the nodes. They are extrapolated to the nodes in each element, and averaged
+        over the elements of one material.
+        """
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
@@ -67,10 +71,10 @@ class NodalStress(Value):
             add_to_rows(total, pair, stress)
             add_to_rows(shared, pair, np.ones(len(pair)))
         whole = replace(empty, every_table=total / shared[:, None, None])
-        return replace(whole, felt_at=whole.most(np.arange(len(known))))
+        return replace(whole, felt_at=whole.most_stressed(np.arange(len(known))))
 
-    def most(self, pairs: Indices) -> Indices:
-        """Pairs, among `pairs`, at which the von Mises stress of one coordinate or another is largest."""
+    def most_stressed(self, pairs: Indices) -> Indices:
+        """Pairs, among `pairs`, at which the von Mises stress of some coordinate is largest."""
         sizes = von_mises(np.moveaxis(self.every_table[pairs], 1, 2))
         return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 
@@ -102,7 +106,7 @@ class NodalStress(Value):
         return [names[i] for i in self.known // len(self.mesh.points)]
 
     def strain(self, point: str, along: Any) -> Floats:
-        """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
+        """Normal strain (n,) at a named point per unit coordinate, in a direction of the point's axes."""
         if point not in self.mesh.named_points:
             raise InputError("at", f"is {point!r}", f"choose from {', '.join(self.mesh.named_points)}")
         x, y, z = self.mesh.axes(point) @ np.asarray(along, dtype=float) / np.linalg.norm(along)
@@ -110,8 +114,9 @@ class NodalStress(Value):
         return np.asarray(shares @ self.strained(self.pairs_at(point)))
 
     def pairs_at(self, point: str, size: Floats | None = None) -> Indices:
-        """Pairs, one for the node of a named point or for each node of an interface: where a node has several materials
-        that of the largest `size` (p,), or the first.
+        """Pairs of a named point: one for its node, or one for each node of an interface.
+
+        Where a node has several materials, the pair is that of the largest `size` (p,), or the first.
         """
         interfaces = self.mesh.interfaces
         nodes = interfaces[point] if point in interfaces else self.mesh.stations[point]
@@ -120,7 +125,9 @@ class NodalStress(Value):
         return np.asarray(order[np.unique(self.node[order], return_index=True)[1]])
 
     def strained(self, pairs: Indices) -> Floats:
-        """Strains (6, n) of unit coordinates, with twice the tensor's shear: their mean over pairs."""
+        """Mean strains (6, n) at pairs per unit coordinate, with twice the tensor's shear. They follow from the
+        stresses by the elasticity of each material.
+        """
         materials, total = self.material, np.zeros(self.table.shape[1:])
         for name in {materials[pair] for pair in pairs}:
             elasticity = next(block.elasticity for block in self.mesh.blocks if block.material == name)
@@ -136,12 +143,15 @@ class NodalStress(Value):
         return {"solid": solid_stress(self, time, q, motion=motion, model=model), "surface": surface}
 
     def in_modes(self, modes: Complex) -> SurfaceModes:
-        """The surface in modes (k, n)."""
+        """The surface as it moves in modes (k, n)."""
         skin, sizes = self._skin(np.concatenate([modes.real, modes.imag]))
         return SurfaceModes(**skin, sizes=sizes[: len(modes)] + 1j * sizes[len(modes) :])
 
     def _skin(self, q: Floats) -> tuple[dict[str, Any], Floats]:
-        """Fields of the surface with its s principal shapes under coordinates q (t, n), and their sizes (t, s)."""
+        """Fields of the surface with its s principal shapes under coordinates q (t, n), and their sizes (t, s).
+
+        The shapes are those of a singular value decomposition, in which coordinates count by the stress that they make.
+        """
         vertices, triangles = surface_of(self.mesh)
         count = len(self.mesh.points)
         # At a vertex of two materials the first.
@@ -162,7 +172,9 @@ class NodalStress(Value):
         return skin, left[:, :kept] * sizes[:kept]
 
     def elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
-        """Pairs (e, k) and stresses (e, k, 6, n) at the nodes of the elements of some blocks."""
+        """Yield the pairs (e, k) at the nodes of the elements of some blocks, with the stresses (e, k, 6, n) there per
+        unit coordinate.
+        """
         names, count = _materials(self.mesh), len(self.mesh.points)
         for part in chunks(self.mesh.points, blocks, "stress"):
             pair = np.searchsorted(self.known, names.index(part.block.material) * count + part.nodes)
@@ -170,24 +182,25 @@ class NodalStress(Value):
             yield pair, np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
 
     def spread(self, pair: int, q: Floats) -> float:
-        """Range of von Mises stress at q (n,) among the elements of a pair, as a fraction of that of their mean."""
+        """Range of von Mises stress at q (n,) among the elements that share a pair, as a fraction of their mean's."""
         number, node = divmod(int(self.known[pair]), len(self.mesh.points))
+        material = _materials(self.mesh)[number]
         around = [
             replace(block, nodes=block.nodes[(block.nodes == node).any(axis=1)])
             for block in self.mesh.blocks
-            if block.material == _materials(self.mesh)[number]
+            if block.material == material
         ]
         parts = [stress[pairs == pair] @ q for pairs, stress in self.elements(around)]
         mean = float(von_mises(self.table[pair] @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
     def felt(self, q: Floats) -> Floats:
-        """Components of stress over time (t, c) at the pairs `felt_at`."""
+        """Stress components (t, c) over time at the pairs `felt_at`."""
         return np.asarray(np.tensordot(q, self.table[self.felt_at], (1, 2)).reshape(len(q), -1))
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
-        """Largest von Mises stress over time at every pair (p,), when (p,), and over all that are not singular at every
-        time (t,).
+        """Largest von Mises stress of every pair over time, (p,), the time at which, (p,), and the largest of all pairs
+        that are not singular at each time, (t,).
         """
         table, size, when = deviatoric(self.table), np.zeros(len(self.known)), np.zeros(len(self.known), dtype=int)
         if self.singular.any():
@@ -220,7 +233,7 @@ def corners_of(kind: str) -> int:
 
 @cache
 def on_face(kind: str, face: int) -> Indices:
-    """Nodes of a solid element on a face: its corners, and the middles of its edges and of itself that are nodes."""
+    """Nodes of a solid element on a face: its corners, then those in the middles of its edges and in its own middle."""
     places, corners = reference(kind), list(FACES[corners_of(kind)][face])
     middles = [*(places[corners] + places[np.roll(corners, -1)]) / 2, places[corners].mean(axis=0)]
     distance = np.abs(places[:, None] - middles).max(axis=2)
@@ -228,7 +241,9 @@ def on_face(kind: str, face: int) -> Indices:
 
 
 def outer_faces(mesh: Any) -> list[tuple[Any, int, Indices]]:
-    """Faces that no two elements share: a block, the number of the face, and the elements (e,) of which it is one."""
+    """Outer faces, which no two elements share. Each entry is a block, the number of a face, and the elements (e,) that
+    have it on the outside.
+    """
     faces, count = list[tuple[Any, int, Indices]](), len(mesh.points)
     for size in (3, 4):
         sides = [(block, k) for block in mesh.blocks for k, face in enumerate(FACES[corners_of(block.kind)])
@@ -238,13 +253,13 @@ def outer_faces(mesh: Any) -> list[tuple[Any, int, Indices]]:
             first, second, third = np.sort(np.concatenate(corners), axis=1).T[:3]  # no two faces share three corners
             _, edge = np.unique(first * count + second, return_inverse=True)
             _, number, shared = np.unique(edge * count + third, return_inverse=True, return_counts=True)
-            parts = np.split(shared[number] == 1, np.cumsum([len(each) for each in corners])[:-1])
-            faces += [(*side, np.flatnonzero(alone)) for side, alone in zip(sides, parts, strict=True)]
+            parts = np.split(shared[number] == 1, np.cumsum([len(nodes) for nodes in corners])[:-1])
+            faces += [(*side, np.flatnonzero(outer)) for side, outer in zip(sides, parts, strict=True)]
     return faces
 
 
 def outer_triangles(mesh: Any) -> Indices:
-    """Corners (f, 3) of the triangles that make up the outer faces."""
+    """Corners (f, 3) of the triangles into which the outer faces are divided."""
     triangles = list[Indices]()
     for block, k, elements in outer_faces(mesh):
         corners = block.nodes[elements][:, FACES[corners_of(block.kind)][k]]
@@ -253,8 +268,9 @@ def outer_triangles(mesh: Any) -> Indices:
 
 
 def surface_of(mesh: Any, most: int = VERTICES) -> tuple[Indices, Indices]:
-    """Nodes (v,) and triangles (f, 3) of them that make up the outer faces; of more nodes than about `most` those
-    nearest to the middles of cells of a grid.
+    """Nodes (v,) of the outer faces, and the triangles (f, 3) of these that make them up.
+
+    More nodes than about `most` are thinned out: those in a cell of a grid become the one nearest to their mean.
     """
     outside = outer_triangles(mesh)
     nodes, flat = np.unique(outside, return_inverse=True)
@@ -264,8 +280,10 @@ def surface_of(mesh: Any, most: int = VERTICES) -> tuple[Indices, Indices]:
         _, group = np.unique(np.floor(places / cell).astype(int), axis=0, return_inverse=True)
         group = group.ravel()
         means = np.stack([np.bincount(group, x) for x in places.T], axis=1) / np.bincount(group)[:, None]
-        order = np.lexsort((np.linalg.norm(places - means[group], axis=1), group))
-        nodes, flat = nodes[order[np.unique(group[order], return_index=True)[1]]], group[flat]
+        distance = np.linalg.norm(places - means[group], axis=1)
+        order = np.lexsort((distance, group))
+        nearest = order[np.unique(group[order], return_index=True)[1]]
+        nodes, flat = nodes[nearest], group[flat]
     a, b, c = flat.reshape(-1, 3).T
     return nodes, flat.reshape(-1, 3)[(a != b) & (b != c) & (c != a)]
 
@@ -277,26 +295,28 @@ def _area(corners: Floats) -> float:
 
 
 def deviatoric(table: Floats) -> Floats:
-    """Five numbers (5, ..., n) of stresses xx, yy, zz, yz, xz, xy (..., 6, n), whose norm is the von Mises stress."""
+    """Linear combinations (5, ..., n) of stresses xx, yy, zz, yz, xz, xy (..., 6, n) whose norm is the von Mises
+    stress.
+    """
     xx, yy, zz, yz, xz, xy = np.moveaxis(table, -2, 0)
     return np.stack([xx - (yy + zz) / 2, *(np.sqrt(3) * shear for shear in ((yy - zz) / 2, yz, xz, xy))])
 
 
 def principal(stress: Floats) -> Floats:
-    """Principal stresses of stresses (..., 6), the largest first, (..., 3)."""
+    """Principal stresses (..., 3) of stresses (..., 6), in descending order."""
     return np.asarray(np.linalg.eigvalsh(stress[..., TENSOR])[..., ::-1])
 
 
 def turned(tensor: Floats, axes: Floats) -> Floats:
-    """Components xx, yy, zz, yz, xz, xy (..., 6) of tensors along axes (3, 3), in columns."""
+    """Components xx, yy, zz, yz, xz, xy (..., 6) of tensors along other axes, the columns of `axes` (3, 3)."""
     along = axes.T @ tensor[..., TENSOR] @ axes
     return np.asarray(along[..., [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]])
 
 
-def ranging(stress: Floats) -> Floats:
-    """Normal stress (t,) of stresses (t, 6) on the plane on which its range over time is largest."""
+def critical_plane_stress(stress: Floats) -> Floats:
+    """Normal stress (t,) of stresses (t, 6) on the plane where its range over time is largest: the critical plane."""
     normal = AROUND / np.linalg.norm(AROUND, axis=1, keepdims=True)
-    most, rounding = np.full(len(normal), -np.inf), SETTLED * np.abs(stress).max()  # by which a plane may come to less
+    most, rounding = np.full(len(normal), -np.inf), SETTLED * np.abs(stress).max()
     while True:
         # Between the extremes on a plane the stress changes most on a principal plane of that change, or as much.
         over = np.einsum("tij,ki,kj->tk", stress[:, TENSOR], normal, normal, optimize=True)
@@ -309,7 +329,7 @@ def ranging(stress: Floats) -> Floats:
 
 
 def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> SolidStress:
-    """Return the stress at coordinates (t, n) at times (t,)."""
+    """Return the stress at coordinates (t, n) at times (t,), with the fields `about` its origin."""
     from scipy.spatial import cKDTree
 
     mesh, node_of, materials = nodal.mesh, nodal.node, nodal.material
@@ -364,8 +384,8 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         point_strain=np.stack(strains, axis=1),
         materials=tuple(kinds),
         exponents=exponents[foremost],
-        material_normal=np.stack([ranging(q @ nodal.table[pair].T) for pair in foremost], axis=1),
-        point_normal=np.stack([ranging(tensor) for tensor in stress.swapaxes(0, 1)], axis=1),
+        material_normal=np.stack([critical_plane_stress(q @ nodal.table[pair].T) for pair in foremost], axis=1),
+        point_normal=np.stack([critical_plane_stress(tensor) for tensor in stress.swapaxes(0, 1)], axis=1),
         point_exponent=exponents[[pairs[0] for pairs in chosen]],
         nodes=mesh.points,
         node_von_mises=at_nodes,

@@ -50,8 +50,10 @@ class Cells(NamedTuple):
 
 @dataclass
 class TextMesh:
-    """A mesh as it is read: places of nodes, kinds and nodes of elements, by their numbers in the file; numbers of the
-    nodes of `sets` and of the elements of `groups`, by name; all statements. :meth:`place` makes meshio's fields of it.
+    """A mesh as it is read: places of nodes, kinds and nodes of elements, by their numbers in the file.
+
+    `sets` of nodes and `groups` of elements have these numbers by name; `statements` are all of the file. :meth:`place`
+    makes meshio's fields of them.
     """
 
     nodes: dict[int, tuple[float, ...]] = field(default_factory=dict)
@@ -72,31 +74,32 @@ class TextMesh:
         return np.array(list(self.nodes.values()), dtype=float).reshape(-1, 3)
 
     def add(self, noun: str, number: int, value: Any) -> None:
-        """Add a node or an element, of which there must be no other one with its number."""
+        """Add a node or an element. InputError if another one has its number."""
         if noun == "node" and len(value) != 3:
             raise InputError("mesh", f"has node {number} with {len(value)} coordinates", "give x, y and z of each")
-        listed: dict[int, Any] = self.nodes if noun == "node" else self.elements
-        if listed.setdefault(number, value) != value:
+        entries: dict[int, Any] = self.nodes if noun == "node" else self.elements
+        if entries.setdefault(number, value) != value:
             raise InputError("mesh", f"has two of {noun} {number}", "number them apart, in one part")
 
     def place(self, order: Mapping[str, list[int]], file: str) -> None:
-        """Make meshio's blocks and sets, with indices for numbers and its `order` of the nodes of kinds."""
+        """Make meshio's blocks and sets, in which indices replace numbers. `order` is that of nodes by kinds."""
         index = {number: i for i, number in enumerate(self.nodes)}
-        place_of, numbers = dict[int, tuple[int, int]](), dict[str, list[int]]()  # (block, index); elements by kind
+        by_kind = dict[str, list[int]]()
         for number, (kind, nodes) in self.elements.items():
-            numbers.setdefault(kind, []).append(number)
-            if missing := [node for node in nodes if node not in index]:
+            by_kind.setdefault(kind, []).append(number)
+            missing = [node for node in nodes if node not in index]
+            if missing:
                 raise InputError("mesh", f"has element {number} on node {missing[0]}, which is not in {file}", AGAIN)
-        for block, (kind, listed) in enumerate(numbers.items()):
-            place_of |= {number: (block, i) for i, number in enumerate(listed)}
-            data = np.array([[index[node] for node in self.elements[number][1]] for number in listed])
-            self.cells.append(Cells(kind, data[:, order.get(kind, slice(None))], DIMENSIONS[kind], np.array(listed)))
-        for group, listed in self.groups.items():
-            pairs = np.array([place_of[n] for n in {*listed} if n in place_of], dtype=int).reshape(-1, 2)
-            self.cell_sets[group] = [np.sort(pairs[pairs[:, 0] == block, 1]) for block in range(len(numbers))]
-        self.point_sets = {
-            group: np.array([index[node] for node in nodes], dtype=int) for group, nodes in self.sets.items()
-        }
+        place_of = dict[int, tuple[int, int]]()  # block of an element, and index there
+        for block, (kind, numbers) in enumerate(by_kind.items()):
+            place_of |= {number: (block, i) for i, number in enumerate(numbers)}
+            data = np.array([[index[node] for node in self.elements[number][1]] for number in numbers])
+            self.cells.append(Cells(kind, data[:, order.get(kind, slice(None))], DIMENSIONS[kind], np.array(numbers)))
+        for group, numbers in self.groups.items():
+            pairs = np.array([place_of[n] for n in {*numbers} if n in place_of], dtype=int).reshape(-1, 2)
+            self.cell_sets[group] = [np.sort(pairs[pairs[:, 0] == block, 1]) for block in range(len(by_kind))]
+        for group, nodes_of_set in self.sets.items():
+            self.point_sets[group] = np.array([index[node] for node in nodes_of_set], dtype=int)
 
 
 def ending_of(source: Any) -> str:
@@ -106,19 +109,22 @@ def ending_of(source: Any) -> str:
 
 def text_mesh(source: str | os.PathLike[str]) -> TextMesh | None:
     """Read a mesh in a text file of Abaqus, CalculiX, Nastran or Gmsh; None if the file is of another kind."""
-    path, mesh, (read, order) = Path(source), TextMesh(), TEXTS.get(ending_of(source), (None, {}))
-    if read is None or not read(mesh, path.read_text(encoding="utf-8", errors="replace"), path.name):
+    ending = ending_of(source)
+    if ending not in TEXTS:
+        return None
+    path, mesh, (read, order) = Path(source), TextMesh(), TEXTS[ending]
+    if not read(mesh, path.read_text(encoding="utf-8", errors="replace"), path.name):
         return None
     mesh.place(order, path.name)
     return mesh
 
 
 def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
-    """Read the statements of a file, then those of `_ABAQUS` into the mesh."""
+    """Read the statements of a file, then transfer those of `_ABAQUS` into the mesh."""
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("**")]
     starts = [i for i, line in enumerate(lines) if line.startswith("*")]
     for first, end in pairwise([*starts, len(lines)]):
-        while lines[first].rstrip().endswith(",") and first + 1 < end:
+        while lines[first].rstrip().endswith(",") and first + 1 < end:  # a keyword goes on in the next line
             lines[first + 1] = lines[first].rstrip() + lines[first + 1]
             first += 1
         word, *options = lines[first][1:].split(",")
@@ -127,8 +133,11 @@ def _read_abaqus(mesh: TextMesh, text: str, _: str) -> bool:
         rows = [[cell.strip() for cell in line.split(",")] for line in lines[first + 1 : end]]
         mesh.statements.append(Statement(" ".join(word.upper().split()), values, rows))
     for statement in mesh.statements:
-        if read := _ABAQUS.get(statement.word):
-            (_refuse if {"INPUT", "SYSTEM"} & {*statement.options} else read)(mesh, statement)
+        read = _ABAQUS.get(statement.word)
+        if read and {"INPUT", "SYSTEM"} & {*statement.options}:
+            _refuse(mesh, statement)
+        elif read:
+            read(mesh, statement)
     return True
 
 
@@ -139,14 +148,15 @@ def _node(mesh: TextMesh, statement: Statement) -> None:
 
 
 def _element(mesh: TextMesh, statement: Statement) -> None:
-    """Add the elements of a statement, each its number and its nodes, and its set."""
-    name, entries = statement.options["TYPE"].upper(), [[int(cell) for cell in row if cell] for row in statement.rows]
-    known = [(dim, match) for pattern, dim in TYPES.items() if (match := re.fullmatch(pattern, name))]
-    if not known:
+    """Add the elements of a statement to the mesh, each by its number and nodes, and to their set."""
+    name = statement.options["TYPE"].upper()
+    entries = [[int(cell) for cell in row if cell] for row in statement.rows]
+    matches = [(dim, match) for pattern, dim in TYPES.items() if (match := re.fullmatch(pattern, name))]
+    if not matches:
         raise ValueError(f"elements of type {name} are not known")
-    (dim, match), flat = known[0], list(chain.from_iterable(entries))
-    # Solids may go on in the next line.
-    count = int(match[1]) if dim == 3 else len(entries[0]) - 1 if entries else 1
+    (dim, match), flat = matches[0], list(chain.from_iterable(entries))
+    in_line = len(entries[0]) - 1 if entries else 1
+    count = int(match[1]) if dim == 3 else in_line  # solids may go on in the next line
     if count not in SHAPES[dim] or len(flat) % (count + 1):
         raise ValueError(f"elements of type {name} have not {count} nodes each")
     numbers, *nodes = np.reshape(flat, (-1, count + 1)).T.tolist()
@@ -182,12 +192,14 @@ _ABAQUS |= dict.fromkeys(_REFUSED, _refuse)
 
 
 def alike(sets: Mapping[str, list[int]], name: str) -> str:
-    """Name under which a set is known, since Abaqus does not tell capital letters from small ones."""
-    return next((known for known in sets if known.upper() == name.upper()), name)
+    """Name under which a set exists. Abaqus does not tell capital letters from small ones."""
+    return next((other for other in sets if other.upper() == name.upper()), name)
 
 
 def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: bool = False) -> Iterator[int]:
-    """Numbers in the lines of a set of Abaqus, which may name others."""
+    """Yield the numbers in the lines of a set of Abaqus. A line may name other sets, or give the first and last of a
+    range if `generated`.
+    """
     for row in rows:
         if generated:
             first, last, *step = map(int, filter(None, row))
@@ -198,7 +210,7 @@ def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: boo
 
 
 def real(value: str) -> float:
-    """Read a number as Nastran writes it, with or without the letter of its exponent; 0 of a blank."""
+    """Read a number as Nastran writes it, with or without the letter of its exponent. A blank is 0."""
     try:
         return float(value or 0.0)
     except ValueError:
@@ -241,7 +253,7 @@ def _read_nastran(mesh: TextMesh, text: str, file: str) -> bool:
 
 
 def _nastran_held(word: str, row: list[str]) -> Iterator[tuple[str, Iterable[int]]]:
-    """Pairs of the components, such as "123", that a card holds, and the nodes of which it does."""
+    """Yield the components, such as "123", that a card holds, each with the nodes at which it does."""
     if word == "SPC":
         yield from ((ways, [int(node)]) for node, ways in (row[1:3], row[4:6]) if node)
         return
@@ -255,14 +267,14 @@ def _nastran_held(word: str, row: list[str]) -> Iterator[tuple[str, Iterable[int
 def _nastran_element(mesh: TextMesh, word: str, row: list[str]) -> None:
     """Add the element of a card to the mesh, and to the group of its property."""
     (dim, *counts), number = CARDS[word], int(row[0])
-    nodes, rest = tuple(int(cell) for cell in row[2 : 2 + counts[-1]] if cell), row[2 + counts[-1] :]
+    end = 2 + counts[-1]
+    nodes, rest = tuple(int(cell) for cell in row[2:end] if cell), row[end:]
     if len(nodes) not in counts:
         raise ValueError(f"{word} {number} has {len(nodes)} nodes")
-    angle = 4 if word == "CQUAD8" else 0
+    angle = 4 if word == "CQUAD8" else 0  # the only field behind the nodes that an element of a shell may have
     if dim == 2 and any(real(cell) for i, cell in enumerate(rest) if i != angle):
-        raise InputError(
-            "mesh", f"has {word} {number}, which has an offset or thicknesses of its own", "leave them out"
-        )
+        problem = f"has {word} {number}, which has an offset or thicknesses of its own"
+        raise InputError("mesh", problem, "leave them out")
     mesh.add("element", number, (SHAPES[dim][len(nodes)], nodes))
     mesh.groups.setdefault(row[1] or row[0], []).append(number)
 
@@ -287,12 +299,12 @@ def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
         if len(nodes) not in SHAPES[dim] or int(kind) not in GMSH:
             raise ValueError(f"element {number} is of Gmsh's type {kind}")
         element = SHAPES[dim][len(nodes)], tuple(map(int, nodes))
-        known = number_of.setdefault(element, int(number))  # one of two groups is there twice, by two numbers
-        mesh.add("element", known, element)
+        first = number_of.setdefault(element, int(number))  # one of two groups is there twice, by two numbers
+        mesh.add("element", first, element)
         for tag in tags:
-            numbered.setdefault(tag, []).append(known)
+            numbered.setdefault(tag, []).append(first)
             if (dim, tag) in names:
-                mesh.groups[names[dim, tag]].append(known)
+                mesh.groups[names[dim, tag]].append(first)
 
     if form[1].startswith("2"):
         for number, *place in nodes:
@@ -314,7 +326,7 @@ def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
 
 
 def _blocks(rows: list[list[str]], times: int) -> Iterator[tuple[list[str], list[list[str]]]]:
-    """Head and lines of each block: the head ends with a number, and `times` that many lines follow."""
+    """Yield the head and the lines of each block. The head ends with a number, and `times` as many lines follow."""
     head = 0
     while head < len(rows):
         end = head + 1 + times * int(rows[head][3])
@@ -323,7 +335,9 @@ def _blocks(rows: list[list[str]], times: int) -> Iterator[tuple[list[str], list
 
 
 def _physical(rows: list[list[str]]) -> dict[tuple[int, str], list[str]]:
-    """Physical groups of points, curves, surfaces and volumes, by their dimensions and numbers."""
+    """Physical groups of points, curves, surfaces and volumes, by their dimensions and numbers in the section of
+    entities.
+    """
     dims = [dim for dim, count in enumerate(rows[0] if rows else []) for _ in range(int(count))]
     groups = dict[tuple[int, str], list[str]]()
     for dim, row in zip(dims, rows[1:], strict=True):
