@@ -382,13 +382,13 @@ def plan(
 )
 def place(case: Case, motion: str | None = None, at: float | None = None, needs: Needs = Needs()) -> Placement:
     """Best placement, without the check by simulation, which takes longer: ``run`` at the placement is that check."""
-    from gbeam.analysis.imitation.place import place, usual, usual_turns
+    from gbeam.analysis.imitation.place import default_turns, default_weights, place
     from gbeam.analysis.imitation.place_measures import choice_of
 
     name, current = machine_of(case, motion)
     system, names = case.system, (case.tracks[name], name)
-    choice, settings = choice_of(current, turns=usual_turns(system)), case.settings_of(name)
-    return place(system, current.flight, choice, settings, usual(system), current=current, names=names)
+    choice, settings = choice_of(current, turns=default_turns(system)), case.settings_of(name)
+    return place(system, current.flight, choice, settings, default_weights(system), current=current, names=names)
 
 
 @question(

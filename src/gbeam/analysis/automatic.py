@@ -31,12 +31,14 @@ def sufficient(
     shapes: float = LIMIT,
     strains: float = LIMIT,
 ) -> tuple[Case, Answer]:
-    """Return the answer to a question, and the case whose answer it is: where its numbers of shapes are automatic, with
-    as many as leave out no more than errors of `shapes`, and of `strains` where the material gives these.
+    """Return the answer to a question, and the case whose answer it is.
+
+    Where the case leaves its numbers of shapes open, they are raised until too few shapes leave errors of at most
+    `shapes`, and missing strains, whose stiffness the material gives, errors of at most `strains`.
     """
     answer = ask(case)
     while case.automatic:
-        errors = [each for each in errors_of(answer) if each is not None]
+        errors = [lacking for lacking in errors_of(answer) if lacking is not None]
         richer = _richer_bodies(case, errors, shapes, strains)
         if not richer:
             break
@@ -46,16 +48,18 @@ def sufficient(
 
 
 def of_lowest(frequency: Floats, errors: FrequencyErrors | None) -> FrequencyErrors | None:
-    """Errors of the lowest of frequencies (k,) Hz, and of what lies unseen below the highest of these; None of none."""
+    """Errors of the `LOWEST` of frequencies (k,) Hz, and of unseen ones below the highest of these; None without
+    any.
+    """
     if errors is None or not len(frequency):
         return None
     lowest = np.argsort(frequency)[:LOWEST]
-    unseen = tuple(each for each in errors.unseen if each < frequency[lowest[-1]])
+    unseen = tuple(hidden for hidden in errors.unseen if hidden < frequency[lowest[-1]])
     return replace(errors[lowest], unseen=unseen)
 
 
 def _richer_bodies(case: Case, errors: list[Lacking], shapes: float, strains: float) -> dict[str, Structure]:
-    """Beams of a case with what the errors of one with fewer shapes ask for, by name."""
+    """Beams of a case, by name, with the shapes and strains whose lack the errors show."""
     richer = {}
     for name, body in case.automatic_beams.items():
         source: Any = body.source
@@ -66,11 +70,16 @@ def _richer_bodies(case: Case, errors: list[Lacking], shapes: float, strains: fl
 
 
 def _richer(model: Model, beam: Beam, errors: Iterable[Lacking], shapes: float, strains: float) -> Model | None:
-    """Model with what the errors of one with fewer shapes ask for; None where that is nothing, or too much."""
-    few = max((each.few_shapes for each in errors), default=0.0)
-    if max((each.few_strains for each in errors), default=0.0) > strains and (lacking := strains_lacking(model, beam)):
+    """Model with strains added if the lack of them makes the errors too large, or else with more shapes.
+
+    None if the errors ask for neither, or the model cannot have more.
+    """
+    few_shapes = max((error.few_shapes for error in errors), default=0.0)
+    few_strains = max((error.few_strains for error in errors), default=0.0)
+    lacking = strains_lacking(model, beam) if few_strains > strains else ()
+    if lacking:
         return model.with_strains(lacking)
-    return model.richer() if few > shapes else None
+    return model.richer() if few_shapes > shapes else None
 
 
 def strains_lacking(model: Model, beam: Beam) -> tuple[StrainName, ...]:

@@ -246,7 +246,9 @@ BEAM = "beam"  # name of the body of a case of one beam
 
 
 def refusals(system: System, accept: Mapping[str, Acceptance], sensors: Mapping[str, Sensor]) -> Iterator[InputError]:
-    """Yield an error for each point of a sensor or limit, and for each limit, that the system does not have."""
+    """Yield an error for each point of a sensor or a limit that the system does not have, and for each limit on a
+    quantity that it does not have.
+    """
     for point in sensors:
         yield from _refused(refuse_no_point, system, f"sensors.{point}", point)
     lacking = _lacking(system)
@@ -262,6 +264,7 @@ def refusals(system: System, accept: Mapping[str, Acceptance], sensors: Mapping[
 
 
 def _refused(ask: Callable[..., Any], *args: Any) -> list[InputError]:
+    """Call a function that may refuse its arguments; return its InputError in a list, or an empty one."""
     try:
         ask(*args)
     except InputError as error:
@@ -270,11 +273,15 @@ def _refused(ask: Callable[..., Any], *args: Any) -> list[InputError]:
 
 
 def _lacking(system: System) -> dict[str, str]:
-    """Quantities that no response of the system has, each with the reason."""
-    names, rigid = ", ".join(system.order), not any(body.size for body in system.flexible.values())
-    of_rigid = f"{names} {'are' if len(system.order) > 1 else 'is'} rigid"
-    lacking = {} if _stressed(system) else {STRESS: of_rigid if rigid else "no body is a beam or a mesh"}
-    return lacking | ({} if len(system.tree.free) else {DISPLACEMENT: of_rigid})
+    """Quantities that no response of the system has, each with the reason in words."""
+    rigid = not any(body.size for body in system.flexible.values())
+    of_rigid = f"{', '.join(system.order)} {'are' if len(system.order) > 1 else 'is'} rigid"
+    lacking = dict[str, str]()
+    if not _stressed(system):
+        lacking[STRESS] = of_rigid if rigid else "no body is a beam or a mesh"
+    if not len(system.tree.free):
+        lacking[DISPLACEMENT] = of_rigid
+    return lacking
 
 
 def _stressed(system: System) -> list[str]:
@@ -286,10 +293,10 @@ def _stressed(system: System) -> list[str]:
 def _refuse_unstressed(system: System, where: str, point: str) -> None:
     """Raise InputError unless a point has a stress."""
     name, on = refuse_no_point(system, where, point)
-    if name not in (stressed := _stressed(system)):
-        raise InputError(
-            where, f"is on {name}, which is no beam and no mesh", f"choose a point of {', '.join(stressed)}"
-        )
+    stressed = _stressed(system)
+    if name not in stressed:
+        problem = f"is on {name}, which is no beam and no mesh"
+        raise InputError(where, problem, f"choose a point of {', '.join(stressed)}")
     recovery = system.flexible[name].recovery
     if recovery is not None:
         with naming(where):

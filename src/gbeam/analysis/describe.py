@@ -61,12 +61,13 @@ def describe(case: Case) -> Description:
         common = () if case.spans else ("start", "duration")
         over_time = {key: getattr(settings, key) for key in (*common, "step", "integrator")}
     flights = {name: motion for name, motion in case.motions.items() if isinstance(motion, Flight)}
+    levels = {name: level_of(motion) for name, motion in case.motions.items()}
     return Description(
         title=case.title,
         mass=total,
         centre=moment / total if total else np.full(3, np.nan),
         bodies={name: _body(system, name) for name in system.order},
-        joints={name: _joint(each) for name, each in system.joints.items() if each.steps or each.on != GROUND},
+        joints={name: _joint(joint) for name, joint in system.joints.items() if joint.steps or joint.on != GROUND},
         forces={name: ForceDescription(force.on, force.follower) for name, force in system.forces.items()},
         controllers={
             name: ControllerDescription(tuple(law.measure), tuple(law.drive), law.sample, law.delay)
@@ -76,9 +77,9 @@ def describe(case: Case) -> Description:
         motions={name: kind_of(motion) for name, motion in case.motions.items()},
         tracks=dict(case.tracks),
         spans=dict(case.spans),
-        levels={name: level for name, each in case.motions.items() if (level := level_of(each)) is not None},
-        scales={name: each.level_factor for name, each in flights.items() if each.level_factor is not None},
-        records={name: each.record for name, each in flights.items() if each.record is not None},
+        levels={name: level for name, level in levels.items() if level is not None},
+        scales={name: flight.level_factor for name, flight in flights.items() if flight.level_factor is not None},
+        records={name: flight.record for name, flight in flights.items() if flight.record is not None},
         notes=notes_on({name: motion for name, motion in case.motions.items() if name not in flights}),
         warnings=tuple(dict.fromkeys(doubts)),
         **over_time,
@@ -86,7 +87,7 @@ def describe(case: Case) -> Description:
 
 
 def _doubts(case: Case) -> tuple[str, ...]:
-    """Words on what is implausible in the bodies, and where one is alone on its base in the motions too."""
+    """Warnings of what is implausible in the bodies and, where one is alone on its base, in the motions."""
     body = case.system.alone
     if body is None:
         return case.system.warnings
@@ -97,14 +98,14 @@ def _doubts(case: Case) -> tuple[str, ...]:
         settings = case.settings_of(name)
         return settings.start, settings.start + settings.duration
 
-    motions = case.motions.items()
-    doubts = [input_warnings(body, motion, name=name, span=span(name)) for name, motion in motions]
-    doubts = doubts or [input_warnings(body)]
-    return tuple(doubt for each in doubts for doubt in each)
+    if not case.motions:
+        return tuple(input_warnings(body))
+    by_motion = [input_warnings(body, motion, name=name, span=span(name)) for name, motion in case.motions.items()]
+    return tuple(doubt for doubts in by_motion for doubt in doubts)
 
 
 def _mass(body: RigidBody | Structure) -> tuple[float, Any]:
-    """Mass of a body, kg, and its centre (3,) m, from the root, undeformed."""
+    """Mass of a body, kg, and its centre of mass (3,) m from the root, undeformed."""
     if isinstance(body, RigidBody):
         return body.mass, np.asarray(body.centre, dtype=float)
     mass, *moment = (float(value) for value in body.coefficients.rigid[:4])
@@ -112,6 +113,7 @@ def _mass(body: RigidBody | Structure) -> tuple[float, Any]:
 
 
 def _body(system: System, name: str) -> BodyDescription:
+    """Describe a body: its mass and points and, if it deforms, its frequencies and what its model has."""
     body = system.bodies[name]
     points = system.points_of(name) if system.alone is None else points_of(system)
     mass, centre = _mass(body)
@@ -129,7 +131,7 @@ def _body(system: System, name: str) -> BodyDescription:
         groups = np.repeat(FAMILIES, body.counts)
         described |= {
             "length": float(beam.length),
-            "masses": tuple(MassOnBeam(each.at, each.mass) for each in beam.masses),
+            "masses": tuple(MassOnBeam(mass.at, mass.mass) for mass in beam.masses),
             "counts": {way: n for way, n in zip(FAMILIES, counts, strict=True) if n or way in FAMILIES[:3]},
             "direction": tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
         }
@@ -137,6 +139,7 @@ def _body(system: System, name: str) -> BodyDescription:
 
 
 def _joint(joint: Joint) -> JointDescription:
+    """Describe a joint: which of its coordinates move freely, which an effort drives, and which are prescribed."""
     driven, prescribed = tuple(joint.efforts), tuple(joint.rates)
     moving = (kind for kind in joint.rate_names if kind not in (*driven, *prescribed))
     return JointDescription(joint.kind, joint.body, joint.on, tuple(moving), driven, prescribed)

@@ -64,7 +64,9 @@ def study(case: Case, progress: Progress = None) -> Any:
 
 
 def studied(case: Case, progress: Progress = None) -> tuple[Case, Study]:
-    """A case with as many shapes as its responses need, where their numbers are automatic, and its study."""
+    """Raise the numbers of shapes of a case as far as its responses need, where they are automatic; return the case and
+    its study.
+    """
     settings = case.over_time
     if not settings.estimate:
         fix = "give it, or leave response.estimate out"
@@ -75,12 +77,14 @@ def studied(case: Case, progress: Progress = None) -> tuple[Case, Study]:
 
 
 def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Failure] = MappingProxyType({})) -> Study:
-    """Study made of responses by name, with a comparison for each centrifuge and its flight that are both done."""
+    """Join responses by name into a study, and compare each centrifuge with its flight if both are done.
+
+    ComputationError if there are no responses.
+    """
     if not responses:
         first = next(iter(failures.values()))
-        raise ComputationError(
-            first.outcome, "; ".join(f"motion.{n}: {failure.message}" for n, failure in failures.items())
-        )
+        message = "; ".join(f"motion.{name}: {failure.message}" for name, failure in failures.items())
+        raise ComputationError(first.outcome, message)
 
     if case.sensors:
         responses = {name: replace(run, readings=_readings(run, case.sensors)) for name, run in responses.items()}
@@ -94,12 +98,24 @@ def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Fa
         for name, flight in case.tracks.items()
         if {flight, name} <= responses.keys() and responses[flight].outcome == responses[name].outcome == "done"
     )
-    said = {key: each_once({n: getattr(run, key) for n, run in responses.items()}) for key in ("warnings", "notes")}
-    return Study(case.title, dict(responses), comparisons, dict(failures), provenance=case.provenance, **said)
+    warnings = each_once({name: run.warnings for name, run in responses.items()})
+    notes = each_once({name: run.notes for name, run in responses.items()})
+    return Study(
+        case.title,
+        dict(responses),
+        comparisons,
+        dict(failures),
+        provenance=case.provenance,
+        warnings=warnings,
+        notes=notes,
+    )
 
 
 def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | None:
-    """Readings of accelerometers; None in a response that is not done or has no accelerations."""
+    """Readings of accelerometers, with their peaks; None in a response that is not done or has no accelerations.
+
+    Peaks are the larger ones of the times of output and of all steps, where these are recorded.
+    """
     if response.outcome != "done":
         return None
     readings, peaks_of = [], []
@@ -112,8 +128,8 @@ def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | N
         if at_steps is not None:
             steps, felt = at_steps
             finer = sensor.reads(felt[:, response.point("point", point)], float(steps[1] - steps[0]))
-            both = np.stack([largest, vector_peaks(steps, finer)])
-            largest = tuple(np.where(both[1, 0] >= both[0, 0], both[1], both[0]))
+            coarse, fine = np.asarray(largest), np.asarray(vector_peaks(steps, finer))  # values, and their times
+            largest = tuple(np.where(fine[0] >= coarse[0], fine, coarse))
         peaks_of.append(largest)
     value, time = np.stack(peaks_of, axis=1)
     peaks = VectorPeaks(Extremes(value[:, :3], time[:, :3]), Extremes(value[:, 3], time[:, 3]))
@@ -121,7 +137,7 @@ def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | N
 
 
 def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, Failure]]:
-    """Responses by environment, and the failures of those that have no start to run from."""
+    """Responses by environment, and the failures of those that have no state to start from."""
 
     def answer(name: str) -> Response:
         motion = case.environments[name]

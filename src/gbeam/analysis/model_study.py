@@ -38,11 +38,14 @@ SHAPES_FINE = 1e-5
 
 
 def counterpart(model: Model, kind: ModelKind) -> Model:
-    """The model of another kind with as many shapes; of a kind by strains, as the reference, with a least number."""
+    """The model of another kind with as many shapes. A kind by strains, as the reference is, has at least the numbers
+    `CONVERGED`.
+    """
     axial, y, z = model.counts[:3]
     if KINDS[kind].strains:
-        axial, y, z = max(axial, CONVERGED[0]), *(max(n, CONVERGED[1]) if n else 0 for n in (y, z))
-        return replace(model, kind=kind, axial=axial, y=y, z=z)
+        strains, rotations = CONVERGED
+        y, z = max(y, rotations) if y else 0, max(z, rotations) if z else 0
+        return replace(model, kind=kind, axial=max(axial, strains), y=y, z=z)
     return replace(model, kind=kind, axial=axial if KINDS[kind].axial else 0, twist=0, shear_y=0, shear_z=0)
 
 
@@ -152,7 +155,7 @@ def _counterpart(case: Case, kind: ModelKind) -> Case | Failure:
 
 
 def of_kind(system: System, kind: ModelKind) -> System:
-    """The system with all of its beams in one kind of model, with as many shapes as they have."""
+    """The system with all of its beams in one kind of model, each with as many shapes as before."""
     beams = {name: body for name, body in system.flexible.items() if body.source is not None}
     other = {name: remade(body, counterpart(model_of(body), kind), body.stations[:-1]) for name, body in beams.items()}
     return replace(system, bodies={**system.bodies, **other})
@@ -166,7 +169,9 @@ def _answer(
     point: str | None,
     progress: Callable[[str, float], None],
 ) -> _Tip | Failure:
-    """Displacement by one model, or the reason why there is none."""
+    """Simulate one model and return the displacement of the point, or the reason why there is no answer. The exact
+    model warns where its last shapes still count.
+    """
     if isinstance(case, Failure):
         return case
     try:
@@ -191,16 +196,16 @@ def _answer(
 
 
 def _tip_of(response: Response, point: str | None) -> _Tip:
-    """Displacement of a point, by default of the tip of the beam that deflects most."""
+    """Displacement of a point with its peaks; by default of the tip of the beam that deflects most."""
     if point is None:
         tips = {name: body.tip for name, body in response.bodies.items() if body.shapes is not None}
         point = max(tips, key=lambda name: float(np.abs(tips[name]).max())) + ".tip"
     k = response.point("point", point)
     point = response.points[k]
     owner, _, name = point.partition(".")
-    body, left, hub = response.bodies.get(owner), response.residual_amplitude, response.hub
-    residual = np.full(3, np.nan) if left is None else left[k]
-    angle = float("nan") if hub is None or response.base is not None else float(hub.angle[-1])  # that turns freely
+    body, residuals, hub = response.bodies.get(owner), response.residual_amplitude, response.hub
+    residual = np.full(3, np.nan) if residuals is None else residuals[k]
+    angle = float("nan") if hub is None or response.base is not None else float(hub.angle[-1])  # of a free hub
     if body is not None and name in body.points and body.peaks.displacement is not None:
         moved, peaks = body.at(name), body.peaks.displacement[body.points.index(name)].components
         return _Tip(response, point, moved, peaks.value, peaks.time, residual, response.residual_from, angle)
@@ -210,7 +215,9 @@ def _tip_of(response: Response, point: str | None) -> _Tip:
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:
-    """Largest displacement of the tip by the last shapes of all families, over its largest, at coordinates (t, n)."""
+    """Largest displacement of the tip by the last shapes of all families at coordinates (t, n), as a share of the
+    largest displacement.
+    """
     ends = np.cumsum(structure.counts) - 1
     last = [int(end) for end, count in zip(ends, structure.counts, strict=True) if count > 1]
     tip = structure.displacement(q)[:, -1]
@@ -223,7 +230,7 @@ def shape_tail(structure: Structure, q: Floats) -> float:
 
 
 def _timed(run: Callable[[], _Tip | Failure]) -> tuple[_Tip | Failure, float]:
-    """Answer of a run, and the time that it takes, s."""
+    """Run a function; return its answer and the time it took, s."""
     start = clock.perf_counter()
     answer = run()
     return answer, clock.perf_counter() - start
@@ -287,12 +294,14 @@ def _row(
 
 
 def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
-    """Phase, rad, by which `ours` is ahead of `theirs` (t,) at the dominant frequency of `theirs`; NaN without both."""
+    """Phase, rad, by which `ours` is ahead of `theirs` (t,), at the dominant frequency of `theirs`. NaN if either is
+    constant.
+    """
     if len(time) < 8 or np.ptp(theirs) == 0 or np.ptp(ours) == 0:
         return float("nan")
 
     def fit(values: Floats, omega: float) -> tuple[complex, float]:
-        """Complex amplitude at a frequency, rad/s, and the sum of squares that is left."""
+        """Fit a vibration of a frequency, rad/s; return its complex amplitude and the residual sum of squares."""
         basis = np.stack([np.cos(omega * time), np.sin(omega * time), np.ones_like(time)], axis=1)
         fitted, *_ = np.linalg.lstsq(basis, values, rcond=None)
         return complex(fitted[0], -fitted[1]), float(np.sum((values - basis @ fitted) ** 2))
@@ -301,7 +310,6 @@ def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
     spectrum = np.abs(np.fft.rfft((theirs - theirs.mean()) * np.hanning(len(theirs))))
     coarse = 2 * np.pi * np.fft.rfftfreq(len(theirs), step)[1 + int(np.argmax(spectrum[1:]))]
     width = 2 * np.pi / span
-    best = minimize_scalar(
-        lambda w: fit(theirs, w)[1], bounds=(max(coarse - width, 1e-3 * width), coarse + width), method="bounded"
-    )
+    bounds = max(coarse - width, 1e-3 * width), coarse + width
+    best = minimize_scalar(lambda w: fit(theirs, w)[1], bounds=bounds, method="bounded")
     return float(np.angle(fit(ours, best.x)[0] / fit(theirs, best.x)[0]))

@@ -18,7 +18,7 @@ from gbeam.structure.beam import Beam
 
 
 def structure_of(beam: Beam, model: Model, stations: Sequence[float] = ()) -> Structure:
-    """The structure of a beam in a model; InputErrors have their place in the scenario."""
+    """Assemble the structure of a beam in a model. InputErrors have their place in the scenario."""
     try:
         return assemble(beam, model, stations)
     except InputError as error:

@@ -22,7 +22,7 @@ def assembly_of(system: System) -> Assembly:
     """Describe the joints of a system, and boxes that have the mass and the inertia of its rigid bodies."""
     holding = {joint.body: joint for joint in system.joints.values()}
     boxes = [_box(system.bodies[name]) for name in system.order]
-    size, centre, rotation = (np.stack(each) for each in zip(*boxes, strict=True))
+    size, centre, rotation = (np.stack(parts) for parts in zip(*boxes, strict=True))
     return Assembly(
         bodies=system.order,
         hangs_on=tuple(holding[name].on for name in system.order),
@@ -36,8 +36,10 @@ def assembly_of(system: System) -> Assembly:
 
 
 def ends_of(system: System) -> dict[str, Floats]:
-    """Places (3,) m, by name, at one of which the load on the undeformed bodies is largest: corners of convex hulls, or
-    ends and bodies off the axis of beams; points and centres of mass of rigid bodies, and points of matrices.
+    """Places (3,) m, by name, at one of which the load on the undeformed bodies is largest.
+
+    They are the corners of convex hulls; ends of beams, and bodies off their axes; points and centres of mass of rigid
+    bodies; and points of matrices.
     """
     several, ends = len(system.bodies) > 1, dict[str, Floats]()
     for name, root in zip(system.order, system.at_start.roots, strict=True):
@@ -48,23 +50,27 @@ def ends_of(system: System) -> dict[str, Floats]:
 
 def _ends(body: RigidBody | Structure) -> dict[str, Floats]:
     """Places (3,) m, by name, at one of which the load on an undeformed body is largest, from its root in its axes."""
+    root = {"the root": np.zeros(3)}
     if isinstance(body, RigidBody):
         points = {f"the point {name}": np.asarray(point.at, dtype=float) for name, point in body.points.items()}
-        return {"the root": np.zeros(3)} | points | {"the centre of mass": np.asarray(body.centre, dtype=float)}
+        return root | points | {"the centre of mass": np.asarray(body.centre, dtype=float)}
     beam = None if body.source is None else body.source.beam
-    hull = body.recovery.envelope if body.recovery is not None else np.empty((0, 3)) if beam is None else beam.envelope
+    envelope = np.empty((0, 3)) if beam is None else beam.envelope
+    hull = envelope if body.recovery is None else body.recovery.envelope
     if len(hull):
         return {"({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * corner)): corner for corner in hull}
     if beam is None:
         names = body.points or tuple(f"point {k + 1}" for k in range(len(body.stations)))
-        return {"the root": np.zeros(3)} | dict(zip(names, np.asarray(body.station_places.r0), strict=True))
-    off = [each for each in beam.body_centres if np.any(each[1:] != 0) or not 0 <= each[0] <= beam.length]
-    ends = {"the root": np.zeros(3), "the tip": np.array([beam.length, 0.0, 0.0])}
-    return ends | {f"the body at {1e3 * each[0]:.4g} mm": each for each in off}
+        return root | dict(zip(names, np.asarray(body.station_places.r0), strict=True))
+    ends = root | {"the tip": np.array([beam.length, 0.0, 0.0])}
+    for centre in beam.body_centres:
+        if np.any(centre[1:] != 0) or not 0 <= centre[0] <= beam.length:  # off the axis
+            ends[f"the body at {1e3 * centre[0]:.4g} mm"] = centre
+    return ends
 
 
 def _place_at_rest(system: System, on: str) -> Floats:
-    """Place (3,) m of a point from the root of its undeformed body; zero of the ground's origin."""
+    """Place (3,) m of a point from the root of its undeformed body; zero for the origin of the ground."""
     if on == GROUND:
         return np.zeros(3)
     name, point = system.point("on", on)
@@ -80,6 +86,7 @@ def _box(body: object) -> tuple[Floats, Floats, Floats]:
         return np.full(3, np.nan), np.full(3, np.nan), np.full((3, 3), np.nan)
     moments, axes = np.linalg.eigh(body.tensor)
     axes[:, 2] *= np.linalg.det(axes)
+    # Of edges a, b, c the box has I_x = m (b² + c²)/12 and so on: a² = 6 (tr I − 2 I_x)/m.
     squares = 6 * (moments.sum() - 2 * moments) / body.mass if body.mass > 0 else 0 * moments
     return np.sqrt(np.maximum(squares, 0.0)), np.asarray(body.centre, dtype=float), axes
 
@@ -92,8 +99,8 @@ TIMES = 1500
 def outline_of(
     structure: Structure, motion: Motion | None, time: Floats, q: Floats, count: int = POINTS
 ) -> Outline | None:
-    """Outline of a beam at times (t,) by `q` (t, n), with hub and attitude of a motion, at so many points; None if it
-    is no beam.
+    """Outline of a beam at times (t,) with coordinates `q` (t, n), at `count` points, with hub and attitude of a
+    motion. None if the structure is no beam.
     """
     if structure.field is None or structure.sections is None or structure.source is None:
         return None
@@ -122,7 +129,7 @@ def outline_of(
 
 
 def _chosen(structure: Any, count: int) -> Any:
-    """Indices of points of a beam's field all along it."""
+    """Indices of `count` points of a beam's field, evenly spread along it."""
     beam, sections = structure.source.beam, structure.sections
     x, index = np.unique(np.round(sections.along / beam.length, 9), return_index=True)
     count = count if beam.line is None else 2 * count
@@ -130,7 +137,7 @@ def _chosen(structure: Any, count: int) -> Any:
 
 
 def _from_root(structure: Any, rest: Floats, moved: Any) -> Any:
-    """Values (t, p, ...) at positions (p,) m along a beam, with those of its root in front, (t, p + 1, ...)."""
+    """Prepend the values of a beam's root to those (t, p, ...) at positions `rest` (p,) m along it: (t, p + 1, ...)."""
     # The field has no point at the root: the nodes next to it lie within a hundredth of the length.
     root = moved[:, 0] - (moved[:, 1] - moved[:, 0]) * (rest[0] / (rest[1] - rest[0]))
     if not structure.source.beam.root.springs:
@@ -139,8 +146,8 @@ def _from_root(structure: Any, rest: Floats, moved: Any) -> Any:
 
 
 def outline_in_modes(structure: Structure, q: Floats, modes: Complex) -> dict[str, Any]:
-    """Outline of a beam at coordinates (n,), and the displacement (k, p, 3) and twist (k, p) of its points by modes
-    (n, k), by the names of fields; empty if it is no beam.
+    """Outline of a beam at coordinates (n,), and the displacement (k, p, 3) and twist (k, p) of its points in modes (n,
+    k), by the names of fields. Empty if the structure is no beam.
     """
     outline = outline_of(structure, None, np.zeros(1), q[None], OF_MODES)
     if outline is None or structure.field is None:
@@ -156,14 +163,16 @@ def outline_in_modes(structure: Structure, q: Floats, modes: Complex) -> dict[st
 
 
 def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:
-    """Attitude of a flight at sampled times, by its rates integrated over all of them; None without rates."""
+    """Attitude of a flight at sampled times. Its rates are integrated over all times; None if it has none."""
     if not isinstance(motion, Flight) or motion.rates is None:
         return None
     return attitude(time, np.asarray(motion.base(time).w_WB_B))[sampled]
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
-    """Radius and orientation of the hub or arm that carries a beam, and the root's place on an arm; empty without."""
+    """Radius and orientation of the hub or arm that carries a beam, and the place of its root on an arm. Empty without
+    a hub.
+    """
     if motion is None or motion.kind != "hub":
         return {}
     place = np.asarray(motion.mount.place)

@@ -165,10 +165,10 @@ def place(
     from gbeam.analysis.imitation.place_measures import choice_of
 
     system = loaded.case.system
-    weights = analysis.usual(system) if weights is None else weights
+    weights = analysis.default_weights(system) if weights is None else weights
     analysis.check_weights(weights, "--measure")
     with naming("--smoothing"):
-        ways = turn or analysis.usual_turns(system)
+        ways = turn or analysis.default_turns(system)
         choice = choice_of(current, widths, limited=not ignore_limits, turns=ways)
     with Watch() as watch, loaded.placing(measure="--measure", along="--along"):
         placement = analysis.place(

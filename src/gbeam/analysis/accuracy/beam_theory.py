@@ -34,9 +34,11 @@ Begun = Callable[[Departures, Within, Floats], State | None]
 
 
 class Lacking(NamedTuple):
-    """Largest difference of each quantity between slender and thick beams; by beam, each cause's share of the energy,
-    and the displacements (b,) m of its bodies between the two; over time the difference of each quantity's peaks. Empty
-    where thick beams have no answer.
+    """Largest difference of each quantity between slender and thick beams. It is empty where thick beams have no
+    answer.
+
+    By beam there are the share of each cause in the energy, and the displacements (b,) m of the masses on it between
+    the two. Over time there is the difference of each quantity's peaks.
     """
 
     sizes: Mapping[Quantity, float] = {}
@@ -45,7 +47,7 @@ class Lacking(NamedTuple):
     peaks: Mapping[Quantity, float] = {}
 
     def or_larger(self, other: Lacking) -> Lacking:
-        """Return the larger one of each difference."""
+        """Return the larger of both differences for each quantity, with the causes of this one."""
         sizes, peaks = _larger(self.sizes, other.sizes), _larger(self.peaks, other.peaks)
         return Lacking(sizes, self.causes, _larger(self.bodies, other.bodies), peaks)
 
@@ -55,7 +57,7 @@ class Lacking(NamedTuple):
 
 
 def _larger(one: Mapping[_K, Any], other: Mapping[_K, Any]) -> dict[_K, Any]:
-    """Return the larger of both values of every key; NaN where one is."""
+    """Return the larger of both values of every key, or NaN where one is NaN."""
     return {key: np.maximum(value, other[key]) for key, value in one.items()}
 
 
@@ -68,12 +70,14 @@ def beyond(
     look: Callable[[Floats], Looks],
     again: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
-    """Differences between slender and thick beams at a solution `of` the equations `solved`; `pose` returns equations
-    with other beams, `begun` the difference of their initial states, and `look` times to read by sizes of departures.
+    """Differences between slender and thick beams at a solution `of` the equations `solved`.
 
-    With `again`, systems with slender and thick beams are run instead, as in a loop, whose controllers answer too: not
-    with and without plate action both, where the answers without controllers say that one of them makes a LESSER part
-    of every difference.
+    `pose` returns equations with other beams, `begun` the difference of their initial states, and `look` the times to
+    read, chosen by sizes of departures.
+
+    With `again`, systems with slender and thick beams are run instead, as in a loop, whose controllers answer too.
+    Thick beams run with and without plate action, unless the answers without controllers say that one of the two makes
+    only a LESSER part of every difference.
     """
     compared = _Compared.of(solved, of, theories, pose)
     try:
@@ -81,16 +85,19 @@ def beyond(
         most = reduce(Lacking.or_larger, linear)
         if again is None:
             return most
-        counted = [*compress(compared.plated, (each.counts_beside(most) for each in linear))]
-        run = compared.run(again, counted or compared.plated)
+        worth_a_run = (lacking.counts_beside(most) for lacking in linear)
+        plated = [*compress(compared.plated, worth_a_run)] or compared.plated
+        run = compared.run(again, plated)
     except (ComputationError, np.linalg.LinAlgError):
         return Lacking()
     return reduce(Lacking.or_larger, run)._replace(causes=most.causes)
 
 
 class _Compared(NamedTuple):
-    """A solution put into the equations of slender beams, `thin`, and of thick ones, `full`; by beam, its columns there
-    and its stiffness (n, n) by plate action; and flags of thick beams with that action, which are asked in turn.
+    """A solution put into the equations of slender beams, `thin`, and of thick ones, `full`.
+
+    By beam there are its columns among the unknowns of `full` and its stiffness (n, n) by plate action. `plated` has a
+    flag for each kind of thick beams that is compared: without plate action, and with it.
     """
 
     theories: Mapping[str, Theory]
@@ -108,59 +115,64 @@ class _Compared(NamedTuple):
         theories: Mapping[str, Theory],
         pose: Callable[[Mapping[str, Structure]], Posed],
     ) -> _Compared:
-        """Put a solution `of` the equations `solved` into both."""
-        thin = Within.lifted(pose({name: theory.slender for name, theory in theories.items()}), solved, of)
-        full = Within.lifted(pose({name: theory.thick for name, theory in theories.items()}), thin.more, thin.of)
-        columns = {name: [k for k, body in enumerate(full.more.bodies) if body == name] for name in theories}
+        """Put a solution `of` the equations `solved` into those of slender and of thick beams."""
+        slender = {name: theory.slender for name, theory in theories.items()}
+        thick = {name: theory.thick for name, theory in theories.items()}
+        thin = Within.lifted(pose(slender), solved, of)
+        full = Within.lifted(pose(thick), thin.richer, thin.of)
+        columns = {name: [k for k, body in enumerate(full.richer.bodies) if body == name] for name in theories}
         plates = {name: theory.plate(full.of.q[:, columns[name]]) for name, theory in theories.items()}
         plated = (False, True) if any(plate.any() for plate in plates.values()) else (False,)
         return cls(theories, thin, full, columns, plates, plated)
 
     def answered(self, begun: Begun, look: Callable[[Floats], Looks]) -> list[Lacking]:
-        """Differences by the small departures that cancel the residual in thick beams."""
+        """Differences by the small departures of thick beams that cancel the residual, for each flag of `plated`."""
         of, residual = self.full.of, self.full.residual()
-        by, added = dict[str, Mapping[str, float]](), np.zeros((of.q.shape[1],) * 2)
+        shares, stiffness = dict[str, Mapping[str, float]](), np.zeros((of.q.shape[1],) * 2)  # of all plates
         for name, theory in self.theories.items():
             columns, plate = self.columns[name], self.plates[name]
             bent = of.q[:, columns]
-            by[name] = causes(theory, bent, residual[:, columns], bent @ plate)
-            added[np.ix_(columns, columns)] = plate
+            shares[name] = causes(theory, bent, residual[:, columns], bent @ plate)
+            stiffness[np.ix_(columns, columns)] = plate
         departures, answers = self.full.departures(), list[Correction]()
         for plated in self.plated:
-            plate = plated * added
-            stiffer = departures.stiffer(plate)
-            answers.append(stiffer.answer(residual + of.q @ plate, begun(stiffer, self.full, plate)))
-        looks = look(np.concatenate([self.full.more.sizes(answer) for answer in answers], axis=1))
+            added = plated * stiffness
+            stiffer = departures.stiffer(added)
+            answers.append(stiffer.answer(residual + of.q @ added, begun(stiffer, self.full, added)))
+        looks = look(np.concatenate([self.full.richer.sizes(answer) for answer in answers], axis=1))
         without, differences = self.thin.read(looks.at), list[Lacking]()
         for answer in answers:
-            sizes, peaks = _apart(looks, without, self.full.moved(answer, looks.at))
+            sizes, peaks = _differences(looks, without, self.full.moved(answer, looks.at))
             bodies = dict[str, Floats]()
             for name, theory in self.theories.items():
                 moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, self.columns[name]])
                 bodies[name] = np.linalg.norm(moved, axis=2).max(axis=0)
-            differences.append(Lacking(sizes, by, bodies, peaks))
+            differences.append(Lacking(sizes, shares, bodies, peaks))
         return differences
 
     def run(self, again: Callable[[Mapping[str, Structure]], Reading], plated: Sequence[bool]) -> list[Lacking]:
-        """Differences by runs of systems with slender beams and with thick ones, these with plate action as flagged."""
-        without, answers = again({name: theory.slender for name, theory in self.theories.items()}), list[Lacking]()
+        """Differences between runs of systems with slender beams and with thick ones, for each flag of plate action."""
+        without = again({name: theory.slender for name, theory in self.theories.items()})
+        answers = list[Lacking]()
         for flag in plated:
             stiff = {name: theory.variants(self.plates[name])[flag] for name, theory in self.theories.items()}
-            sizes, peaks = _apart(Looks.at_all(self.full.of.time), without, again(stiff))
+            sizes, peaks = _differences(Looks.at_all(self.full.of.time), without, again(stiff))
             answers.append(Lacking(sizes, peaks=peaks))
         return answers
 
 
-def _apart(looks: Looks, without: Reading, truth: Reading) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
-    """Largest differences of readings, and over time those of their peaks."""
+def _differences(looks: Looks, without: Reading, truth: Reading) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
+    """Largest differences of readings, and over time the differences of their peaks."""
     sizes = {key: largest(truth[key] - values) for key, values in without.items()}
     judged = [key for key in without if len(looks.at) > 1 and key[1] not in MOVED]
     return sizes, {key: looks.peaks_apart(without[key], truth[key]) for key in judged}
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
-    """Each cause's energy over the strain energy of solutions p (t, n), to first order, by the forces (t, n) that thick
-    beams (`beam`) and their plate action leave in the thick beams' equations.
+    """Energy of each cause as a share of the strain energy of solutions p (t, n), to first order.
+
+    It is the work of the forces (t, n) that thick beams (`beam`) and their plate action (`plate`) leave in the thick
+    beams' equations.
     """
     stiffness = theory.thick.coefficients.stiffness
     energy = np.abs(np.einsum("ti,ij,tj->t", p.conj(), stiffness, p)).max(initial=0.0)
@@ -178,19 +190,20 @@ def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
 
 
 def largest(values: Floats) -> float:
-    """Largest size of numbers over time (t,), or of vectors (t, ..., 3)."""
+    """Largest absolute value over time of numbers (t,), or largest norm of vectors (t, ..., 3)."""
     return float(np.abs(values).max()) if values.ndim == 1 else float(np.sqrt((values**2).sum(axis=-1)).max())
 
 
 def words(causes: Mapping[str, float]) -> str:
-    """Names of the causes that are not negligible, the largest first: ``shear and rotary inertia``."""
+    """Names of the causes that are not negligible, the largest first, such as ``shear and rotary inertia``."""
     limit = max(NAMED * max(causes.values(), default=0.0), NONE)
-    chosen = [WORDS[name] for name, share in sorted(causes.items(), key=lambda item: -item[1]) if share > limit]
+    ordered = sorted(causes.items(), key=lambda item: -item[1])
+    chosen = [WORDS[name] for name, share in ordered if share > limit]
     return " and ".join([", ".join(chosen[:-1]), chosen[-1]] if len(chosen) > 1 else chosen)
 
 
 def described(structure: Structure, causes: Mapping[str, float]) -> str:
-    """Names of the causes, and the assumptions of the estimate: ``shear; assumed: Poisson's ratio 0.3``."""
+    """Names of the causes, and the assumptions of the estimate, such as ``shear; assumed: Poisson's ratio 0.3``."""
     if structure.source is None or not causes:
         return ""
     named, assumed = words(causes), assumptions(structure.source.beam)

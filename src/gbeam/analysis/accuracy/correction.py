@@ -35,20 +35,22 @@ AT_ONCE = 20_000  # numbers of a state's frames computed together, times coordin
 
 
 def pieces(count: int, size: int) -> list[slice]:
-    """Slices of `count` times, each so short that all frames of a tree of `size` coordinates fit in memory."""
+    """Slices of `count` times, so short that all frames of a tree of `size` coordinates at one slice fit in memory."""
     step = max(1, AT_ONCE // max(size, 1))
     return [slice(first, first + step) for first in range(0, count, step)]
 
 
-def looked(count: int) -> IntArray:
-    """Indices of those of `count` times at which M, C and K are found."""
+def matrix_times(count: int) -> IntArray:
+    """Indices of the `LOOKED` out of `count` times at which M, C and K are computed."""
     return np.unique(np.linspace(0, count - 1, min(count, LOOKED)).astype(int))
 
 
 class Posed(NamedTuple):
-    """Equations of motion at the times of a solution: residual(q, q̇, q̈, inputs), the inputs at an index or slice of
-    the times, names of the unknowns (`body.q1` of a body's shapes), a function that reads a trajectory over those times
-    that are at some indices, and one for the sizes (t, k) that a small departure has to first order.
+    """Equations of motion at the times of a solution: residual(q, q̇, q̈, inputs), and the inputs at an index or slice
+    of the times.
+
+    `names` are those of the unknowns (`body.q1` of a body's shapes). `read` reads a trajectory over those times that
+    have some indices, and `sizes` gives the sizes (t, k) that a small departure has to first order.
     """
 
     residual: Any
@@ -70,13 +72,13 @@ class Correction(NamedTuple):
     rate: Floats
     acceleration: Floats
 
-    def less(self, other: Correction) -> Correction:
+    def minus(self, other: Correction) -> Correction:
         """This correction minus another."""
         return Correction(*(a - b for a, b in zip(self, other, strict=True)))
 
     def at(self, times: Indices) -> Correction:
         """Return the correction at indices of its times."""
-        return Correction(*(each[times] for each in self))
+        return Correction(*(history[times] for history in self))
 
 
 class Vibration(NamedTuple):
@@ -92,7 +94,9 @@ class Vibration(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Departures:
     """Linear equations of small departures from a solution at equally spaced times: K, C and M (k, n, n) at the times
-    `at`; `elastic` flags the unknowns of bodies (n,), `turned` those of balls with an angular acceleration.
+    `at`.
+
+    `elastic` flags the unknowns of bodies (n,), `turned` those of balls with an angular acceleration.
     """
 
     time: Floats
@@ -116,13 +120,17 @@ class Departures:
 
     @property
     def inert(self) -> bool:
-        """True if every motion has kinetic energy, as some do not by a mass of second order in what bends."""
+        """True if every motion has kinetic energy. Where the mass is of second order in what bends, some motions may
+        have none.
+        """
         free = self.unheld
         return positive_definite(self.m[:, free][..., free])
 
     @cached_property
     def vibration(self) -> Vibration:
-        """Modes of the mean K and M or, if unstable, of the first K; joints with Euler parameters are held."""
+        """Modes of the mean K and M, or of the first K if the mean one is unstable. Joints with Euler parameters are
+        held.
+        """
         mass, square, modes = self.m.mean(axis=0), np.zeros(len(self.elastic)), np.eye(len(self.elastic))
         free = self.unheld
         inside = np.ix_(free, free)
@@ -139,12 +147,16 @@ class Departures:
         return replace(self, k=self.k + by)
 
     def settled(self, residual: Floats, bent: Flags | None = None, accelerated: Flags | None = None) -> State:
-        """Departure at rest in which what is `bent`, by default all bodies, balances a residual (n,), while what is
-        `accelerated`, by default the joints, is not displaced; the rest is held.
+        """Departure at rest that balances a residual (n,).
+
+        Unknowns that are `bent`, by default those of bodies, are displaced; those that are `accelerated`, by default
+        those of joints, take up the residual by their inertia; the others are held.
         """
         bent = self.elastic if bent is None else bent
-        active = np.flatnonzero(bent | (~bent if accelerated is None else accelerated))
+        accelerated = ~bent if accelerated is None else accelerated
+        active = np.flatnonzero(bent | accelerated)
         inside, change = np.ix_(active, active), np.zeros_like(residual)
+        # Unknowns of the linear system are displacements where bent, accelerations elsewhere.
         change[active] = np.linalg.solve(np.where(bent, self.k[0], self.m[0])[inside], -residual[active])
         return np.where(bent, change, 0.0), np.zeros_like(residual)
 
@@ -153,19 +165,23 @@ class Departures:
         displaced, moving = (np.asarray(np.linalg.solve(self.vibration.modes, values)) for values in start)
         return displaced, moving
 
-    def shaken(self, residual: Floats, start: State | None) -> tuple[Floats, Floats]:
-        """Frequencies (k,) rad/s of the unresolved modes, and bounds (n, k) of the amplitudes with which the start, and
-        corners and jumps of a residual (t, n), make them ring: a corner's second difference of force bounds the ring.
+    def ringing(self, residual: Floats, start: State | None) -> tuple[Floats, Floats]:
+        """Frequencies (k,) rad/s of the unresolved modes, and bounds (n, k) of the amplitudes of their free vibration.
+
+        The start, and corners and jumps of a residual (t, n), excite it. The second difference of the modal force at a
+        corner bounds its part.
         """
         square, modes, kept = self.vibration
         rate, force = np.sqrt(square[~kept]), residual @ modes[:, ~kept]
         displaced, moving = (values[~kept] for values in self.of_state(start or self.settled(residual[0])))
-        away = np.abs(displaced + force[0] / rate**2) + np.abs(moving) / rate
-        return rate, modes[:, ~kept] * (np.abs(np.diff(force, n=2, axis=0)).max(axis=0) / rate**2 + away)
+        by_start = np.abs(displaced + force[0] / rate**2) + np.abs(moving) / rate
+        by_corners = np.abs(np.diff(force, n=2, axis=0)).max(axis=0) / rate**2
+        return rate, modes[:, ~kept] * (by_corners + by_start)
 
     def answer(self, residual: Floats, start: State | None = None) -> Correction:
-        """Correction that cancels a residual (t, n), from an initial departure, by default that of bodies at rest; of a
-        solution of one time, the static one.
+        """Correction that cancels a residual (t, n), from an initial departure, by default that of bodies at rest.
+
+        For a solution of one time it is the static one.
         """
         if len(self.time) == 1:
             which = loose(self.k[0], self.c[0]) | self.turned
@@ -187,14 +203,14 @@ class Departures:
         moved = integrate(
             equations, gauss(), first, rate, step=self.interval, count=count - 1, start=float(self.time[0])
         )
-        static = -residual @ (stiff / square[~kept] @ stiff.T)
+        static = -residual @ (stiff / square[~kept] @ stiff.T)  # of the modes that samples do not resolve
         if not moved.whole:
             return Correction(*np.full((3, *static.shape), np.nan))
         return Correction(moved.q @ phi.T + static, moved.qd @ phi.T, moved.qdd @ phi.T)
 
 
 def _between(at: Floats, values: Any, time: Floats) -> Floats:
-    """Values (k, ...) at times (k,), interpolated linearly to other times (t,)."""
+    """Interpolate values (k, ...) at the times `at` (k,) linearly to other times (t,)."""
     place = np.interp(time, at, np.arange(len(at)))
     low = np.minimum(place.astype(int), len(values) - 2)
     share = (place - low).reshape(-1, *[1] * (values.ndim - 1))
@@ -202,67 +218,73 @@ def _between(at: Floats, values: Any, time: Floats) -> Floats:
 
 
 class Within(NamedTuple):
-    """A solution of the equations `less`, as a trajectory `of` the equations `more`, which have more shapes; `shared`
-    are the indices of its unknowns there.
+    """A solution of the equations `simpler`, as a trajectory `of` the equations `richer`, which have more shapes.
+    `shared` are the indices of its unknowns among theirs.
     """
 
-    more: Posed
-    less: Posed
+    richer: Posed
+    simpler: Posed
     shared: IntArray
     of: Trajectory
 
     @classmethod
-    def lifted(cls, more: Posed, less: Posed, of: Trajectory, shared: IntArray | None = None) -> Within:
-        """A solution put into other equations, by the names of its unknowns or by their indices `shared` there."""
+    def lifted(cls, richer: Posed, simpler: Posed, of: Trajectory, shared: IntArray | None = None) -> Within:
+        """Put a solution into richer equations, whose unknowns have its names, or have it at the indices `shared`."""
         if shared is None:
-            shared = np.array([more.names.index(name) for name in less.names], dtype=int)
-        states = np.zeros((3, len(of.time), len(more.names)))
+            shared = np.array([richer.names.index(name) for name in simpler.names], dtype=int)
+        states = np.zeros((3, len(of.time), len(richer.names)))
         for state, values in zip(states, (of.q, of.qd, of.qdd), strict=True):
             state[:, shared] = values
-        return cls(more, less, shared, Trajectory(of.time, *states))
+        return cls(richer, simpler, shared, Trajectory(of.time, *states))
 
     def residual(self) -> Floats:
-        """Residual (t, n) of the equations `more`, minus that of `less`."""
-        parts = pieces(len(self.of.time), len(self.more.names))
-        return np.concatenate([self._left(times, self.of.at(times)) for times in parts])
+        """Residual (t, n) of the solution in the `richer` equations, minus that in its own."""
+        parts = pieces(len(self.of.time), len(self.richer.names))
+        return np.concatenate([self._residual_at(times, self.of.at(times)) for times in parts])
 
     def held_residual(self, accelerated: Flags) -> Floats:
-        """Residual (n,) at the start if nothing but what is `accelerated` were."""
+        """Residual (n,) at the start if only the unknowns that are `accelerated` had an acceleration."""
         first = self.of.at(slice(1))
-        return self._left(slice(1), replace(first, known=np.where(accelerated, first.qdd, 0.0)))[0]
+        return self._residual_at(slice(1), replace(first, known=np.where(accelerated, first.qdd, 0.0)))[0]
 
-    def _left(self, times: slice, at: Trajectory) -> Floats:
-        """Residual (t, n) of states at a slice of the times."""
-        left = np.array(self.more.residual(at.q, at.qd, at.qdd, self.more.inputs(times)))
-        # Where inputs jump the solution has a residual in its own equations.
-        state = (each[:, self.shared] for each in (at.q, at.qd, at.qdd))
-        left[:, self.shared] -= self.less.residual(*state, self.less.inputs(times))
-        return left
+    def _residual_at(self, times: slice, at: Trajectory) -> Floats:
+        """Residual (t, n) of states at a slice of the times, without the one in the solution's own equations.
+
+        The solution has one of its own where inputs jump.
+        """
+        residual = np.array(self.richer.residual(at.q, at.qd, at.qdd, self.richer.inputs(times)))
+        state = (values[:, self.shared] for values in (at.q, at.qd, at.qdd))
+        residual[:, self.shared] -= self.simpler.residual(*state, self.simpler.inputs(times))
+        return residual
 
     def of_new(self, residual: Floats) -> Floats:
-        """Part of a residual (..., n) in new coordinates, by too few shapes; in the shared ones it is the model's."""
+        """Part of a residual (..., n) in the new coordinates, which too few shapes leave. The part in the shared ones
+        is the model's.
+        """
         new = residual.copy()
         new[..., self.shared] = 0.0
         return new
 
     def departures(self, equations: Posed | None = None) -> Departures:
-        """Linear equations of small departures from the solution, by `more` or other equations in the same unknowns."""
-        more = equations or self.more
-        chosen = looked(len(self.of.time))
+        """Linear equations of small departures from the solution, by the `richer` or by other equations in the same
+        unknowns.
+        """
+        richer = equations or self.richer
+        chosen = matrix_times(len(self.of.time))
         at = self.of.at(chosen)
-        elastic = np.array([".q" in name for name in self.more.names], dtype=bool)
-        k, c, m = slopes(more.residual, at.q, at.qd, at.qdd, more.inputs(chosen))
-        balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.more.names]
+        elastic = np.array([".q" in name for name in self.richer.names], dtype=bool)
+        k, c, m = slopes(richer.residual, at.q, at.qd, at.qdd, richer.inputs(chosen))
+        balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.richer.names]
         faster = {ball for ball, accelerated in zip(balls, at.qdd.any(axis=0), strict=True) if ball and accelerated}
         turned = np.array([ball in faster for ball in balls], dtype=bool)
         return Departures(self.of.time, at.time, k, c, m, elastic, turned)
 
     def read(self, times: Indices) -> Reading:
-        """Read the solution, in the equations `more`, at indices of its times."""
-        return self.more.read(self.of.at(times), times)
+        """Read the solution in the `richer` equations at indices of its times."""
+        return self.richer.read(self.of.at(times), times)
 
     def moved(self, by: Correction, times: Indices) -> Reading:
         """Read the solution with a correction added, at indices of its times."""
         of, change = self.of.at(times), by.at(times)
         moved = replace(of, q=of.q + change.value, qd=of.qd + change.rate, known=of.qdd + change.acceleration)
-        return self.more.read(moved, times)
+        return self.richer.read(moved, times)

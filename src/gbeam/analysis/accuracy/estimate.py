@@ -28,7 +28,7 @@ LIMIT = 0.01  # an error of a steady state above is warned of
 
 
 def cure_of_theory(theory: str) -> str:
-    """Advice against an error of the theory of slender beams, by its causes in words."""
+    """Advice against an error of the theory of slender beams. `theory` names its causes in words."""
     if theory.partition(";")[0] == WORDS["plate"]:
         return "no model of a beam has it: plate = true of its section says how much it is at most, a mesh how much"
     return 'kind = "exact" with modes.twist, shear_y, shear_z has all but plate action'
@@ -38,8 +38,9 @@ Cause = tuple[float, str, str]  # an error, its cause in words, and advice again
 
 
 def causes(errors: ErrorEstimate, theory: str, *, several: bool = False) -> list[Cause]:
-    """Errors by too few shapes, model, beam theory and mesh, the largest first; those of no size are left out. Of
-    `several` bodies the advice is on one of them.
+    """Errors by too few shapes, model, beam theory and mesh, without those that are zero, the largest first.
+
+    With `several` bodies the advice is on one of them.
     """
     of_solid = math.isnan(errors.beam_theory) and not math.isnan(errors.shapes)
     few = "too few shapes", "raise model.modes, or leave them out: then there are enough for the lowest six"
@@ -54,42 +55,51 @@ def causes(errors: ErrorEstimate, theory: str, *, several: bool = False) -> list
         (errors.beam_theory, f"the theory of slender beams ({theory})", cure_of_theory(theory)),
         (errors.mesh, *ROUGH_MESH),
     ]
-    return sorted((each for each in every if each[0] > 0), key=itemgetter(0), reverse=True)
+    return sorted((cause for cause in every if cause[0] > 0), key=itemgetter(0), reverse=True)
 
 
-def fuller(errors: ErrorEstimate) -> str:
+def reference_model(errors: ErrorEstimate) -> str:
     """Words for the model that errors are judged by."""
     if math.isnan(errors.model):
         return "the model with more modes"
     return "the model with forces of higher order" if math.isnan(errors.beam_theory) else "the exact model"
 
 
-def wrong_by(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
-    """Warning that a quantity of a steady state is wrong by a `size` in words, with the largest cause and its cure."""
-    return f"{what} is wrong by an estimated {size}: {in_words(causes(errors, theory)[:1])}"
+def error_warning(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
+    """Warn that a quantity of a steady state is wrong by a `size` in words, with the largest cause and advice against
+    it.
+    """
+    return f"{what} is wrong by an estimated {size}: {causes_in_words(causes(errors, theory)[:1])}"
 
 
-def in_words(causes: list[Cause], of: str = "") -> str:
-    """Causes with advice against each; the size of each where there are several, and the body `of` which most is."""
+def causes_in_words(causes: list[Cause], of: str = "") -> str:
+    """Causes with advice against each, and the body `of` which most of the error is. Several causes have their
+    sizes.
+    """
     if len(causes) == 1:
         ((_, cause, cure),) = causes
         return f"{cause}{of}; {cure}"
-    advised = (f"{cause[:-1]}; {cure})" if cause.endswith(")") else f"{cause} ({cure})" for _, cause, cure in causes)
-    return ", ".join(f"{percent(size)} from {each}" for (size, *_), each in zip(causes, advised, strict=True)) + of
+    clauses = []
+    for size, cause, cure in causes:
+        advised = f"{cause[:-1]}; {cure})" if cause.endswith(")") else f"{cause} ({cure})"
+        clauses.append(f"{percent(size)} from {advised}")
+    return ", ".join(clauses) + of
 
 
-def apart(value: float, reference: float) -> float:
-    """Relative difference of two values, either of which may be infinite (no critical value up to the limit)."""
+def relative_difference(value: float, reference: float) -> float:
+    """Relative difference of two values. A critical value is infinite if there is none up to the limit."""
     if math.isinf(reference):
         return 0.0 if value == reference else math.inf
     return math.inf if math.isinf(value) else abs(value / reference - 1)
 
 
-def of_bodies(
+def twist_warnings(
     structure: Structure, name: str, causes: Mapping[str, float], distances: Floats, bent: float, limit: float
 ) -> Iterator[str]:
-    """Warn of each mass off a beam's axis that the twist, which the model lacks, displaces by one of the `distances`,
-    m, by more than `limit` times the beam's deflection `bent`, m; the `name` is that of one among several bodies.
+    """Warn of each mass off a beam's axis that would move further if the model had twist.
+
+    The twist displaces the masses by the `distances`, m. A warning is given above `limit` times the beam's deflection
+    `bent`, m. The beam has a `name` if it is one among several bodies.
     """
     if structure.source is None or causes.get("twist", 0.0) <= 0:
         return
@@ -104,8 +114,9 @@ def of_bodies(
 
 
 def not_known(bend: float, lost: str) -> dict[str, Any]:
-    """Outcome and message, by name, of a state that is `lost` by a stiffness of first order, if its bend, as a share of
-    the length, is too far for that; else empty.
+    """Outcome and message, by name, of a state that is `lost` with a stiffness of first order.
+
+    They are empty unless its bend, as a share of the length, is too far for such a stiffness.
     """
     clause = of_first_order(bend)
     words = f"whether it would stay there is not known: {lost}, but {clause}"
@@ -124,21 +135,24 @@ UNKNOWN = "shapes and model are not judged: it is neither a beam, a mesh nor mat
 
 
 def negligible(sizes: Mapping[Quantity, float], body: str, length: float, inertia: float = 0.0) -> set[Quantity]:
-    """Quantities of a body that are rounding: root force and moment compared with one another (by `length`, m) and
-    with the body's inertia force `inertia`, N; normal stress with the shear stress; deflection with the length.
+    """Quantities of a body that are rounding.
+
+    Root force and moment are compared with one another (by `length`, m) and with the body's inertia force `inertia`, N;
+    normal stress with the shear stress; deflection with the length.
     """
     references = {
         "force": max(sizes[body, "moment"] / length, inertia),
         "moment": max(sizes[body, "force"], inertia) * length,
         "stress": sizes.get((body, "sheared"), 0.0),
     }
-    nothing = {(body, what) for what, reference in references.items() if sizes[body, what] <= NOTHING * reference}
-    bent = sizes.get((body, DEFLECTION), math.inf)
-    return nothing | ({(body, DEFLECTION)} if bent <= UNMOVED * length else set())
+    rounding = {(body, what) for what, reference in references.items() if sizes[body, what] <= NOTHING * reference}
+    if sizes.get((body, DEFLECTION), math.inf) <= UNMOVED * length:
+        rounding.add((body, DEFLECTION))
+    return rounding
 
 
 def unjudged(structure: Structure) -> str:
-    """Sentence about the errors of a structure that are not judged, or ""."""
+    """Sentence that says which errors of a structure are not judged; empty if all are."""
     if structure.source is not None or not structure.size:  # a rigid structure has neither shapes nor mesh
         return ""
     if structure.modes is None:
@@ -147,9 +161,11 @@ def unjudged(structure: Structure) -> str:
 
 
 class Judgement(NamedTuple):
-    """Pairs of readings that differ by too few shapes, by the model and, if known, by the mesh; differences by the beam
-    theory, relative errors of the steps, the sizes that others are relative to, and quantities that are rounding. Of a
-    response the times that are read, relative errors of peaks by the steps, and those of the law of friction.
+    """Pairs of readings that differ by too few shapes, by the model and, if known, by the mesh.
+
+    Besides there are differences by the beam theory, relative errors of the steps, the sizes to which others are
+    relative, and quantities that are only rounding. A response has the times that are read, relative errors of peaks by
+    the steps, and those of the law of friction.
     """
 
     shapes: tuple[Reading, Reading]
@@ -163,41 +179,46 @@ class Judgement(NamedTuple):
     peaks_by_step: Mapping[Quantity, float] = MappingProxyType({})
     friction: Mapping[Quantity, float] = MappingProxyType({})
 
-    def apart(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
+    def difference(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
         """Largest size of the sum of the differences of pairs of readings, as a share of the quantity's size."""
         away = largest(np.sum([more[key] - less[key] for less, more in pairs], axis=0))
         size = 0.0 if key in self.nothing else self.sizes[key] or away
         return away / size if size else 0.0
 
     def error(self, key: Quantity) -> ErrorEstimate:
-        """Error of a quantity by its causes; all unknown if its size is NaN, as of the stress of a body by matrices."""
+        """Error of a quantity by its causes. All are unknown if its size is NaN, as for the stress of a body by
+        matrices.
+        """
         if math.isnan(self.sizes[key]):
             return ErrorEstimate()
-        causes = (self.shapes,), (self.model,), (self.shapes, self.model)
-        shapes, model, total = (self.apart(key, *pairs) for pairs in causes)
-        step = 0.0 if key in self.nothing else self.steps.get(key, math.nan)
+        nothing, size = key in self.nothing, self.sizes[key]
+        shapes, model = self.difference(key, self.shapes), self.difference(key, self.model)
+        total = self.difference(key, self.shapes, self.model)
+        step = 0.0 if nothing else self.steps.get(key, math.nan)
         estimate = ErrorEstimate(step, shapes, model, total=total + (0.0 if math.isnan(step) else step))
         if self.mesh is not None:
-            estimate = estimate.adding(mesh=self.apart(key, self.mesh))
+            estimate = estimate.adding(mesh=self.difference(key, self.mesh))
         if key in self.friction:
-            estimate = estimate.adding(friction=0.0 if key in self.nothing else self.friction[key])
-        theory, size = self.theory.sizes.get(key, math.nan), self.sizes[key]
-        estimate = estimate.adding(beam_theory=0.0 if key in self.nothing or size == 0 else theory / size)
+            estimate = estimate.adding(friction=0.0 if nothing else self.friction[key])
+        theory = self.theory.sizes.get(key, math.nan)
+        estimate = estimate.adding(beam_theory=0.0 if nothing or size == 0 else theory / size)
         peaks = self.looks is not None and key[1] not in MOVED
         return replace(estimate, peak=self.peak(key, estimate.total)) if peaks else estimate
 
     def peak(self, key: Quantity, total: float) -> float:
-        """Error of the largest values of a quantity over time, whenever they are reached: the sum of the differences
-        that shapes and model, mesh, theory, steps and friction make, so none hides another; at most the `total`.
+        """Error of the largest values of a quantity over time, whenever they are reached.
+
+        It is the sum of the differences that shapes and model, mesh, theory, steps and friction make, so that none
+        hides another, and at most the `total`.
         """
         if self.looks is None or not self.sizes[key] or not math.isfinite(total):
             return total
         # From what is computed to the exact model with more shapes; what lies between is no solution.
         first, last = (self.model, self.shapes) if self.shapes[0] is self.model[1] else (self.shapes, self.model)
         pairs = [(first[0], last[1]), *([] if self.mesh is None else [self.mesh])]
-        apart = sum(self.looks.peaks_apart(less[key], more[key]) for less, more in pairs)
+        difference = sum(self.looks.peaks_apart(less[key], more[key]) for less, more in pairs)
         by_run = self.peaks_by_step.get(key, 0.0), self.friction.get(key, 0.0)
-        causes = (apart + self.theory.peaks.get(key, 0.0)) / self.sizes[key], *by_run
+        causes = (difference + self.theory.peaks.get(key, 0.0)) / self.sizes[key], *by_run
         return min(max(float(np.nansum(causes)), ROUNDING), total)
 
     def loads(self, body: str) -> ErrorEstimate:

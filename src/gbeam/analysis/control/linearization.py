@@ -167,7 +167,7 @@ def linearize(
         hub_of(motion, "a rate", "leave it out and give a time", name)
         drive = Drive(subject.ground, time, turning_of(subject.system, subject.ground, None), rate)
     at_rest = q is None and qd is None
-    coordinates = (None if each is None else np.asarray(each, dtype=float) for each in (q, qd))
+    coordinates = (None if values is None else np.asarray(values, dtype=float) for values in (q, qd))
     plant = _linearized(
         subject, placed(subject.system, drive, *coordinates), gauges, name, time, progress, at_rest=at_rest
     )
@@ -184,7 +184,9 @@ def _linearized(
     *,
     at_rest: bool,
 ) -> StateSpace:
-    """State-space model of one body in a state of its system; with the errors of its poles if it is `at_rest`."""
+    """State-space model of one body in a state of its system. If it is `at_rest`, the model has the errors of its
+    poles.
+    """
     structure, point, linear = subject.structure, state.point, state.linear
     motion: Any = subject.motion
     n, measured = len(point.y), outputs_of(structure, state, gauges)
@@ -232,8 +234,9 @@ def _linearized(
 
 
 def _poles(state: SteadySystem, subject: Subject) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """Fields of the poles about a steady state: frequencies (k,) Hz, their errors and frame; and warnings of errors and
-    instability.
+    """Fields of the poles about a steady state: frequencies (k,) Hz, their errors, and whether the frame turns.
+
+    Besides, warnings of errors and of instability.
     """
     frequency, errors, doubts = np.zeros(0), unknown_errors(state.system, 0), tuple[str, ...]()
     turning = {"frame": "turning"} if state.whirl is not None and state.whirl.turning else {}

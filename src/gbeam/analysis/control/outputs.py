@@ -65,7 +65,7 @@ def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
 
 
 def surface_gauge(beam: Beam, at: float, face: str) -> Gauge:
-    """Return the gauge `at` m from the root on the extreme fibre towards a face, ``z``, ``-z``, ``y`` or ``-y``."""
+    """Return the gauge `at` m from the root, on the extreme fibre towards a face, ``z``, ``-z``, ``y`` or ``-y``."""
     if not 0 <= at <= beam.length:
         raise InputError("", f"is {at:g} m, off the beam", f"give 0 to {beam.length:g} m")
     sign, axis = -1.0 if face.startswith("-") else 1.0, face[-1]
@@ -80,11 +80,13 @@ BASE_RATES = tuple(Signal(f"base_rate_{i}", "rad/s") for i in "xyz")
 
 @record
 class Outputs:
-    """Outputs of one body as a function of y, ẏ, ÿ and the inputs u of its system, in axes of its base: displacement
-    and absolute acceleration of the tip, root moment, strains, displacement and acceleration of other `points` (numbers
-    of stations), and a free hub's angle and rate. Strains are of beams by section forces times `strains` (gauges, 6) at
-    the sections `at`, of solids by coordinates times `shares` (gauges, n). u has the torque on a free hub, or the
-    base's acceleration, angular velocity and angular acceleration, and then the components of the loads.
+    """Outputs of one body as a function of y, ẏ, ÿ and the inputs u of its system, in axes of its base.
+
+    They are displacement and absolute acceleration of the tip, root moment, strains, displacement and acceleration of
+    other `points` (numbers of stations), and a free hub's angle and rate. Strains of beams are section forces times
+    `strains` (gauges, 6) at the sections `at`, those of solids are coordinates times `shares` (gauges, n). u has the
+    torque on a free hub, or the base's acceleration, angular velocity and angular acceleration, and then the components
+    of the loads.
     """
 
     structure: Structure
@@ -103,7 +105,7 @@ class Outputs:
 
     @property
     def held(self) -> Array:
-        """Inputs u (m,) of the state."""
+        """Inputs u (m,) that hold the state."""
         drives, ground = self.drives, self.drives.ground
         efforts: Any = drives.efforts
         driven = [efforts[self.tree.free[:1]]] if self.first else [ground.a, ground.w, ground.alpha]
@@ -140,17 +142,20 @@ class Outputs:
         return drives
 
     def matrices(self, point: Point) -> tuple[Array, Array, Array]:
-        """Values (p,) at a point, their derivatives (p, 3 n + m) by (y, ẏ, ÿ, u), and forces (n, m) by u."""
+        """Outputs (p,) at a point, their derivatives (p, 3 n + m) by (y, ẏ, ÿ, u), and generalised forces (n, m) by u.
+
+        The derivatives are taken by complex steps.
+        """
         u = self.held
         state = np.concatenate([point.y, point.yd, point.ydd, u])
         moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(len(state))])
         y, yd, ydd, drive = np.split(moved, len(point.y) * np.arange(1, 4), axis=1)
         values = self(y, yd, ydd, drive)
-        left = self.tree(y, yd, ydd, self.inputs(drive))[-len(u) :]
-        return values[0].real, values[1:].imag.T / STEP, -left.imag.T / STEP
+        residual = self.tree(y, yd, ydd, self.inputs(drive))[-len(u) :]
+        return values[0].real, values[1:].imag.T / STEP, -residual.imag.T / STEP
 
     def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
-        """Rates of a state x, and outputs; x is (y, ẏ) and, unless on a free hub, the base's angular velocity."""
+        """Rates of a state x, and outputs. x is (y, ẏ) and, unless on a free hub, the base's angular velocity."""
         i = self.first
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
@@ -161,7 +166,9 @@ class Outputs:
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
-    """Names and units of the coordinates and rates (y, ẏ); `first` is 1 with a free hub's angle."""
+    """Names and units of the coordinates and rates (y, ẏ). `first` is 1 where the angle of a free hub is the first
+    one.
+    """
     units = ("1", "rad", "rad", "rad", "1", "1") if structure.kind in BY_STRAINS else ("m",) * 6
     names = [("hub_angle", "rad")] if first else []
     for group, unit, count in zip(FAMILIES, units, structure.counts, strict=True):
@@ -176,7 +183,9 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
 
 
 def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
-    """Names and units of the inputs: torque or base, then the components of each load on the beam."""
+    """Names and units of the inputs: the torque or the motion of the base, then the components of each load on the
+    beam.
+    """
     if motion.free:
         signals = [Signal("torque", "N m")]
     else:
@@ -242,21 +251,21 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
 
 def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:
     """The system with stations at the gauges on its beams, and the gauges by the names of their signals."""
-    strained, named = dict[str, Strained](), dict[str, dict[int, Gauge]]()
+    by_number, by_body = dict[int, Strained](), dict[str, dict[int, Gauge]]()
     bodies, flexible = dict(system.bodies), system.flexible
     for i, gauge in enumerate(gauges):
         choice(f"gauges[{i}].body", gauge.body, flexible)
-        named.setdefault(gauge.body, {})[i] = gauge
-    for name, on_body in named.items():
+        by_body.setdefault(gauge.body, {})[i] = gauge
+    for name, on_body in by_body.items():
         body = flexible[name]
         if body.sections is None:
-            strained |= {f"strain_{i + 1}": Strained(name, _of_solid(body, i, gauge)) for i, gauge in on_body.items()}
+            by_number |= {i: Strained(name, _of_solid(body, i, gauge)) for i, gauge in on_body.items()}
             continue
         positions, shares = _of_beam(body, on_body)
         bodies[name] = body = at_stations(body, np.union1d(body.stations, positions))
-        rows = zip(on_body, shares, _nearest(body, positions), strict=True)
-        strained |= {f"strain_{i + 1}": Strained(name, share, int(section)) for i, share, section in rows}
-    return replace(system, bodies=bodies), {f"strain_{i + 1}": strained[f"strain_{i + 1}"] for i in range(len(gauges))}
+        for i, share, section in zip(on_body, shares, _nearest(body, positions), strict=True):
+            by_number[i] = Strained(name, share, int(section))
+    return replace(system, bodies=bodies), {f"strain_{i + 1}": by_number[i] for i in range(len(gauges))}
 
 
 def _nearest(structure: Structure, positions: Floats) -> Any:
@@ -265,7 +274,9 @@ def _nearest(structure: Structure, positions: Floats) -> Any:
 
 
 def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats, Floats]:
-    """Positions (g,), m, of numbered gauges on a beam, and their strains (g, 6) by unit forces and moments there."""
+    """Positions (g,), m, of numbered gauges on a beam, and their strains (g, 6) per unit force and moment of the
+    section there.
+    """
     assert structure.source is not None
     beam, unit = structure.source.beam, np.eye(6)[:, None]
     for i, gauge in gauges.items():
@@ -279,7 +290,7 @@ def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats,
 
 
 def _of_solid(structure: Structure, i: int, gauge: Gauge) -> Floats:
-    """Strains (n,) at gauge number i on a solid by unit coordinates; InputError if it is on no mesh."""
+    """Strains (n,) at gauge number i on a solid per unit coordinate; InputError if the body is no mesh."""
     if structure.recovery is None:
         fix = "leave them out: particles, matrices and modes have no strain"
         raise InputError("gauges", "are given of no beam and no mesh", fix)

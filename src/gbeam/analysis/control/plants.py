@@ -63,7 +63,7 @@ DRIVES = {
 
 class Ran(NamedTuple):
     """Displacement (t, 3) m of the point under a command, residual vibration, m, step, s, and the driven coordinate and
-    its rate (t,).
+    its rate, (t,) each.
     """
 
     time: Floats
@@ -99,8 +99,8 @@ class Plant:
 
     @staticmethod
     def on_hub(system: System, hub: Hub, point: str | None) -> Plant:
-        """The drive of a hub that carries the only body, whose tip is to rest; InputError if it is rigid or turns
-        already, or there are other bodies.
+        """Make the plant of a hub that carries the only body, whose tip is to rest. InputError if the body is rigid,
+        the hub turns already, or there are other bodies.
         """
         body = system.alone
         if body is None:
@@ -115,7 +115,7 @@ class Plant:
 
     @staticmethod
     def of(system: System, coordinate: str, point: str | None) -> Plant:
-        """The drive of a system's coordinate, with the tip of the only flexible body as point if none is named."""
+        """Make the plant of a system's coordinate. If no point is named, it is the tip of the only flexible body."""
         if not movable(system):
             problem = f"is {coordinate!r}, and no joint moves {', '.join(system.order)}"
             raise InputError("hub", problem, "give a Hub, which carries a body alone")
@@ -185,7 +185,7 @@ class Plant:
 
     @cached_property
     def _rest(self) -> tuple[SteadySystem, Linear]:
-        """The system at rest, and its small motions under the drive."""
+        """The system at rest, and the linear equations of its small motions under a unit drive."""
         state = steady(self.commanded(None), Drive())
         local, inputs = state.local, state.local.inputs
         if self.free:
@@ -193,12 +193,12 @@ class Plant:
         prescribed = np.array(inputs.prescribed)
         prescribed[2, self.system.tree.fixed.index(self.system.coordinates.index(self.coordinate))] += 1.0
         faster = replace(inputs, prescribed=prescribed)  # by a unit acceleration of the driven coordinate
-        left = local.tree(local.y, local.yd, local.ydd, inputs) - local.tree(local.y, local.yd, local.ydd, faster)
-        return state, state.linear._replace(inputs=left[:, None])
+        force = local.tree(local.y, local.yd, local.ydd, inputs) - local.tree(local.y, local.yd, local.ydd, faster)
+        return state, state.linear._replace(inputs=force[:, None])
 
     @property
     def inertia(self) -> float:
-        """Inertia, kg m² or kg, that the effort moves without vibration; InputError if it is held or braked."""
+        """Inertia, kg m² or kg, that the effort moves as a rigid body; InputError if that motion is held or braked."""
         state, (m, c, k, force) = self._rest
         square, modes = symmetric_modes(symmetric(k), symmetric(m))
         rigid = modes[:, square <= RIGID**2 * square[-1]]
@@ -209,7 +209,7 @@ class Plant:
         if rubs or np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
             fix = "leave out damping and friction of what is driven"
             raise InputError("joint", f"is {self.coordinate!r}, whose motion friction or a damper brakes", fix)
-        return float(1 / (shares @ shares))
+        return float(1 / (shares @ shares))  # modes have unit mass
 
     @property
     def small(self) -> SmallMotions:
@@ -236,15 +236,18 @@ class Plant:
         return replace(self.system, joints={**self.system.joints, name: joint})
 
     def run(self, profile: Profile, settings: ResponseSettings, name: str = "", progress: Progress = None) -> Ran:
-        """Run a command."""
+        """Simulate the system under a command."""
         system = self.commanded(profile)
         run = simulate(system, None, settings, name=name, progress=progress)
         k = system.coordinates.index(self.coordinate)
-        tip, left = self._tip(system, run.time, run.q, settings)
-        return Ran(run.time, tip, run.outcome, run.message, left, run.step, (run.q[:, k] - run.q[0, k], run.qd[:, k]))
+        driven = run.q[:, k] - run.q[0, k], run.qd[:, k]
+        tip, residual = self._tip(system, run.time, run.q, settings)
+        return Ran(run.time, tip, run.outcome, run.message, residual, run.step, driven)
 
     def _tip(self, system: System, time: Floats, q: Floats, settings: ResponseSettings) -> tuple[Floats, float]:
-        """Displacement (t, 3) m of the point, or its place if rigid, by all coordinates (t, n); its residual, m."""
+        """Displacement (t, 3) m of the point, or its place if its body is rigid, from all coordinates (t, n); and its
+        residual vibration, m.
+        """
         tip = self._deflection(q)
         if tip is None:
             y, k = q[:, system.tree.free], system.points.index(self.point)
@@ -254,8 +257,8 @@ class Plant:
     def about(
         self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
-        """The run of a command by given steps, and an iterator of pairs of runs of commands that differ by a `width`,
-        made by exact derivatives.
+        """Run a command by given steps, and iterate over pairs of runs of commands that differ from one another by a
+        `width`. The pairs follow from exact derivatives of the run.
         """
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
@@ -288,9 +291,10 @@ class Plant:
                 for j in range(3):
                     prescribed = np.array(inputs.prescribed, dtype=complex)
                     prescribed[:, j, tree.fixed.index(k)] += 1j * STEP
-                    left = tree(q + 0j, qd + 0j, qdd + 0j, replace(inputs, prescribed=prescribed))
-                    slope[..., j] = left.imag / STEP
-            changed = np.stack([command(more, time) - command(less, time) for less, more in pairs], axis=-1) / width
+                    residual = tree(q + 0j, qd + 0j, qdd + 0j, replace(inputs, prescribed=prescribed))
+                    slope[..., j] = residual.imag / STEP
+            changes = [command(after, time) - command(before, time) for before, after in pairs]
+            changed = np.stack(changes, axis=-1) / width
             return mass, damping, stiffness, -slope @ changed
 
         ends = np.append(0, 1 + np.flatnonzero(grid.kept))
@@ -299,10 +303,11 @@ class Plant:
             """The run with `by` added to its free coordinates."""
             q = np.zeros((len(ends), tree.size))
             q[:, tree.free] = run.q[ends] + by
-            tip, left = self._tip(system, run.time[ends], q, settings)
-            return Ran(run.time[ends], tip, "done", "", left, settings.step or np.nan)
+            tip, residual = self._tip(system, run.time[ends], q, settings)
+            return Ran(run.time[ends], tip, "done", "", residual, settings.step or np.nan)
 
         def varied() -> Iterator[tuple[Ran, Ran]]:
+            """Yield the runs of each pair, half a `width` before and behind this one."""
             still = np.zeros((len(tree.free), len(pairs)))
             changes = tangent(linear, scheme, steps, run, still, still, accelerations=False)[0]
             for change in np.moveaxis(width / 2 * changes[ends], -1, 0):

@@ -27,8 +27,9 @@ def _named(system: StateSpace, a: Floats, b: Floats, c: Floats, d: Floats, stem:
 
 
 def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
-    """Split a system into the part with chosen eigenvalues, which keeps D, and the rest, by Schur and Sylvester: that
-    parts multiple poles, too.
+    """Split a system into a part with the chosen eigenvalues, which keeps D, and a part with the others.
+
+    An ordered Schur form and Sylvester's equation for the coupling of its blocks do so for multiple poles, too.
     """
     schur, basis, count = scipy.linalg.schur(system.a, output="real", sort=lambda re, im=0.0: chosen(complex(re, im)))
     first, second = schur[:count, :count], schur[count:, count:]
@@ -126,6 +127,7 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
     see = scipy.linalg.solve_continuous_lyapunov(decaying.a.T, -decaying.c.T @ decaying.c)
 
     def root(gramian: Floats) -> Floats:
+        """A factor L of a gramian L Lᵀ, which may be singular."""
         value, vector = np.linalg.eigh((gramian + gramian.T) / 2)
         return vector * np.sqrt(np.maximum(value, 0))
 
@@ -156,8 +158,9 @@ def balanced_truncation(system: StateSpace, order: int) -> tuple[StateSpace, Flo
 def truncation(
     method: str, system: StateSpace, difference: StateSpace, states: int, hankel: Floats, band: tuple[float, float]
 ) -> Truncation:
-    """Record of a truncation that leaves out `states`, with the largest gains, over a band in rad/s, of the system and
-    of the `difference` that the truncation makes.
+    """Record of a truncation that leaves out `states`.
+
+    It has the largest gains of the system and of the `difference` that the truncation makes, over a band in rad/s.
     """
     start, end = band
     poles = np.abs(scipy.linalg.eigvals(difference.a))  # where its gain has peaks
@@ -165,7 +168,8 @@ def truncation(
     error = _largest_gains(difference, np.concatenate([[0.0, end], over, poles[poles <= end]]))
     peaks = _largest_gains(system, over)
     # A gain is compared with the largest of those between the same units.
-    to, by = (np.array([signal.unit for signal in signals]) for signals in (system.outputs, system.inputs))
+    to = np.array([signal.unit for signal in system.outputs])
+    by = np.array([signal.unit for signal in system.inputs])
     gain = np.array([[peaks[np.ix_(to == a, by == b)].max() for b in by] for a in to]).reshape(peaks.shape)
     return Truncation(method, states, hankel, start / (2 * np.pi), end / (2 * np.pi), error, gain)
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.control.commands import Commands, Vibration, check_goal, usual
+from gbeam.analysis.control.commands import Commands, Vibration, check_goal, reference_drives
 from gbeam.analysis.control.plants import DRIVES, Goal, Plant, Ran
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.steady.subject import subject_of
@@ -41,7 +41,7 @@ _BETTER = 0.9  # of the vibration before: a step that leaves more is the last
 
 
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
-    """True if an effort drives, and if what is driven slides."""
+    """Flags of a command: an effort drives, and what is driven slides."""
     hub = arguments.get("hub")
     if isinstance(hub, Hub):
         return hub.free, False
@@ -138,7 +138,7 @@ def shape_command(
     if not limit > 0:
         raise InputError("limit", f"is {limit:g}", "give a positive number")
     commands, vibration = Commands(plant, goal, pieces), Vibration.of(plant)
-    others = usual(commands, vibration)
+    others = reference_drives(commands, vibration)
     scale = float(np.mean(vibration.amplitude(commands.time, others["smooth-step"], np.ones(1))))
     design = _Design(commands, vibration, limit, robust, scale)
     inner = design.linear()
@@ -178,7 +178,7 @@ def shape_command(
 
 
 def _missed(ran: Ran, goal: Goal, name: str) -> tuple[str, ...]:
-    """Warning of a torque or force by which the run misses the goal; empty if it does not."""
+    """Warn if a run under a torque or force misses the goal, since the inertia changes on the way."""
     if ran.driven is None or ran.outcome != "done":
         return ()
     history = ran.driven[1] if goal.to_rate else ran.driven[0]
@@ -191,7 +191,10 @@ def _missed(ran: Ran, goal: Goal, name: str) -> tuple[str, ...]:
 
 
 class _Design:
-    """Least squares of the vibration left and of the roughness, among the commands that reach the goal."""
+    """Least-squares problem of the vibration left and of the roughness, among the commands that reach the goal.
+
+    The vibration is `left` times the coefficients plus `offset`, the roughness `rough` times these plus `rough_offset`.
+    """
 
     def __init__(self, commands: Commands, vibration: Vibration, limit: float, robust: float, scale: float) -> None:
         self.commands, self.limit, self.scale = commands, limit, scale
@@ -213,8 +216,8 @@ class _Design:
         return self.solved(self.left, self.offset, self.commands.particular)
 
     def solved(self, rows: Floats, offset: Floats, about: Floats) -> Floats:
-        """Coefficients c that minimise |rows c + offset|² and roughness, on the conditions, which `about` fulfils, and
-        within the limit; ComputationError if no command is.
+        """Coefficients c that minimise |rows c + offset|² and roughness, within the limit. `about` are coefficients
+        that reach the goal. ComputationError if no command within the limit does.
         """
         commands = self.commands
         a = np.concatenate([rows, self.rough]) @ commands.free
@@ -239,13 +242,13 @@ class _Design:
 
 
 def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
-    """Settings of a run of a command, and of some periods of the slowest mode after it."""
+    """Settings of a run that lasts for the command and for some periods of the slowest mode after it."""
     after = _PERIODS * 2 * np.pi / float(vibration.eigenvalue[0].imag)
     return ResponseSettings(duration + after, residual_from=duration, integrator="gauss", estimate=False, loads=False)
 
 
 def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
-    """The plant of a command, a hub with its beam or a joint of a system; InputError if they do not go together."""
+    """The plant of a command, a hub with its beam or a joint of a system. InputError if they do not go together."""
     system = subject_of(structure, None).system
     return Plant.on_hub(system, hub, point) if isinstance(hub, Hub) else Plant.of(system, hub, point)
 
@@ -271,7 +274,7 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
             if not k:
                 raise
             break  # the last step went too far
-        residual = _left(nominal, commands.goal.duration) / design.scale
+        residual = _departures(nominal, commands.goal.duration) / design.scale
         size = float(np.linalg.norm(residual))
         if size < least:
             better, best, least = size < _BETTER * least, inner, size
@@ -280,8 +283,10 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         if not better or k == _ROUNDS - 1:
             break
         slopes = [
-            (_left(more, commands.goal.duration) - _left(less, commands.goal.duration)) / width / design.scale
-            for less, more in varied
+            (_departures(after, commands.goal.duration) - _departures(before, commands.goal.duration))
+            / width
+            / design.scale
+            for before, after in varied
         ]
         # From derivatives along the free directions to those by coefficients.
         rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
@@ -294,8 +299,10 @@ def _within(progress: Progress, words: str) -> Progress:
     return lambda what, share: tell(progress, f"{words}, {what}", share)
 
 
-def _left(run: Ran, duration: float) -> Floats:
-    """Departures (m,) of the point from its mean after the command, scaled so that their norm is an amplitude, m."""
+def _departures(run: Ran, duration: float) -> Floats:
+    """Departures (m,) of the point from its mean after the command. They are scaled so that their norm is an amplitude,
+    m.
+    """
     tip = run.tip[run.time >= duration]
     return ((tip - tip.mean(axis=0)) * np.sqrt(2 / len(tip))).ravel()
 

@@ -30,8 +30,9 @@ Codes = Indices
 
 @dataclass(frozen=True)
 class History:
-    """Loads (t, 3) m/s² of an environment on a rigid specimen: `load` at the control point (in flight, root); `root`
-    and its `growth` (t, 3, 3) 1/s² give the loads at the other `ends` (p, 3) m.
+    """Loads (t, 3) m/s² of an environment on a rigid specimen: `load` at the control point, in flight at the root.
+
+    The load at the `root` and its gradient `growth` (t, 3, 3) 1/s² give the loads at the other `ends` (p, 3) m.
     """
 
     load: Floats
@@ -45,10 +46,10 @@ class History:
         return np.asarray(np.linalg.norm(self.load, axis=1))
 
     def spread(self, i: int) -> tuple[float, float]:
-        """Sizes of the load at the root, and at the end where it differs most, over that at the control point, less
-        one, at sample i; NaN without load.
+        """Relative differences of the load's size, at sample i, from that at the control point: at the root, and at the
+        end where it differs most. They are NaN without load.
         """
-        control, root = (float(np.linalg.norm(load[i])) for load in (self.load, self.root))
+        control, root = float(np.linalg.norm(self.load[i])), float(np.linalg.norm(self.root[i]))
         if not control > 0:
             return np.nan, np.nan
         ends = np.linalg.norm(self.root[i] + self.ends @ self.growth[i].T, axis=1) / control - 1
@@ -63,13 +64,14 @@ def judge(
     tolerance: float,
     tolerance_of: ToleranceOf,
 ) -> tuple[Accounting, PeakPair]:
-    """Account for a flight on a machine over a `span` of the flight's times, s, and compare the largest loads on a
-    specimen with these `ends`, on the machine over all of its run; NaN without ends.
+    """Account for a flight on a machine over a `span` of the flight's times, s, and compare the largest loads.
+
+    These are the largest at the `ends` of a specimen, on the machine over all of its run; NaN without ends.
     """
     positive("tolerance", tolerance, "of the flight's load")
     choice("tolerance_of", tolerance_of, TOLERANCE_OF)
     during = slice(*np.searchsorted(run.time, (span[0], np.nextafter(span[1], np.inf))))
-    flown, machine = (_part(base, during) for base in (run.flight, run.machine))
+    flown, machine = _part(run.flight, during), _part(run.machine, during)
     largest = PeakPair()
     if ends:
         largest = largest_pair(largest_load(run.time[during], flown, ends), largest_load(run.time, run.machine, ends))
@@ -114,9 +116,12 @@ def account(
     shares: Mapping[str, Floats] | None = None,
     span: tuple[float, float] | None = None,
 ) -> Accounting:
-    """Account for a flight's load over time (t,), from the first time to the last, or over a `span` that ends nearby,
-    s: its peaks, the stretches in which the machine's load differs by more than the tolerance, with reasons by its
-    `episodes` and its limits' `shares`, and loads beyond the flight's.
+    """Account for a flight's load over times (t,): its peaks, the stretches in which the machine does not follow, and
+    loads beyond the flight's.
+
+    The machine does not follow where its load differs by more than the tolerance. The reasons come from its `episodes`
+    and from the `shares` of its limits that are used. The account lasts from the first time to the last, or over a
+    `span` that ends nearby, s.
     """
     size, machine_size = flight.size, machine.size
     instant = tolerance_of == "instant"
@@ -127,8 +132,8 @@ def account(
     edges = np.concatenate([[begin], (time[1:] + time[:-1]) / 2, [end]])
     low = (size < above) & (idle > 0)
     limits = {} if shares is None else shares
-    missed = _apart(machine.load, flight.load) > allowed
-    held = np.zeros(len(time), bool) if target is None else _apart(target, flight.load) > allowed
+    missed = _distance(machine.load, flight.load) > allowed
+    held = np.zeros(len(time), bool) if target is None else _distance(target, flight.load) > allowed
     reasons = _reasons(time, low, held, episodes)
     for run in true_runs(missed & ~low):  # a stretch without a break has one reason
         kinds, counts = np.unique(reasons[run], return_counts=True)
@@ -145,7 +150,8 @@ def account(
     duration = end - begin
     lost = sum(stretch.end - stretch.start for stretch in stretches)
     floor = max(above, least)
-    most = np.maximum(size, idle)
+    needed = np.maximum(size, idle)  # a machine cannot make less than idle
+    most = needed + (tolerance * needed if instant else allowed)
     return Accounting(
         tolerance=tolerance,
         tolerance_of=tolerance_of,
@@ -158,17 +164,17 @@ def account(
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
-        overloads=tuple(_overloads(edges, time, size, machine_size, most + (tolerance * most if instant else allowed))),
+        overloads=tuple(_overloads(edges, time, size, machine_size, most)),
     )
 
 
-def _apart(load: Floats, other: Floats) -> Floats:
+def _distance(load: Floats, other: Floats) -> Floats:
     """Sizes (t,) of the difference of two loads (t, 3)."""
     return np.asarray(np.linalg.norm(load - other, axis=1))
 
 
 def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
-    """Reason (t,), an index of `_NAMES`, that holds at each time if the load is not followed then."""
+    """Codes (t,) of the reason for which the load is not followed at each time, if it is not: indices of `_NAMES`."""
     codes = np.full(len(time), _NAMES.index(_CORNER))
     for start, end, why in episodes:
         inside = (time >= start) & (time <= end)
@@ -181,7 +187,7 @@ def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float,
 
 
 def _runs(codes: Codes) -> Iterator[slice]:
-    """Yield the runs of equal codes that are not negative."""
+    """Yield the runs of equal codes, but for negative ones."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(codes)) + 1, [len(codes)]])
     for start, stop in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
         if codes[start] >= 0:
@@ -189,13 +195,15 @@ def _runs(codes: Codes) -> Iterator[slice]:
 
 
 def _widened(time: Floats, run: slice) -> slice:
-    """A run of samples with those shortly before and after it."""
+    """Extend a run of samples to those up to `_NEAR` before and after it."""
     first, last = time[run.start] - _NEAR, time[run.stop - 1] + _NEAR
     return slice(int(np.searchsorted(time, first)), int(np.searchsorted(time, last, side="right")))
 
 
 def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
-    """The reason in words; for a corner the limits that are used up around it, the longest first, if there are any."""
+    """The reason in words. For a corner they name the limits that are used up around it, those for the longest time
+    first.
+    """
     if reason != _CORNER:
         return reason
     return ", ".join(used_up(shares, around)[:_NAMED]) or _CORNER
@@ -211,11 +219,13 @@ def _peak(
     reason: str,
     shares: Mapping[str, Floats],
 ) -> LoadPeak:
-    """Compare the flight's peak at sample `top`, whose samples are `basin`, with the machine's largest load near it."""
+    """Compare the flight's peak at sample `top`, to which the samples `basin` belong, with the machine's largest load
+    near it.
+    """
     size, machine_size = flight.size[basin], machine.size[basin]
     peak = top - basin.start
-    (near,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)
-    i = near.start + int(np.argmax(machine_size[near]))
+    (around,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)
+    i = around.start + int(np.argmax(machine_size[around]))
     load, reproduced = float(size[peak]), float(machine_size[i])
     # Sizes at the times of either peak, directions at that of the machine's.
     aim = flight.load[basin.start + i] * (load / size[i])
@@ -234,7 +244,7 @@ def _peak(
 
 
 def _overloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Overload]:
-    """Yield the stretches in which the machine's load exceeds `most` (t,)."""
+    """Yield the stretches in which the machine's load exceeds `most` (t,), each with its largest excess."""
     for run in true_runs(machine_size > most):
         i = run.start + int(np.argmax((machine_size - most)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
@@ -247,13 +257,13 @@ Largest = tuple[float, float, str]  # m/s², s, place; "" if every point has the
 
 
 def beside_root(ends: Mapping[str, Floats]) -> Floats:
-    """Places (p, 3) m of the ends of a specimen but "the root"; NaN where there is none."""
+    """Places (p, 3) m of the ends of a specimen other than "the root"; one of NaN if there is no other."""
     places = np.array([place for name, place in ends.items() if name != "the root"]).reshape(-1, 3)
     return places if len(places) else np.full((1, 3), np.nan)
 
 
 def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: float = 0.0) -> Largest:
-    """Largest size of a base's load over time (t,) at points from the root; the base's point is at x = `origin`, m."""
+    """Largest size of a base's load over time (t,) at points from the root, whose x is `origin`, m, in the base."""
     away = np.array([-origin, 0.0, 0.0])
     loads = np.array([np.linalg.norm(moved(base, place + away).a_WO_B, axis=-1) for place in points.values()])
     place, i = np.unravel_index(int(np.argmax(loads)), loads.shape)
@@ -267,7 +277,10 @@ def largest_pair(flight: Largest, machine: Largest) -> PeakPair:
 
 
 def gradients(w_WB_B: Any, alpha_WB_B: Any) -> Any:
-    """Gradient G (..., 3, 3) 1/s² of the acceleration of a rigid body: a(r) = a(0) + G r; column one is 2020 (4)."""
+    """Gradient G (..., 3, 3) 1/s² of the acceleration of a rigid body: a(r) = a(0) + G r, G = α× + ω× ω×.
+
+    Its first column is 2020 (4).
+    """
     xp = namespace(w_WB_B, alpha_WB_B)
     (wx, wy, wz), (alx, aly, alz) = (xp.moveaxis(vector, -1, 0) for vector in (w_WB_B, alpha_WB_B))
     along_x = xp.stack([-(wy**2 + wz**2), wx * wy + alz, wx * wz - aly], axis=-1)

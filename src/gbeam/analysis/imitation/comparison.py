@@ -140,11 +140,8 @@ def compare(
     >>> print(f"{comparison.relative[2]:.2%}")
     0.26%
     """
-    limits, flown, spun = (
-        checked_limits(accept),
-        Quantities.of("flight", flight),
-        Quantities.of("centrifuge", centrifuge),
-    )
+    limits = checked_limits(accept)
+    flown, spun = Quantities.of("flight", flight), Quantities.of("centrifuge", centrifuge)
     if flown.points != spun.points:
         raise InputError("centrifuge", "is of another specimen than flight", "give two responses of one specimen")
     chosen = point or flown.farthest
@@ -171,8 +168,8 @@ def compare(
     difference = tip_actual - tip_flight
     root, shock = None, None
     if flown.root is not None and spun.root is not None and covered.any():
-        pairs = zip(flown.root, spun.root, strict=True)
-        history = RootHistory(*(each for a, b in pairs for each in (in_flight(a), b[during])))
+        (force_flown, moment_flown), (force_spun, moment_spun) = flown.root, spun.root
+        history = RootHistory(in_flight(force_flown), force_spun[during], in_flight(moment_flown), moment_spun[during])
         root = _root(covered, history, in_flight(flown.root_stress), spun.root_stress[during])
     weights = _weights(control, flown)
     sensors = {} if sensors is None else sensors
@@ -224,10 +221,10 @@ _ALIKE = 1e-3  # of the largest load: flights whose loads differ by less are one
 
 
 def _of_flight(run: Imitated, time: Floats, base: Base) -> bool:
-    """True if the flight that a machine imitates has the load of a base at its first times (t,), s."""
+    """True if the flight that a machine imitates has the load of a base at the first times (t,), s, of its motion."""
     load = base.a_WO_B[: len(time)]
-    known = interpolated(time, run.time, run.flight.a_WO_B)
-    return bool(np.abs(known - load).max() <= _ALIKE * np.abs(load).max())
+    imitated = interpolated(time, run.time, run.flight.a_WO_B)
+    return bool(np.abs(imitated - load).max() <= _ALIKE * np.abs(load).max())
 
 
 def _interpolated(time: Floats, times: Floats, base: Base) -> Base:
@@ -236,18 +233,21 @@ def _interpolated(time: Floats, times: Floats, base: Base) -> Base:
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:
+    """Largest absolute values (...) of histories (t, ...) over the times covered; NaN if there are none."""
     return np.abs(values[covered]).max(axis=0) if covered.any() else np.full(values.shape[1:], np.nan)
 
 
 def _rms(values: Floats, covered: Flags) -> Floats:
+    """Root mean squares (...) of histories (t, ...) over the times covered; NaN if there are none."""
     return np.sqrt(np.mean(values[covered] ** 2, axis=0)) if covered.any() else np.full(values.shape[1:], np.nan)
 
 
 def _statistics(
     time: Floats, covered: Flags, reference: Floats, actual: Floats, machine: Quantities, tip: int
 ) -> Statistics | None:
-    """Sizes at each station of the only body, and trend and vibration of the tip, whose number is `tip`; None if the
-    samples are too few, too far apart or over too short a time to part trend from vibration.
+    """Sizes at each station of the only body, and trend and vibration of the tip, whose number is `tip`.
+
+    None if the samples are too few, too far apart or over too short a time to separate trend and vibration.
     """
     body = machine.body
     if body is None or not body.frequencies.size or len(time) < _FEWEST or not covered.any():
@@ -255,13 +255,13 @@ def _statistics(
     step, cutoff = float(time[1] - time[0]), CUTOFF * float(body.frequencies[0]) / (2 * np.pi)
     if not 1 / (len(time) - 1) < cutoff * step < 0.4:
         return None
-    late = covered & ~(time < machine.response.residual_from)  # all if that is NaN
-    late = late if late.any() else covered
+    residual = covered & ~(time < machine.response.residual_from)  # all if that is NaN
+    residual = residual if residual.any() else covered
 
     def sizes(values: Floats, trend: Floats) -> Sizes:
         """Largest, root mean square, and half range of the residual vibration."""
-        left = (values - trend)[late]
-        return Sizes(_largest(values, covered), _rms(values, covered), np.ptp(left, axis=0) / 2)
+        vibration = (values - trend)[residual]
+        return Sizes(_largest(values, covered), _rms(values, covered), np.ptp(vibration, axis=0) / 2)
 
     slow, slow_spun = np.moveaxis(low_pass(np.stack([reference, actual], axis=1), step, cutoff), 1, 0)
     return Statistics(
@@ -279,8 +279,9 @@ def _statistics(
 
 
 def _load_difference(covered: Flags, machine: Quantities, gradient: Floats, tip: int) -> LoadDifference | None:
-    """Difference of the load along a straight beam by the gradient (t, 3) 1/s², and bounds of its effects; None of
-    other specimens, and without a control point on the beam.
+    """Difference of the load along a straight beam by its gradient (t, 3) 1/s², and bounds of its effects.
+
+    None for other specimens, and without a control point on the beam.
     """
     axes, body = machine.response.axes, machine.body
     influence = None if body is None else body.influence
@@ -309,16 +310,18 @@ def _load_difference(covered: Flags, machine: Quantities, gradient: Floats, tip:
 
 
 def _best_control_points(influence: Influence) -> tuple[float, float]:
-    """Control points at which a field g (x − x_c) across the beam leaves the root no moment, or the tip at rest."""
+    """Least and largest of the control points x_c at which a field g (x − x_c) across the beam leaves the root without
+    a moment, or the tip at rest.
+    """
     uniform = np.concatenate([influence.moment_uniform[1:], influence.tip_uniform[1:]])
     linear = np.concatenate([influence.moment_linear[1:], influence.tip_linear[1:]])
-    felt = uniform != 0  # a model may have no shapes along y
-    points = linear[felt] / uniform[felt]
+    answers = uniform != 0  # a model may have no shapes along y
+    points = linear[answers] / uniform[answers]
     return float(points.min()), float(points.max())
 
 
 def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_centrifuge: Floats) -> RootLoads:
-    """Largest root loads and stress in flight, on the machine, and of their difference."""
+    """Largest root loads and stress in flight and on the machine, and the largest of their difference."""
 
     def sizes(reference: Floats, actual: Floats) -> tuple[Floats, Floats, Floats]:
         return _largest(reference, covered), _largest(actual, covered), _largest(actual - reference, covered)
@@ -330,7 +333,7 @@ def _root(covered: Flags, history: RootHistory, stress_flight: Floats, stress_ce
 
 
 def _weights(control: Mapping[str, float] | None, run: Quantities) -> dict[str, float]:
-    """Shares of the control points by name; InputError if one is no point, or a weight is not positive."""
+    """Shares of the control points by name. InputError if one is no point, or a weight is not positive."""
     weights = {} if control is None else control
     for name, weight in weights.items():
         positive(f"control.{name}", weight, "(a weight)")
@@ -339,7 +342,7 @@ def _weights(control: Mapping[str, float] | None, run: Quantities) -> dict[str, 
 
 
 def _felt(run: Quantities, sensors: Mapping[str, Sensor]) -> Floats | None:
-    """Accelerations (t, p, 3) of all points, or readings at points with sensors; None if not known."""
+    """Accelerations (t, p, 3) of all points, or what their sensors read; None if they are not known."""
     if run.acceleration is None or not sensors:
         return run.acceleration
     felt = np.array(run.acceleration)
@@ -359,8 +362,9 @@ def _shock(
     sensors: Mapping[str, Sensor],
     run: Quantities,
 ) -> Shock | None:
-    """Shock response spectra by accelerations (t, p, 3) at the tip, or their weighted mean at control points; None if
-    samples are few.
+    """Shock response spectra of accelerations (t, p, 3): those at the tip, or their weighted mean at control points.
+
+    None if there are too few samples.
     """
     if len(time) < _FEWEST:
         return None
@@ -372,7 +376,9 @@ def _shock(
         point = run.index("point", name)
         pair = np.concatenate([reference[:, point], actual[:, point]], axis=1)
         mean += share * largest_riding_acceleration(pair, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
-    read = dict.fromkeys(sensors, ", as its sensor reads")
-    control = ", ".join(f"{name} ({100 * share:.3g} %{read.get(name, '')})" for name, share in weights.items())
-    control = control or (tip or "the tip") + (" (as its sensor reads)" if (tip or "tip") in sensors else "")
+    if weights:
+        words = {name: ", as its sensor reads" if name in sensors else "" for name in weights}
+        control = ", ".join(f"{name} ({100 * share:.3g} %{words[name]})" for name, share in weights.items())
+    else:
+        control = (tip or "the tip") + (" (as its sensor reads)" if (tip or "tip") in sensors else "")
     return Shock(QUALITY, frequency, mean[:, :3], mean[:, 3:], control=control)

@@ -25,8 +25,9 @@ class Cyclic(NamedTuple):
 
 
 def fatigue(flight: Quantities, machine: Quantities, at: str | None = None) -> Fatigue | None:
-    """Rainflow cycles of the stress in both runs at a named point, or where the stress ranges most in flight; None if
-    either run has no stress there, or another material.
+    """Rainflow cycles of the stress in both runs at a named point, or where the stress ranges most in flight.
+
+    None if either run has no stress there, or another material.
     """
     if at is None:
         candidates = places_of(flight.response)
@@ -40,15 +41,13 @@ def fatigue(flight: Quantities, machine: Quantities, at: str | None = None) -> F
         return None
     if not (np.isfinite(in_flight.stress).all() and np.isfinite(on_machine.stress).all()):
         return None
-    cycles = (
-        stress_cycles(run.response.time, each.stress) for run, each in ((flight, in_flight), (machine, on_machine))
-    )
-    flown, spun = cycles
+    flown = stress_cycles(flight.response.time, in_flight.stress)
+    spun = stress_cycles(machine.response.time, on_machine.stress)
     return Fatigue(in_flight.exponent, flown, spun, place)
 
 
 def places_of(response: Response) -> dict[str, Cyclic]:
-    """Stresses at the roots of beams, and where each material of a mesh is stressed most, by the place in words."""
+    """Stresses by their places in words: at the roots of beams, and where each material of a mesh is stressed most."""
     places, several = dict[str, Cyclic](), len(response.bodies) > 1
     for name, body in response.bodies.items():
         loads, solid = sections_of(body), body.solid
@@ -60,7 +59,7 @@ def places_of(response: Response) -> dict[str, Cyclic]:
 
 
 def cyclic_at(run: Quantities, at: str) -> Cyclic | None:
-    """Normal stress and exponent at a named point; None if the point is of no beam or mesh."""
+    """Normal stress and exponent at a named point; None if the point is neither on a beam nor on a mesh."""
     solid, loads, k = run.stressed("damage_at", at)
     if solid is not None:
         return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
@@ -75,17 +74,19 @@ def _of_section(loads: Loads, section: int) -> Cyclic:
 
 def _worst(solid: SolidStress, of: str) -> dict[str, Cyclic]:
     """Stress where each material of a mesh is stressed most, by the place in words; empty where that is not known."""
-    several = len(solid.materials) > 1
     if not solid.known:
         return {}
-    return {
-        f"where {of}{name if several else 'mesh' if of else 'it'} is stressed most": Cyclic(stress, float(exponent))
-        for name, stress, exponent in zip(solid.materials, solid.material_normal.T, solid.exponents, strict=True)
-    }
+    stresses = dict[str, Cyclic]()
+    for name, stress, exponent in zip(solid.materials, solid.material_normal.T, solid.exponents, strict=True):
+        noun = name if len(solid.materials) > 1 else "mesh" if of else "it"
+        stresses[f"where {of}{noun} is stressed most"] = Cyclic(stress, float(exponent))
+    return stresses
 
 
 def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
-    """Rainflow cycles of a stress (t,) Pa at times (t,) s, by its extremes between samples, largest ranges first."""
+    """Rainflow cycles of a stress (t,) Pa at times (t,) s, the largest ranges first. Its extremes are found between
+    samples.
+    """
     import rainflow
 
     rows = [row[:3] for row in rainflow.extract_cycles(turning_points(time, stress).tolist())]

@@ -16,7 +16,7 @@ import numpy as np
 
 from gbeam.analysis.imitation.accounting import largest_load, largest_pair
 from gbeam.analysis.imitation.comparison import CUTOFF, compare
-from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, Ways, bringing
+from gbeam.analysis.imitation.place_measures import Answers, Choice, Histories, Turn, Ways, turn_to_axis
 from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.simulation import simulate
@@ -72,7 +72,9 @@ def verify(
     answers: Answers,
     progress: Progress = None,
 ) -> tuple[Verification, ...]:
-    """Compare simulations of the flight and of machines, by the names of their control points; both cover the span."""
+    """Simulate the flight and machines, by the names of their control points, and compare each with the flight. Both
+    cover the span.
+    """
     settings = replace(settings, estimate=False)  # a verification states no errors
     mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 
@@ -110,14 +112,13 @@ def verify(
             free = Quantities.of(name, carried[motion]).displacement[:, tip]
             swing = of_tip - interpolated(response.time, carried[motion].time, free)
             swing -= low_pass(swing, step, cutoff)
-            vibration, moved = (
-                float(np.linalg.norm(history[:, across], axis=1).max(initial=0.0))
-                for history in (swing[compared], comparison.difference[comparison.covered])
-            )
+            difference = comparison.difference[comparison.covered]
+            vibration = float(np.linalg.norm(swing[compared][:, across], axis=1).max(initial=0.0))
+            moved = float(np.linalg.norm(difference[:, across], axis=1).max(initial=0.0))
         force, moment = np.nan, np.nan
         if comparison.root is not None:
-            root = comparison.root
-            force, moment = (float(load[across].max()) for load in (root.force_difference, root.moment_difference))
+            force = float(comparison.root.force_difference[across].max())
+            moment = float(comparison.root.moment_difference[across].max())
         verifications.append(Verification(name, float(place[0]), moved, vibration, moment, force))
     return tuple(verifications)
 
@@ -207,7 +208,7 @@ def place(
         first = trials.ranked()[0]
         refine(lambda width: trials(first.candidate.mounting, width, first.turn), tuple(choice.widths))
     if choice.between:
-        trials.turn_on()
+        trials.search_turn()
     ranked, before = trials.ranked(), trials.assess(current, at=np.array(current.place))
     best, specimen = ranked[0], trials.answers.specimen
     middle = np.where(trials.moved, specimen.extent.mean(axis=0), current.place)
@@ -215,10 +216,14 @@ def place(
     places = {"best": (best, np.array(best.candidate.place)), "current": (before, np.array(current.place))}
     places["middle"] = best, middle
     machines = {name: trial.centrifuge.altered(control_point=_written(at)) for name, (trial, at) in places.items()}
-    values, totals = (
-        {name: {m: h.size(at, total) for m, h in trial.histories.items()} for name, (trial, at) in places.items()}
-        for total in (False, True)
-    )
+
+    def sizes(total: bool) -> dict[str, dict[str, float]]:
+        """Sizes of all measures, by the places' names; in `total` with the error of the load."""
+        return {
+            name: {measure: history.size(at, total) for measure, history in trial.histories.items()}
+            for name, (trial, at) in places.items()
+        }
+
     return Placement(
         flight=names[0],
         centrifuge=names[1],
@@ -227,8 +232,8 @@ def place(
         best=best.candidate,
         options=tuple(trial.candidate for trial in ranked),
         current=before.candidate.control_point,
-        values=values,
-        totals=totals,
+        values=sizes(False),
+        totals=sizes(True),
         before=before.candidate,
         verifications=verify(system, flight, machines, settings, trials.answers, progress) if check and allowed else (),
         refused=tuple(trials.refused),
@@ -241,12 +246,12 @@ def place(
     )
 
 
-def usual(system: System) -> dict[Measure, float]:
+def default_weights(system: System) -> dict[Measure, float]:
     """Weights by default: the tip's displacement or, if nothing can be displaced, the load."""
     return {"tip" if len(system.tree.free) else "load": 1.0}
 
 
-def usual_turns(system: System) -> Ways:
+def default_turns(system: System) -> Ways:
     """Ways round by default: a beam's own, with its mountings, and right angles for other specimens."""
     beams = [body for body in system.flexible.values() if body.source is not None]
     return "own" if beams and len(system.bodies) == 1 else "right-angles"
@@ -268,7 +273,7 @@ class _Evaluated:
 
 
 class _Trials:
-    """The candidates evaluated so far; a call evaluates one more."""
+    """The candidates evaluated so far. A call evaluates one more."""
 
     def __init__(
         self,
@@ -300,8 +305,8 @@ class _Trials:
         self.reasons: list[InputError] = []
 
     def __call__(self, mounting: str, width: float, turn: Turn | None = None) -> tuple[float, float]:
-        """Total error at the best control point, and the largest share of a limit (0 if limits do not count); infinite
-        if the machine cannot be made.
+        """Evaluate a candidate, unless it has been. Return its total error at the best control point and the largest
+        share of a limit (0 if limits do not count); both are infinite if the machine cannot be made.
         """
         key, options = (mounting, width, turn), (mounting, width) if turn is None else (mounting, width, turn)
         if key not in self.evaluated:
@@ -316,8 +321,8 @@ class _Trials:
         candidate = self.evaluated[key].candidate
         return candidate.total_error, candidate.share if self.choice.limited else 0.0
 
-    def turn_on(self) -> None:
-        """Search for the turn with the least error, from the best candidate's on."""
+    def search_turn(self) -> None:
+        """Search for the turn with the least error, starting from the best candidate."""
         import scipy.optimize
         from scipy.spatial.transform import Rotation
 
@@ -327,7 +332,7 @@ class _Trials:
         def error(tilt: Floats) -> float:
             # About two axes of the module: a roll about axis 3 changes nothing.
             direction = (Rotation.from_rotvec([0.0, *tilt]) * begun).as_matrix()[0]
-            value, share = self(best.candidate.mounting, best.candidate.smoothing, bringing(direction))
+            value, share = self(best.candidate.mounting, best.candidate.smoothing, turn_to_axis(direction))
             return value if share <= 1 else np.inf
 
         simplex = TILT * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -335,7 +340,7 @@ class _Trials:
         scipy.optimize.minimize(error, np.zeros(2), method="Nelder-Mead", options=options)
 
     def ranked(self) -> list[_Evaluated]:
-        """Candidates from the best to the worst; those that exceed limits last, by their excess."""
+        """Candidates from the best to the worst. Those that exceed limits come last, by their excess."""
 
         def rank(trial: _Evaluated) -> tuple[float, float]:
             candidate = trial.candidate
@@ -354,6 +359,7 @@ class _Trials:
         judged = {name: weight for name, weight in self.weights.items() if weight}
 
         def size(x: Floats, total: bool = False) -> float:
+            """Weighted sum of the measures; in `total` with the load's error."""
             return sum(weight * histories[name].size(x, total) for name, weight in judged.items())
 
         def steepest(x: Floats) -> tuple[float, Floats]:

@@ -152,8 +152,10 @@ def choice_of(
 
 
 def turns_of(turn: Turn, ways: Ways) -> tuple[Turn, ...]:
-    """Turns to try, the scenario's own first, then those that bring other directions of the specimen along axis 3; of
-    opposite directions, which are the two mountings, one. Empty for the scenario's own alone.
+    """Turns to try: the scenario's own first, then those that bring other directions of the specimen along axis 3.
+
+    Of opposite directions, which are the two mountings, one is tried. There are none where the scenario's own is the
+    only way.
     """
     if ways == "own":
         return ()
@@ -163,12 +165,14 @@ def turns_of(turn: Turn, ways: Ways) -> tuple[Turn, ...]:
         direction = np.array(steps) / np.linalg.norm(steps)
         if (np.count_nonzero(steps) == 1 or ways == "any") and max(np.abs(along @ direction)) < 1 - SAME:
             along.append(direction)
-            turns.append(bringing(direction))
+            turns.append(turn_to_axis(direction))
     return tuple(turns)
 
 
-def bringing(direction: Floats) -> Turn:
-    """Shortest turn, a rotation vector in rad, that brings a direction (3,) of the specimen along x, as axis 3 lies."""
+def turn_to_axis(direction: Floats) -> Turn:
+    """Shortest turn, a rotation vector in rad, that brings a direction (3,) of the specimen along x, the direction of
+    axis 3.
+    """
     axis = np.cross(direction, [1.0, 0.0, 0.0])
     size = float(np.linalg.norm(axis))
     x, y, z = (axis / size * math.atan2(size, direction[0])).tolist() if size else (0.0, 0.0, 0.0)
@@ -178,7 +182,8 @@ def bringing(direction: Floats) -> Turn:
 @dataclass(frozen=True)
 class Histories:
     """Histories (t, ..., k) of a measure over the times compared: its answers to the load's error at the control point,
-    to the error of the load's growth, and to unit shifts of the control point (3, t, ..., k); its peak in flight.
+    to the error of the load's growth, and to unit shifts of the control point (3, t, ..., k). `scale` is its peak in
+    flight.
     """
 
     at_control_point: Floats
@@ -187,24 +192,29 @@ class Histories:
     scale: float
 
     def size(self, at: Floats, total: bool) -> float:
-        """Largest size over flight's peak, with the control point at a place (3,) m; `total` adds the load's error."""
+        """Largest size as a share of the flight's peak, with the control point at a place (3,) m. In `total` it
+        includes the load's error.
+        """
         return self.steepest(at, total)[0]
 
     def steepest(self, at: Floats, total: bool) -> tuple[float, Floats]:
-        """The value of `size`, and its slope (3,), 1/m, by the place of the control point."""
+        """The value of `size`, and its slope (3,), 1/m, with respect to the place of the control point."""
         values = self.growing - np.tensordot(at, self.uniform, 1) + (self.at_control_point if total else 0.0)
         sizes = np.linalg.norm(values, axis=-1)
         worst = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
-        slope = -self.uniform[(slice(None), *self._shared(worst))] @ values[worst] / max(float(sizes[worst]), 1e-300)
-        return float(sizes[worst]) / self.scale, slope / self.scale
+        largest = float(sizes[worst])
+        slope = -self.uniform[(slice(None), *self._shared(worst))] @ values[worst] / max(largest, 1e-300)
+        return largest / self.scale, slope / self.scale
 
     def _shared(self, worst: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Index into `uniform` for one into the values: axes along which it is broadcast have one entry."""
+        """Index into `uniform` for an index into the values. Axes along which `uniform` is broadcast have one entry."""
         return tuple(min(k, size - 1) for k, size in zip(worst, self.uniform.shape[1:-1], strict=True))
 
     @property
     def error(self) -> float:
-        """Largest size over flight's peak by the load's error alone, which no control point changes."""
+        """Largest size of the answer to the load's error alone, which no control point changes, as a share of the
+        flight's peak.
+        """
         return float(np.linalg.norm(self.at_control_point, axis=-1).max(initial=0.0)) / self.scale
 
 
@@ -213,8 +223,10 @@ MOST = 2_000_000  # numbers of a history of the load at all ends of a specimen, 
 
 class Answers:
     """Answers of a specimen to the loads of a flight and of centrifuges: quasi-static ones, and vibration in the mode
-    by which the flight displaces the tip most. Times at which the first centrifuge's target is not the flight's
-    load are left out of all: begin with the widest smoothing, which holds longest.
+    by which the flight displaces the tip most.
+
+    Times at which the first centrifuge's target is not the flight's load are left out for all. So begin with the widest
+    smoothing, which holds longest.
     """
 
     def __init__(self, system: System, flight: Flight, settings: ResponseSettings) -> None:
@@ -239,24 +251,28 @@ class Answers:
     def refuse_unfelt(self, weights: Mapping[Measure, float]) -> None:
         """Raise InputError if a measure with a weight is zero in flight."""
         specimen, loads = self.specimen, (self.load, self.growth)
-        known = {"root-shear": specimen.force, "root-moment": specimen.moment}
+        answers = {"root-shear": specimen.force, "root-moment": specimen.moment}
         if self.tip:
-            known |= dict.fromkeys(("vibration", "tip"), specimen.displacement[self.tip])
-        felt = [*(name for name, answer in known.items() if _largest(self._across(answer).at(*loads)) > 0), "load"]
+            answers |= dict.fromkeys(("vibration", "tip"), specimen.displacement[self.tip])
+        felt = [name for name, answer in answers.items() if _largest(self._across(answer).at(*loads)) > 0]
+        felt.append("load")
         for name, weight in weights.items():
             if weight and name not in felt:
-                raise InputError(
-                    "measure", f"is {name}, of which the flight makes none", f"choose of {', '.join(felt)}"
-                )
+                problem = f"is {name}, of which the flight makes none"
+                raise InputError("measure", problem, f"choose of {', '.join(felt)}")
 
     def _across(self, answer: Answer) -> Answer:
-        """The answer without its component along x of a straight beam, which is stiff that way."""
+        """The answer of a straight beam without its component along x, in which it is stiff; other answers as they
+        are.
+        """
         return answer.onto(np.diag([0.0, 1.0, 1.0])) if self.specimen.straight else answer
 
     def histories(
         self, flight: Flight, centrifuge: Centrifuge
     ) -> tuple[dict[str, Histories], tuple[float, float, float]]:
-        """Histories by measure, of those that are not zero in flight, and largest accelerations of the axes, rad/s²."""
+        """Histories by measure, but for those that are zero in flight, and the largest accelerations of the axes,
+        rad/s².
+        """
         axes, at_c = centrifuge.axes(self.time), centrifuge.at_control_point(self.time)
         # Times that the first machine leaves out count for none; at others, not to follow is an error.
         self.left_out = centrifuge.not_followed(self.time) if self.left_out is None else self.left_out
@@ -269,10 +285,10 @@ class Answers:
         specimen = self.specimen
 
         def histories(answer: Answer, shaped: Callable[[Floats], Floats], scale: float) -> Histories:
-            """Histories by an answer, whose values (t, ...) are `shaped` into those of the measure."""
-            parts = answer.at(error, 0 * growing), answer.at(0 * error, growing)
+            """Histories of an answer, whose values (t, ...) are `shaped` into those of the measure."""
+            at_c = shaped(answer.at(error, 0 * growing))
+            grown = shaped(answer.at(0 * error, growing))
             uniform = np.stack([shaped(answer.at(column, 0 * growing)) for column in columns])
-            at_c, grown = map(shaped, parts)
             return Histories(at_c, grown, uniform, scale)
 
         def quasi_static(answer: Answer) -> Histories:
@@ -290,18 +306,22 @@ class Answers:
         return {name: measure for name, measure in measures.items() if measure.scale > 0}, largest
 
     def _vibration(self, covered: Flags) -> Callable[[Floats], Floats]:
-        """Function that returns the vibration (t, 1) m about the trend by a force (t,) on the foremost mode."""
+        """Function that returns the vibration (t, 1) m of the foremost mode about its trend, from the force (t,) on
+        it.
+        """
         assert self.mode is not None
         frequency, damping = float(self.mode.frequency), float(self.mode.damping)
 
-        def moved(force: Floats) -> Floats:
+        def vibration(force: Floats) -> Floats:
             riding = displacement(force, frequency, damping, self.step) - force / frequency**2
             return np.asarray(self.reach * riding[covered, None])
 
-        return moved
+        return vibration
 
     def _loads(self, covered: Flags, error: Floats, growing: Floats, columns: Floats) -> Histories:
-        """Histories of the load at all ends of the specimen, at so many times that they fit in memory."""
+        """Histories of the load at all ends of the specimen. They are thinned out in time so that they fit in
+        memory.
+        """
         ends = np.array([*self.specimen.ends.values()])
         some = np.flatnonzero(covered)[:: max(1, math.ceil(3 * len(ends) * len(error) / MOST))]
         in_flight = self.load[some, None] + ends @ self.growth[some].swapaxes(1, 2)
@@ -310,5 +330,5 @@ class Answers:
 
 
 def _largest(values: Floats) -> float:
-    """Largest length of vectors (..., k); zero of none."""
+    """Largest norm of vectors (..., k); zero if there are none."""
     return float(np.linalg.norm(values, axis=-1).max(initial=0.0))

@@ -134,8 +134,10 @@ def axis_commands(motion: Centrifuge, sample: float) -> Commands:
     """
     (first, _), (begin, end) = motion.target.span, motion.extent
     still = motion.ends.start != "idle"
-    before, after = (float(time) / sample for time in (first - begin, end - first))
-    before, after = np.ceil(before - 1e-9), (np.ceil(after - 1e-9) if still else np.floor(after * (1 + 1e-12)))
+    # Samples before the flight's first time and after it.
+    before = np.ceil(float(first - begin) / sample - 1e-9)
+    after = float(end - first) / sample
+    after = np.ceil(after - 1e-9) if still else np.floor(after * (1 + 1e-12))
     refuse_more("sample", "samples", before + after, SAMPLES, 300.0, f"give {(end - begin) / SAMPLES:.2g} s or more")
     between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
     steps = np.arange(-int(before) * between, int(after) * between + 1)

@@ -25,9 +25,11 @@ UNKNOWN = math.nan, math.nan
 
 @dataclass(frozen=True)
 class Quantities:
-    """Displacements (t, p, 3) m of a specimen's points from their undeformed places relative to the base, absolute
-    accelerations (t, p, 3) m/s² of them, and force and moment (t, 3) of the `root` on the base, in the base's axes;
-    None where a run has no loads. `body` is the only one, where the base holds it by its root.
+    """Quantities of a run by which it is compared: displacements (t, p, 3) m of a specimen's points from their
+    undeformed places relative to the base, their absolute accelerations (t, p, 3) m/s², and force and moment (t, 3) of
+    the `root` on the base, in the base's axes.
+
+    The last two are None where a run has no loads. `body` is the only one, where the base holds it by its root.
     """
 
     response: Response
@@ -40,8 +42,8 @@ class Quantities:
 
     @classmethod
     def of(cls, where: str, response: Response) -> Quantities:
-        """Quantities of a response, given as the argument `where`; InputError if the ground rests, or loads are lacking
-        where bodies hang on joints.
+        """Quantities of a response, passed as the argument `where`. InputError if the ground rests, or if loads are
+        lacking where bodies hang on joints.
         """
         deforming = sum(body.q.shape[1] for body in response.bodies.values())
         away = np.any(response.place[0, -1]) or np.any(response.attitude[0, -1, 1:])  # of an only body the root
@@ -81,42 +83,54 @@ class Quantities:
 
     @property
     def farthest(self) -> str:
-        """Point whose displacement is compared where none is named: empty for the tip of the only body, else the one
-        that moves farthest from its place at the start.
+        """Point whose displacement is compared where none is named. It is empty for the tip of the only body, else the
+        point that moves farthest from its place at the start.
         """
         return "" if self.body is not None else self.points[int(self.response.largest.argmax())]
 
     def index(self, where: str, point: str) -> int:
-        """Return the number of a named point, with or without the name of the only body, the last where it is empty;
-        InputError at the keyword `where` if there is none.
+        """Return the number of a named point, with or without the name of the only body; that of the last one if the
+        name is empty. InputError at the keyword `where` if there is no such point.
         """
         if not point:
             return self.displacement.shape[1] - 1
-        only = [f"{name}." for name in self.response.bodies if len(self.response.bodies) == 1]
-        known = [each for name in only for each in (name + point, point.removeprefix(name)) if each in self.points]
-        return index_of(where, point if point in self.points else next(iter(known), point), self.points)
+        names = [point]
+        if len(self.response.bodies) == 1:
+            (body,) = self.response.bodies
+            names += [f"{body}.{point}", point.removeprefix(f"{body}.")]
+        existing = next((name for name in names if name in self.points), point)
+        return index_of(where, existing, self.points)
 
     def peaks(self, part: slice | Flags, point: int) -> dict[str, Peak]:
-        """Largest sizes over a part of the times, between steps, and their times, by name; `point` is that of "tip"."""
-        time, known = self.response.time[part], self._known(point)
+        """Largest sizes over a part of the times, and their times, by name. "tip" is the point of number `point`.
+
+        Peaks between steps, which the response knows over all of its run, are taken if they lie in the part.
+        """
+        time, recorded = self.response.time[part], self._recorded(point)
         force, moment = self.root or (None, None)
         histories = {"tip": self.displacement[:, point], "root_force": force, "root_moment": moment}
         if not self.response.q.shape[1]:
             del histories["tip"]  # a rigid one stays
         largest = dict[str, Peak]()
         for name, vectors in histories.items():
-            peak = _within(time, known[name].size) if name in known else None
-            largest[name] = peak or (UNKNOWN if vectors is None else _first(*vector_peaks(time, vectors[part])))
+            peak = _within(time, recorded[name].size) if name in recorded else None
+            if peak is None:
+                peak = UNKNOWN if vectors is None else _first(*vector_peaks(time, vectors[part]))
+            largest[name] = peak
         return largest | {"stress": max(self._stresses(time, part), key=_by_size, default=UNKNOWN)}
 
-    def _known(self, point: int) -> dict[str, VectorPeaks]:
-        """Peaks over all steps, by name, that the response has; `point` is that of "tip"."""
+    def _recorded(self, point: int) -> dict[str, VectorPeaks]:
+        """Peaks over all steps that the response has, by name. "tip" is the point of number `point`."""
         if self.body is None:
             most = self.response.maxima
             return {} if most is None else {"root_force": most.ground_force, "root_moment": most.ground_moment}
         moved, loads = self.body.peaks.displacement, self.body.peaks.loads
-        known = {} if moved is None else {"tip": moved[point]}
-        return known if loads is None else known | {"root_force": loads.root_force, "root_moment": loads.root_moment}
+        peaks = dict[str, VectorPeaks]()
+        if moved is not None:
+            peaks["tip"] = moved[point]
+        if loads is not None:
+            peaks |= {"root_force": loads.root_force, "root_moment": loads.root_moment}
+        return peaks
 
     def _stresses(self, time: Floats, part: slice | Flags) -> Iterator[Peak]:
         """Yield the largest stress of each body that has one, over a part of the times (t,), s."""
@@ -126,10 +140,11 @@ class Quantities:
                 yield largest(time, solid.von_mises[part, None]) if solid.known else UNKNOWN
             elif loads is not None and body.peaks.loads is not None:
                 stress = body.peaks.loads.stress
-                worst = int(np.argmax(stress.value))
-                yield _within(time, stress, worst) or largest(
-                    time, np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
-                )
+                peak = _within(time, stress, int(np.argmax(stress.value)))
+                if peak is None:
+                    sizes = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
+                    peak = largest(time, sizes)
+                yield peak
 
     @property
     def root_stress(self) -> Floats:
@@ -139,22 +154,25 @@ class Quantities:
 
     @property
     def yield_strength(self) -> float | None:
-        """Yield strength of the bodies with sections, Pa; None where they differ, or there are others with stress."""
+        """Yield strength of the bodies with sections, Pa. None where it differs between them, or other bodies have
+        stress, too.
+        """
         strengths = {loads.yield_strength for loads in map(sections_of, self.response.bodies.values()) if loads}
         return strengths.pop() if len(strengths) == 1 and not solids_of(self.response) else None
 
     @property
     def margin(self) -> float | None:
-        """Least margin on yield of the materials of solids; None where that of a body is not known."""
+        """Least margin on yield of the materials of solids; None where that of some body is not known."""
         solids = solids_of(self.response)
         if not all(solid.known for solid in solids) or any(map(sections_of, self.response.bodies.values())):
             return None
-        near = [solid.nearest_yield.margin for solid in solids if solid.nearest_yield is not None]
-        return min((margin for margin in near if margin is not None), default=None)
+        margins = [solid.nearest_yield.margin for solid in solids if solid.nearest_yield is not None]
+        return min((margin for margin in margins if margin is not None), default=None)
 
     def stress_at(self, where: str, point: str) -> Floats | None:
-        """Return the stress (t,) Pa at a named point, von Mises of a mesh, normal of a beam; None if the point is of
-        neither; InputError at the keyword `where` if there is no such point.
+        """Return the stress (t,) Pa at a named point: of a mesh von Mises', of a beam the normal stress.
+
+        None if the point belongs to neither. InputError at the keyword `where` if there is no such point.
         """
         solid, loads, k = self.stressed(where, point)
         if solid is not None:
@@ -162,22 +180,26 @@ class Quantities:
         return None if loads is None else loads.stress[:, k]
 
     def stressed(self, where: str, point: str) -> tuple[SolidStress | None, Loads | None, int]:
-        """Return the stress of the solid, or the loads of the sections, of the body that a named point belongs to, else
-        None, and the point's number there; InputError at the keyword `where` if there is no such point.
+        """Return the body's stress at a named point: that of its solid, or the loads of its sections, and the point's
+        number there.
+
+        Both are None if the body has neither. InputError at the keyword `where` if there is no such point.
         """
         body, name = self.body, self.points[self.index(where, point)]
         if body is None:
             owner, _, name = name.partition(".")
             body = self.response.bodies.get(owner)
-        if body is not None and body.solid is not None:
-            return (body.solid, None, body.solid.points.index(name)) if name in body.solid.points else (None, None, 0)
-        loads = None if body is None else sections_of(body)
-        names = () if body is None else (ROOT, *body.points)
-        return (None, loads, names.index(name)) if name in names else (None, None, 0)
+        if body is None:
+            return None, None, 0
+        if body.solid is not None:
+            points = body.solid.points
+            return (body.solid, None, points.index(name)) if name in points else (None, None, 0)
+        names = (ROOT, *body.points)
+        return (None, sections_of(body), names.index(name)) if name in names else (None, None, 0)
 
 
 def sections_of(body: BodyResponse) -> Loads | None:
-    """Loads of a body that has sections; None of other bodies, and without loads."""
+    """Loads of a body that has sections. None for other bodies, and without loads."""
     return None if body.loads is None or body.loads.fibre is None else body.loads
 
 
@@ -187,24 +209,28 @@ def solids_of(response: Response) -> list[SolidStress]:
 
 
 def largest(time: Floats, values: Floats) -> Peak:
-    """Largest of histories (t, k), known at samples alone, between them, and its time; NaN if one is not known."""
+    """Largest value of histories (t, k), and its time. They are known at samples alone and interpolated between them;
+    NaN if one is not known.
+    """
     if not np.isfinite(values).all():
         return UNKNOWN
     return _first(*maxima(time, values, *seven_point(time, values, near_maxima(time, values))))
 
 
 def _within(time: Floats, extremes: Extremes, k: Any = ()) -> Peak | None:
-    """A peak of all a run, the `k`-th of several, if it is known and lies in the part with times (t,), s."""
+    """A peak over all of a run, the `k`-th of several. None if it is not known, or lies outside the part with times
+    (t,), s.
+    """
     value, when = float(extremes.value[k]), float(extremes.time[k])
     return (value, when) if np.isfinite(value) and time[0] <= when <= time[-1] else None
 
 
 def _first(values: Floats, times: Floats) -> Peak:
-    """Largest of values (k,), with its time."""
+    """Largest of values (k,), and its time."""
     most = int(np.argmax(values))
     return float(values[most]), float(times[most])
 
 
 def _by_size(peak: Peak) -> float:
-    """Key of peaks by their sizes; one that is unknown may be the largest."""
+    """Sort key of peaks by their sizes. One that is unknown counts as the largest."""
     return math.inf if math.isnan(peak[0]) else peak[0]

@@ -35,11 +35,17 @@ class Answer(NamedTuple):
 
     @classmethod
     def of(cls, a: Floats, alpha: Floats, ww: Floats) -> Answer:
-        """Answer from values by unit accelerations, angular ones (3, ...) and products of rates (3, 3, ...)."""
+        """Make the answer from values by unit accelerations and unit angular accelerations (3, ...), and by unit
+        products of rates (3, 3, ...).
+
+        The growth G = α× + ω ωᵀ − ω² 1 has its antisymmetric part from α, and its symmetric part from ω.
+        """
         unit = np.eye(9).reshape(3, 3, 3, 3)
-        even, odd = ((unit + sign * unit.swapaxes(2, 3)) / 2 for sign in (1, -1))  # parts by rates and by α
-        turning = np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)
-        pairs = even - np.trace(even, axis1=2, axis2=3)[..., None, None] / 2 * np.eye(3)
+        symmetric_part = (unit + unit.swapaxes(2, 3)) / 2
+        odd = (unit - unit.swapaxes(2, 3)) / 2
+        turning = np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)  # α of each unit growth
+        trace = np.trace(symmetric_part, axis1=2, axis2=3)[..., None, None]
+        pairs = symmetric_part - trace / 2 * np.eye(3)  # ω ωᵀ of each
         return cls(a, np.tensordot(turning, alpha, 1) + np.tensordot(pairs, ww, 2))
 
     def onto(self, values: Any) -> Answer:
@@ -53,7 +59,7 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes of a specimen: circular frequencies (n,) rad/s, damping ratios (n,), forces on them (n,) and displacements
+    """Modes of a specimen: circular frequencies (n,) rad/s, damping ratios (n,), modal forces (n,), and displacements
     (p, 3, n) of its points by unit amplitudes.
     """
 
@@ -68,7 +74,9 @@ class Modes:
         return Modes(self.frequency[k], self.damping[k], force, self.shape[..., k])
 
     def foremost(self, point: int, a: Floats, growth: Floats) -> Modes:
-        """Return the slowest of the modes that displace a point most, statically, under loads (t, 3), (t, 3, 3)."""
+        """Return the mode that displaces a point most, statically, under loads (t, 3), (t, 3, 3). Among equal ones it
+        is the slowest.
+        """
         force = np.abs(self.force.at(a, growth)).max(axis=0)
         moved = np.linalg.norm(self.shape[point], axis=0) * force / self.frequency**2
         return self.one(int(np.argmax(moved >= (1 - ALIKE) * moved.max())))
@@ -76,8 +84,8 @@ class Modes:
 
 @dataclass(frozen=True)
 class Specimen:
-    """Answers of a specimen: force and moment on its base, displacement of its points by name, and modes, None if it is
-    rigid; `ends` are the places (3,) m, by name, at one of which the load is largest.
+    """Answers of a specimen to loads: force and moment on its base, displacement of its points by name, and modes,
+    which a rigid one does not have. `ends` are the places (3,) m, by name, at one of which the load is largest.
     """
 
     force: Answer
@@ -147,8 +155,9 @@ def _refuse_moved(system: System, times: Floats) -> None:
 
 
 def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
-    """Answers of a state of rest: forces on its coordinates, and force and moment on the ground. Thirteen motions of
-    the ground are evaluated: none, three of a, three of α, and six pairs of ω.
+    """Answers of a state of rest: forces on its coordinates, and force and moment on the ground.
+
+    Thirteen motions of the ground are evaluated: none, three of a, three of α, and six pairs of ω.
     """
     eye = np.eye(3)
     pairs = [eye[i] + (eye[j] if i != j else 0.0) for i, j in PAIRS]
@@ -162,10 +171,12 @@ def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
     rows, ground = local.tree.rows(y, yd, ydd, inputs)
 
     def answer(values: Floats) -> Answer:
-        left = values[0] - np.broadcast_to(values, (count, values.shape[-1]))
-        ww = np.zeros((3, 3, left.shape[-1]))
+        """Answer from the values (13, ...) in all motions. Those of two rates at once hold the squares of both."""
+        change = values[0] - np.broadcast_to(values, (count, values.shape[-1]))
+        ww = np.zeros((3, 3, change.shape[-1]))
         for k, (i, j) in enumerate(PAIRS):
-            ww[i, j] = ww[j, i] = left[7 + k] if i == j else (left[7 + k] - left[7 + i] - left[7 + j]) / 2
-        return Answer.of(left[1:4], left[4:7], ww)
+            product = change[7 + k] if i == j else (change[7 + k] - change[7 + i] - change[7 + j]) / 2
+            ww[i, j] = ww[j, i] = product
+        return Answer.of(change[1:4], change[4:7], ww)
 
     return answer(rows[:, local.tree.free]), answer(ground.force), answer(ground.moment)

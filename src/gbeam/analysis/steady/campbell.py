@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, percent, wrong_by
+from gbeam.analysis.accuracy.estimate import LIMIT, error_warning, percent, reference_model, relative_difference
 from gbeam.analysis.steady.frequency_errors import Richer, doubtful, unknown_errors
 from gbeam.analysis.steady.stability import first_lost_speed, turned
 from gbeam.analysis.steady.subject import Subject, subject_of
@@ -55,20 +55,22 @@ class _Speed(NamedTuple):
 
 
 def _alike(before: _Speed, after: _Speed) -> tuple[Floats, Floats]:
-    """MACs (k, l) of modes at two speeds, and these less what speaks against a pair: frequencies that are apart by more
-    than the speeds. Of a whirl that has changed its sense in between the conjugate is like the one before.
+    """MACs (k, l) of modes at two speeds, and scores of the pairs: the MACs, less a penalty for frequencies that differ
+    by more than the speeds.
+
+    A whirl may have changed its sense in between: then the conjugate mode is like the one before.
     """
     scores, macs = [], []
     step = abs(after.rate - before.rate) / (2 * np.pi) or 1.0
     for coordinates, frequency in ((after.coordinates, after.frequency), (after.coordinates.conj(), -after.frequency)):
-        apart = np.abs(before.frequency[:, None] - frequency) / step
+        difference = np.abs(before.frequency[:, None] - frequency) / step
         macs.append(mac(before.coordinates, coordinates, after.mass))
-        scores.append(macs[-1] - NEARNESS * apart / (1 + apart))
+        scores.append(macs[-1] - NEARNESS * difference / (1 + difference))
     return np.where(scores[0] >= scores[1], *macs), np.maximum(*scores)
 
 
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
-    """For each mode of `before` the index of the most similar one of `after`, −1 for none, and their MAC."""
+    """For each mode of `before` the index of the most similar one of `after`, or −1 if none is left, and their MAC."""
     macs, scores = _alike(before, after)
     match, value = matched(scores)[0], np.full(len(scores), np.nan)
     value[match >= 0] = macs[match >= 0, match[match >= 0]]
@@ -76,7 +78,9 @@ def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
 
 
 def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
-    """Speeds between two, by halving, such that the first `count` modes are recognised from each to the next."""
+    """Modes at speeds between two, by halving, so close that the first `count` modes are recognised from each speed to
+    the next.
+    """
     _, alike = _paired(low, high)
     if depth == 0 or np.nanmin(alike[:count], initial=1.0) > CONFIDENT:
         return []
@@ -85,8 +89,10 @@ def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count:
 
 
 def _tracked(speeds: Sequence[_Speed], kept: int) -> tuple[Floats, list[np.ndarray]]:
-    """Frequency, damping ratio and MAC (3, v, k) of the first modes from speed to speed, and which modes they are at
-    each, −1 where none resembles them. One that has ceased to oscillate goes on with one that begins to.
+    """Follow the first modes from speed to speed: frequency, damping ratio and MAC, (3, v, k), and their numbers at
+    each speed, −1 where none resembles them.
+
+    A mode that has ceased to oscillate goes on with one that begins to.
     """
     values, track = np.full((3, len(speeds), kept), np.nan), np.arange(kept)
     values[2, 0], index = 1.0, [track]
@@ -197,12 +203,13 @@ def campbell(
         except (ComputationError, np.linalg.LinAlgError):
             return math.nan
 
-    known = lost.outcome == "done"
-    limit = lost.value if known else lost.searched_to
+    decided = lost.outcome == "done"
+    limit = lost.value if decided else lost.searched_to
     critical = limit if limit is not None and limit > start else math.inf
-    path.ahead(system, (beyond := grid[grid > critical]).tolist())
+    beyond = grid[grid > critical]
+    path.ahead(system, beyond.tolist())
     # Short of a critical speed, where a frequency is zero, unless a speed beyond it is known and stable.
-    ends = len(beyond) > 0 and (not known or all(growth_at(rate) != 0.0 for rate in beyond.tolist()))
+    ends = len(beyond) > 0 and (not decided or all(growth_at(rate) != 0.0 for rate in beyond.tolist()))
     last = start + (critical - start) * (1 - 1e-6) if ends else end
 
     @cache  # crossings ask again for speeds beside them
@@ -240,9 +247,9 @@ def campbell(
         sound = np.flatnonzero(np.abs(rates / critical - 1) > 1 - SURE).tolist() or [0]
         richer = Richer(followed[sound[-1]].state)
         chosen = sorted({sound[0], sound[(len(sound) - 1) // 2], sound[-1]})
-        looked = [_errors(richer, followed[i].state, followed[i], index[i]) for i in chosen]
-        parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in looked]) for part in PARTS}
-        errors = replace(looked[0], **parts, theory=looked[-1].theory, growth=max(each.growth for each in looked))
+        judged = [_errors(richer, followed[i].state, followed[i], index[i]) for i in chosen]
+        parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in judged]) for part in PARTS}
+        errors = replace(judged[0], **parts, theory=judged[-1].theory, growth=max(e.growth for e in judged))
         crossings = [
             replace(crossing, errors=crossing_errors(crossing, mode, slope, richer, point_at))
             for crossing, mode, slope in met
@@ -251,8 +258,9 @@ def campbell(
     doubts = subject.doubts(name, fast or None) if subject.body else lost.warnings
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
-    if (more := len(coarse[-1].frequency) - len(coarse[0].frequency)) > 0:
-        begun = "a motion begins" if more == 1 else f"{more} motions begin"
+    added = len(coarse[-1].frequency) - len(coarse[0].frequency)
+    if added > 0:
+        begun = "a motion begins" if added == 1 else f"{added} motions begin"
         warnings += (f"{begun} to oscillate as it turns faster, and is not followed from {start:g} rad/s: begin later",)
     if lost.message:
         warnings += (lost.message,)
@@ -278,10 +286,12 @@ def campbell(
 
 
 def _stretches(rates: Sequence[float], growth_at: Callable[[float], float]) -> tuple[Unstable, ...]:
-    """Stretches of speed, among ascending ones, rad/s, in which something grows or there is no equilibrium."""
+    """Stretches of speed in which something grows or there is no equilibrium, among ascending speeds, rad/s. Their ends
+    are found by halving.
+    """
 
     def end(low: float, high: float) -> float:
-        """Speed between two at which it is stable below and not above, or the other way round."""
+        """Speed between two at which stability begins or ends."""
         stable = growth_at(low) == 0.0
         for _ in range(ENDS):
             middle = (low + high) / 2
@@ -291,7 +301,8 @@ def _stretches(rates: Sequence[float], growth_at: Callable[[float], float]) -> t
     stretches = []
     for stable, group in groupby(range(len(rates)), key=lambda i: growth_at(rates[i]) == 0.0):
         if not stable:
-            first, *_, last = [*group] * 2
+            indices = [*group]
+            first, last = indices[0], indices[-1]
             start = rates[0] if first == 0 else end(rates[first - 1], rates[first])
             stop = rates[-1] if last == len(rates) - 1 else end(rates[last], rates[last + 1])
             growth = np.array([growth_at(rates[i]) for i in range(first, last + 1)])
@@ -300,20 +311,26 @@ def _stretches(rates: Sequence[float], growth_at: Callable[[float], float]) -> t
 
 
 def _framed(speeds: Sequence[_Speed], index: Sequence[np.ndarray]) -> dict[str, Any]:
-    """Fields that say the frame of followed frequencies, with those in the ground frame where any is known."""
-    whirl, known = speeds[-1].state.whirl, np.full((len(speeds), len(index[0])), np.nan)
+    """Fields that say in which frame the followed frequencies are, with those in the ground frame where any is known.
+
+    They are empty for frequencies in the ground frame.
+    """
+    whirl, in_ground = speeds[-1].state.whirl, np.full((len(speeds), len(index[0])), np.nan)
     if whirl is None or not whirl.turning:
         return {}
     if np.isfinite(whirl.in_ground(speeds[-1].frequency, speeds[-1].modes)).any():
-        for row, speed, track in zip(known, speeds, index, strict=True):
+        for row, speed, track in zip(in_ground, speeds, index, strict=True):
             modes, frequency, whirl = speed.modes[:, track], speed.frequency[track], speed.state.whirl
             values = frequency if whirl is None else whirl.in_ground(frequency, modes)
             row[:] = np.where(track >= 0, values, np.nan)
-    return {"frame": "turning", "ground_frequency": known if np.isfinite(known).any() else np.zeros((0, 0))}
+    known = np.isfinite(in_ground).any()
+    return {"frame": "turning", "ground_frequency": in_ground if known else np.zeros((0, 0))}
 
 
 def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
-    """Errors of the followed modes at one speed, by their indices `track`; NaN for those that no longer oscillate."""
+    """Errors of the followed modes at one speed, by their indices `track` there. They are NaN for modes that no longer
+    oscillate.
+    """
     oscillating = track >= 0
     chosen = track[oscillating]
     value = 2j * np.pi * speed.frequency[chosen]
@@ -333,7 +350,9 @@ def _crossings(
     track: int,
     order: int,
 ) -> list[tuple[Crossing, Complex, float]]:
-    """Crossings of a followed mode and an engine order, each with the mode (n,) and its frequency's slope there."""
+    """Crossings of a followed mode with an engine order. Each has the mode (n,) and the slope of its frequency
+    there.
+    """
     from scipy.optimize import brentq
 
     gap = frequency - order * rates / (2 * np.pi)
@@ -343,7 +362,7 @@ def _crossings(
         mode = speeds[i]._replace(coordinates=speeds[i].coordinates[k], frequency=speeds[i].frequency[k])
 
         def difference(rate: float, mode: _Speed = mode) -> float:
-            """Frequency of the mode most like this one, less that of the order, Hz."""
+            """Frequency of the mode most like this one, minus that of the order, Hz."""
             speed = modes_at(rate)
             like = int(_alike(mode, speed)[1].argmax())
             return float(speed.frequency[like] - order * rate / (2 * np.pi))
@@ -364,42 +383,44 @@ def _crossings(
 def crossing_errors(
     crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], Any]
 ) -> ErrorEstimate:
-    """Errors of a crossing's speed, by those at which richer models' modes most like `mode` (n,) meet the same order;
-    infinite if they do not meet it near.
+    """Errors of a crossing's speed, from the speeds at which richer models' modes most like `mode` (n,) meet the same
+    order.
+
+    They are infinite if the modes do not meet it nearby.
     """
     speed, order = crossing.speed, crossing.order
 
     def gaps(rate: float) -> list[float]:
-        """Frequency less order × rate, rad/s, of the same model with more shapes, the exact one, and coarser meshes."""
+        """Frequency minus order × rate, rad/s: of this model with more shapes, the exact one, and a coarser mesh."""
         return [float(frequency[0]) - order * rate for frequency in richer.references(point_at(rate), mode[None])[:3]]
 
     first = gaps(speed)
 
     def root(which: int) -> float:
-        """Speed of the crossing by one of these models: a Newton step with the judged model's slope and, if that is
+        """Speed of the crossing in one of these models: a Newton step with the judged model's slope and, if that is
         long, a secant step.
         """
-        near = speed - first[which] / (slope - order)
-        if not 0 < near < math.inf or abs(near / speed - 1) < LIMIT:
-            return near if near > 0 else math.inf
+        newton = speed - first[which] / (slope - order)
+        if not 0 < newton < math.inf or abs(newton / speed - 1) < LIMIT:
+            return newton if newton > 0 else math.inf
         try:
-            second = gaps(near)[which]
+            second = gaps(newton)[which]
         except ComputationError:
             return math.inf
-        better = near - second * (near - speed) / (second - first[which])
-        return better if 0 < better < math.inf else math.inf
+        secant = newton - second * (newton - speed) / (second - first[which])
+        return secant if 0 < secant < math.inf else math.inf
 
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
-    model = richer.of_model(apart(same, exact))
-    estimate = ErrorEstimate(0.0, apart(speed, same), model, total=apart(speed, exact))
+    model = richer.of_model(relative_difference(same, exact))
+    estimate = ErrorEstimate(0.0, relative_difference(speed, same), model, total=relative_difference(speed, exact))
     share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
-    mesh = math.nan if richer.rough is None else apart(root(2), speed)
+    mesh = math.nan if richer.rough is None else relative_difference(root(2), speed)
     return estimate.adding(beam_theory=share * order / abs(slope - order), mesh=mesh)
 
 
 def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:
-    """Warn of crossings whose speeds are wrong by more than one in a hundred."""
+    """Warn of crossings whose speeds are wrong by more than 1 %."""
     above = [crossing for crossing in crossings if crossing.errors.total > LIMIT]
     if not above:
         return ()
@@ -408,10 +429,10 @@ def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str,
     if len(above) > 1:
         where += f", and {len(above) - 1} more where modes meet multiples,"
     if math.isinf(worst.errors.total):
-        whose = fuller(worst.errors)
+        whose = reference_model(worst.errors)
         return (f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of {whose}'s",)
     size = percent(worst.errors.total) + (" at most" if len(above) > 1 else "")
-    return (wrong_by(f"the speed at which {where}", size, worst.errors, theory),)
+    return (error_warning(f"the speed at which {where}", size, worst.errors, theory),)
 
 
 _SAMPLES = 501

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.beam_theory import WORDS, causes, described
-from gbeam.analysis.accuracy.estimate import LIMIT, MORE_SHAPES, percent, wrong_by
+from gbeam.analysis.accuracy.estimate import LIMIT, MORE_SHAPES, error_warning, percent
 from gbeam.analysis.system.rest import transfer
 from gbeam.analysis.system.richer import (
     Directions,
@@ -41,7 +41,7 @@ SHOWN = 3  # frequencies that the model lacks, named at most
 
 
 def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
-    """Warn of frequencies that are wrong by more than one in a hundred, and of modes that the model lacks."""
+    """Warn of frequencies that are wrong by more than 1 %, of motions that grow, and of modes that the model lacks."""
     warnings = []
     if errors.growth:
         warnings.append(f"not stable with more shapes: a motion grows with {errors.growth:.4g} 1/s; {MORE_SHAPES}")
@@ -50,17 +50,19 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
         worst = int(above[errors.total[above].argmax()])
         modes = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
         parts = ErrorEstimate(**{part: float(getattr(errors, part)[worst]) for part in PARTS})
-        size = percent(float(errors.total[worst])) + " at most" * (len(above) > 1)
-        warnings.append(wrong_by(f"the frequency of {modes}", size, parts, errors.theory))
+        size = percent(float(errors.total[worst])) + (" at most" if len(above) > 1 else "")
+        warnings.append(error_warning(f"the frequency of {modes}", size, parts, errors.theory))
     if errors.unseen:
         named = ", ".join(f"{frequency:.4g}" for frequency in errors.unseen[:SHOWN])
-        more = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
-        warnings.append(f"there are modes of bending and twist at {named} Hz{more} besides: {TORSION}")
+        others = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
+        warnings.append(f"there are modes of bending and twist at {named} Hz{others} besides: {TORSION}")
     return tuple(warnings)
 
 
 class ByTheory(NamedTuple):
-    """Errors (k,) by the theory of slender beams, causes of the largest, and frequencies, Hz, that it lacks."""
+    """Errors (k,) by the theory of slender beams, causes of the largest in words, and frequencies, Hz, that the theory
+    does not show.
+    """
 
     shares: Floats
     words: str
@@ -68,14 +70,16 @@ class ByTheory(NamedTuple):
 
 
 class More(NamedTuple):
-    """A system with more shapes, and the new names there of coordinates that are renamed."""
+    """A system with more shapes. `renamed` has the new names of those coordinates whose names have changed."""
 
     model: System
     renamed: Mapping[str, str]
 
 
 class Richer:
-    """Richer models than a steady state's: exact or the same with more shapes, thick beams; and with coarser meshes."""
+    """Richer models than that of a steady state, which judge it: the same with more shapes, the exact one, thick beams,
+    and coarser meshes.
+    """
 
     def __init__(self, state: SteadySystem) -> None:
         of = state.system
@@ -95,7 +99,8 @@ class Richer:
         frequency = np.abs(eigenvalue)
         same, exact, rough, growth = self.references(state, coordinates, gyroscopic=gyroscopic)
         by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
-        shapes, model, total = (np.abs(a / b - 1) for a, b in ((frequency, same), (same, exact), (frequency, exact)))
+        shapes, model = np.abs(frequency / same - 1), np.abs(same / exact - 1)
+        total = np.abs(frequency / exact - 1)
         mesh = np.abs(rough / frequency - 1)
         total = total + np.nan_to_num(by_theory.shares) + (0.0 if self.rough is None else mesh)
         note = left_unjudged(state.system)
@@ -107,43 +112,47 @@ class Richer:
         )
 
     def of_model(self, share: Any) -> Any:
-        """Share of an error that the model has; NaN where no body has another model."""
+        """The share of an error that is the model's; NaN where no body has another model."""
         return np.nan * share if self.one_model else share
 
     def references(
         self, state: Any, coordinates: Complex, *, gyroscopic: bool = True
     ) -> tuple[Floats, Floats, Floats, float]:
-        """Circular frequencies (k,) of the modes most like these (k, n) in three models: the same with more shapes, the
-        exact one, and one with coarser meshes; NaN if a model is lacking or has no equilibrium. And the rate, 1/s, at
-        which a motion grows in the exact one; zero where none does.
+        """Circular frequencies (k,) of the modes most like these (k, n) in three other models.
+
+        The models are the same with more shapes, the exact one, and one with coarser meshes; NaN if one is lacking or
+        has no equilibrium. Last comes the rate, 1/s, at which a motion grows in the exact one; zero where none does.
         """
         growth = 0.0
 
         def reference(richer: More | None) -> Floats:
             nonlocal growth
-            none = np.full(len(coordinates), np.nan)
+            unknown = np.full(len(coordinates), np.nan)
             if richer is None:
-                return none
+                return unknown
             try:
                 other = transfer(state, richer.model)
                 moving = other.vibrations(gyroscopic=gyroscopic)
             except (ComputationError, np.linalg.LinAlgError):
-                return none
+                return unknown
             if richer is self.exact:
                 growth = float(moving.growing.real.max(initial=0.0))
             rate, modes = moving.frequency, moving.modes[other.first :].T
             if not rate.size:
-                return none
+                return unknown
             lifted = among([richer.renamed.get(name, name) for name in state.names], other.names, coordinates)
             mass = other.linear.mass[state.first :, state.first :]
             return np.asarray(rate[mac(lifted, modes, mass).argmax(axis=1)])
 
         exact = reference(self.exact)
-        return exact if self.same is self.exact else reference(self.same), exact, reference(self.rough), growth
+        same = exact if self.same is self.exact else reference(self.same)
+        return same, exact, reference(self.rough), growth
 
     def by_theories(self, of: System, state: Any = None) -> tuple[list[System], dict[str, Floats]]:
-        """The system with slender beams, with thick ones, and with thick ones and plate action; and the stiffness
-        (n, n) of plate action by beam, bent as in a state, by default little.
+        """The system with slender beams, with thick ones, and with thick ones and plate action.
+
+        Besides, the stiffness (n, n) of plate action by beam. It is that of beams bent as in a state, by default
+        hardly.
         """
         variants, plates = [], dict[str, Floats]()
         for name, theory in self.theories.items():
@@ -154,32 +163,33 @@ class Richer:
         return [with_beams(of, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
 
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
-        """Errors of the frequencies of modes (k, n) by the theory of slender beams; NaN if not known."""
+        """Errors of the frequencies of modes (k, n) by the theory of slender beams; NaN if they are not known."""
         k = len(coordinates)
         if not self.theories:
             return ByTheory(np.full(k, np.nan), "", ())
         models, plates = self.by_theories(point.system, point)
         try:
             states = [transfer(point, model) for model in models]
-            (slender, shape), (thick, deep), (plated, flat) = (
-                _oscillating(state, gyroscopic=gyroscopic) for state in states
-            )
+            by_model = [_oscillating(state, gyroscopic=gyroscopic) for state in states]
         except (ComputationError, np.linalg.LinAlgError):
             return ByTheory(np.full(k, np.nan), "", ())
+        # Frequencies, and modes in coordinates of each model.
+        (slender, shape), (thick, deep), (plated, flat) = by_model
         of_slender, of_thick = states[:2]
         mass = of_thick.linear.mass[point.first :, point.first :]
         mode = among(point.names, of_thick.names, coordinates)
         shape = among(of_slender.names, of_thick.names, shape)
         chosen = mac(mode, shape, mass).argmax(axis=1)
-        looked = slice(None, chosen.max(initial=-1) + 1)
-        like, like_plated = (matched(mac(shape[looked], other, mass))[0] for other in (deep, flat))
+        lower = slice(None, chosen.max(initial=-1) + 1)
+        like = matched(mac(shape[lower], deep, mass))[0]
+        like_plated = matched(mac(shape[lower], flat, mass))[0]
         pairs = (thick, like), (plated, like_plated)
         shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
         known = [of_thick.names.index(name) for name in of_slender.names]
         bending = deep[:, known]
         energy = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(known, known)], bending).real
         unmatched = np.setdiff1d(np.arange(len(thick)), like)
-        unseen = [j for j in unmatched if energy[j] > BENT and thick[j] < slender[looked].max(initial=0.0)]
+        unseen = [j for j in unmatched if energy[j] > BENT and thick[j] < slender[lower].max(initial=0.0)]
         worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
         words = self.in_words(of_slender, of_thick, mode[worst], slender[chosen[worst]], plates)
         return ByTheory(shares, words, tuple(float(thick[j]) / (2 * np.pi) for j in unseen))
@@ -187,21 +197,23 @@ class Richer:
     def in_words(
         self, slender: Steady, thick: Steady, mode: Complex, rate: Floats, plates: Mapping[str, Floats]
     ) -> str:
-        """Causes of the beam theory's error in a mode (1, n) at a rate (1,) rad/s, in words, by its residual in the
-        equations of thick beams beyond that of slender ones.
+        """Causes of the beam theory's error in a mode (1, n) at a rate (1,) rad/s, in words.
+
+        They follow from its residual in the equations of thick beams beyond that in those of slender ones.
         """
-        known = np.ix_(*[[thick.names.index(name) for name in slender.names]] * 2)
-        left = np.zeros_like(mode)
-        for more, less, factor in zip(thick.linear, slender.linear, (-(rate**2), 1j * rate, np.ones(1)), strict=False):
-            beyond = np.array(more[thick.first :, thick.first :])
-            beyond[known] -= less[slender.first :, slender.first :]
-            left += factor[:, None] * (mode @ beyond.T)
+        shared = np.ix_(*[[thick.names.index(name) for name in slender.names]] * 2)
+        residual = np.zeros_like(mode)
+        factors = -(rate**2), 1j * rate, np.ones(1)  # of M, C and K
+        for of_thick, of_slender, factor in zip(thick.linear, slender.linear, factors, strict=False):
+            difference = np.array(of_thick[thick.first :, thick.first :])
+            difference[shared] -= of_slender[slender.first :, slender.first :]
+            residual += factor[:, None] * (mode @ difference.T)
         energies, by_beam = dict[str, float](), dict[str, dict[str, float]]()
         for name, theory in self.theories.items():
             columns = deforming(thick.names, name)
             p = mode[:, columns]
             energies[name] = float(np.einsum("ti,ij,tj->", p.conj(), theory.thick.coefficients.stiffness, p).real)
-            by_beam[name] = causes(theory, p, left[:, columns], p @ plates[name])
+            by_beam[name] = causes(theory, p, residual[:, columns], p @ plates[name])
         total = sum(energies.values()) or 1.0
         merged = dict.fromkeys(WORDS, 0.0)
         for name, shares in by_beam.items():
@@ -211,28 +223,29 @@ class Richer:
 
 
 def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Complex:
-    """Modes (k, n) in coordinates called `names`, in the coordinates `others`, which include these."""
+    """Express modes (k, n) in coordinates called `names` by the coordinates `others`, which include these."""
     lifted = np.zeros((len(modes), len(others)), dtype=complex)
     lifted[:, [others.index(name) for name in names]] = modes
     return lifted
 
 
 def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
-    """Frequencies (k,) Hz of the oscillating poles about a steady state, ascending, and their errors."""
+    """Frequencies (k,) Hz of the oscillating poles about a steady state, in ascending order, and their errors."""
     moving = state.moving
     errors = Richer(state).errors(state, moving.value, moving.modes[state.first :].T)
     return moving.frequency / (2 * np.pi), errors
 
 
 def unknown_errors(system: System, count: int) -> FrequencyErrors | None:
-    """NaN for the errors of `count` frequencies, with the reason; None if there is no reason."""
+    """Errors of `count` frequencies that are NaN, with the reason why they are unknown; None if there is no reason."""
     note, unknown = left_unjudged(system), np.full(count, np.nan)
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 
 def _with_more(state: SteadySystem, *, exact: bool) -> More:
-    """The model of a steady state with more shapes, of its own kinds or exact; a beam alone, which turns about one axis
-    at most, gets none across a plane in which it has none.
+    """The model of a steady state with more shapes, of its own kinds or exact.
+
+    A beam alone, which turns about one axis at most, gets none in a plane in which it has none.
     """
     system, along = state.system, dict[str, Directions]()
     bases = state.solution.bases(judged_bodies(system))
@@ -244,6 +257,8 @@ def _with_more(state: SteadySystem, *, exact: bool) -> More:
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:
-    """Circular frequencies (k,) of the oscillating modes, ascending, and their coordinates (k, n) of bodies."""
+    """Circular frequencies (k,) of the oscillating modes, in ascending order, and the modes (k, n) in coordinates of
+    bodies.
+    """
     moving = state.vibrations(gyroscopic=gyroscopic)
     return moving.frequency, moving.modes[state.first :].T

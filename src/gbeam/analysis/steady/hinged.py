@@ -18,8 +18,10 @@ CLOSE, MOST = 1e-12, 60  # corrections of rate and acceleration: of their sizes,
 
 def turned_by_effort(system: System, joint: str, time: float) -> Drive:
     """Drives of a system that turns steadily at a time, s, about the first hinge on the ground, which nothing else
-    holds: its rate has the angular momentum of effort and damper since time zero, its acceleration is that by the
-    effort of the time. ComputationError where none is found.
+    holds.
+
+    Its rate has the angular momentum of effort and damper since time zero, its acceleration is that by the effort of
+    the time. ComputationError where no such state is found.
     """
     ((angle, effort),) = system.joints[joint].efforts.items()
     drive = Drive(None, time, f"{joint}.{angle}", rate=0.0)
@@ -27,8 +29,8 @@ def turned_by_effort(system: System, joint: str, time: float) -> Drive:
     momentum = _momentum(system, joint, inertia_along(undeformed(system).point, k), time)
     for _ in range(MOST):
         point, rate = steady(system, drive).point, drive.rate or 0.0
-        left, inertia = point.tree(point.y, point.yd, point.ydd, point.inputs)[k], inertia_along(point, k)
-        step = momentum / inertia - rate, -float(left) / inertia
+        residual, inertia = point.tree(point.y, point.yd, point.ydd, point.inputs)[k], inertia_along(point, k)
+        step = momentum / inertia - rate, -float(residual) / inertia
         drive = replace(drive, rate=rate + step[0], faster=drive.faster + step[1])
         # The bodies' own inertia hardly depends on their shape: the step of a rigid system converges fast.
         if abs(step[0]) <= CLOSE * (1 + abs(rate)) and abs(step[1]) <= CLOSE * (1 + abs(drive.faster)):
@@ -38,14 +40,17 @@ def turned_by_effort(system: System, joint: str, time: float) -> Drive:
 
 
 def inertia_along(point: Point, k: int) -> float:
-    """Inertia, kg m² or kg, of all that moves along the k-th free coordinate of a state."""
+    """Inertia, kg m² or kg, that a unit acceleration of the k-th free coordinate of a state moves."""
     faster = point.ydd + np.equal(np.arange(len(point.y)), k)
-    moved, still = (point.tree(point.y, point.yd, each, point.inputs) for each in (faster, point.ydd))
-    return float((moved - still)[k])
+    by_faster = point.tree(point.y, point.yd, faster, point.inputs)
+    return float((by_faster - point.tree(point.y, point.yd, point.ydd, point.inputs))[k])
 
 
 def _momentum(system: System, joint: str, inertia: float, time: float) -> float:
-    """Angular momentum, N m s, at a time by the effort since time zero, less what the damper has taken."""
+    """Angular momentum, N m s, at a time: what the effort has given since time zero, minus what the damper has taken.
+
+    It is ∫ effort(t) exp(−(d/I) (time − t)) dt.
+    """
     if time <= 0:
         return 0.0
     import scipy.integrate  # only a free hinge under an effort needs it

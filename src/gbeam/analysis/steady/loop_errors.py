@@ -37,15 +37,15 @@ SHOWN = {  # words, factors and units
 
 
 class Other(NamedTuple):
-    """Loops around another system, and the indices there of the states of those that are judged."""
+    """Loops around another system. `columns` are the indices there of the states of the loops that are judged."""
 
     loops: Loops
     columns: Indices
 
 
 class JudgedLoops:
-    """The loops of a system about a state, of which one is `cut` at a drive or none, and the same laws around richer
-    systems.
+    """The loops of a system about a state, and the same laws around richer systems. One loop may be `cut` at a
+    drive.
     """
 
     def __init__(self, state: SteadySystem, loops: Loops, cut: str | None = None) -> None:
@@ -66,7 +66,7 @@ class JudgedLoops:
             self.known, self.note = False, "; ".join(filter(None, (self.note, NO_REST)))
 
     def _around(self, state: SteadySystem, model: More) -> Other:
-        """The loops around another model, about its state under the same drives."""
+        """The same laws around another model, about its state under the same drives."""
         other, count = transfer(state, model.model), len(state.names)
         first = np.array([other.names.index(model.renamed.get(name, name)) for name in state.names], dtype=int)
         of_laws = np.arange(2 * count, len(self.loops.closed.a)) + 2 * (len(other.names) - count)  # and of commands
@@ -74,7 +74,7 @@ class JudgedLoops:
 
     @property
     def unstable(self) -> tuple[str, ...]:
-        """Warning that the closed loop decays, and one around a richer system grows; empty if none does."""
+        """Warning if the closed loop decays, but one around a richer system grows; else empty."""
         growing = {name: other.loops.growth for name, other in self.others.items() if other.loops.growth}
         if self.loops.growth or not growing:
             return ()
@@ -82,7 +82,7 @@ class JudgedLoops:
         return (f"the closed loop is not stable {name}: it grows with {growth:.4g} 1/s{CURES.get(name, '')}",)
 
     def judge(self, computed: StateSpace) -> StateSpace:
-        """Return a model of these loops with the errors of its poles and margins; a margin that is not known is NaN."""
+        """Return a model of these loops with the errors of its poles and margins. A margin that is not known is NaN."""
         margins, warnings = [], [*computed.warnings, *self.unstable]
         by_cause = self._errors(self._margins)
         for k, margin in enumerate(computed.margins):
@@ -96,7 +96,9 @@ class JudgedLoops:
             margins.append(replace(margin, unknown=", ".join(names), **stated))
             if names and not self.unstable:
                 cause = max(of_drive, key=lambda name: of_drive[name][unknown].max())
-                words = "; ".join(_beside(name, margin, self.others[cause].loops.margins[k], cause) for name in names)
+                words = "; ".join(
+                    _margin_words(name, margin, self.others[cause].loops.margins[k], cause) for name in names
+                )
                 warnings.append(f"margins of {margin.drive} are not known: {words}{CURES.get(cause, '')}")
         decay, oscillation = np.sum([*self._errors(self._poles).values()], axis=0).T
         poles: dict[str, Any] = {"decay_error": decay, "oscillation_error": oscillation}
@@ -105,32 +107,38 @@ class JudgedLoops:
         return replace(computed, margins=tuple(margins), warnings=tuple(warnings), errors=note, **poles)
 
     def _errors(self, read: Callable[[str], Floats]) -> dict[str, Floats]:
-        """Errors by cause, fractions, of values that `read` gives by names of loops; NaN where they are not known."""
+        """Relative errors by cause of the values that `read` gives for the name of a loop. They are NaN where they are
+        not known.
+        """
         computed = read(OWN)
         if not self.known:
             return {MORE: np.full_like(computed, np.nan)}
         errors = {MORE: np.zeros_like(computed)}
-        errors |= {name: _apart(read(name), computed) for name in (MORE, COARSER) if name in self.others}
+        errors |= {name: _relative_difference(read(name), computed) for name in (MORE, COARSER) if name in self.others}
         if SLENDER in self.others:
-            errors[THICK] = np.maximum(*(_apart(read(name), read(SLENDER)) for name in (THICK, PLATED)))
+            errors[THICK] = np.maximum(*(_relative_difference(read(name), read(SLENDER)) for name in (THICK, PLATED)))
         return errors
 
     def _margins(self, name: str) -> Floats:
-        """Margins (d, 5) of loops by name, NaN where these grow."""
+        """Margins (d, 5) of the loops of a name, NaN where these grow and have none."""
         loops = self.others[name].loops if name else self.loops
-        none = np.full((len(self.loops.margins), len(MARGINS)), np.nan)
-        return np.array([[getattr(margin, kind) for kind in MARGINS] for margin in loops.margins] or none)
+        if not loops.margins:
+            return np.full((len(self.loops.margins), len(MARGINS)), np.nan)
+        return np.array([[getattr(margin, kind) for kind in MARGINS] for margin in loops.margins])
 
     def _poles(self, name: str) -> Floats:
-        """Real and imaginary parts (n, 2) 1/s of the poles, the slowest to decay first, or of loops by name those most
-        alike, by the trace of the product of their projectors, in which no unit of a state counts.
+        """Real and imaginary parts (n, 2) 1/s of the poles, the slowest to decay first.
+
+        Those of the loops of another name are the ones most like these, by the trace of the product of their
+        projectors, in which no unit of a state counts.
         """
         value, right, left = _modes(self._matrix(self.loops))
         chosen = value
         if name:
             loops, columns = self.others[name]
             others, right_of, left_of = _modes(self._matrix(loops))
-            chosen = others[np.abs((left @ right_of[columns]) * (left_of[:, columns] @ right).T).argmax(axis=1)]
+            likeness = np.abs((left @ right_of[columns]) * (left_of[:, columns] @ right).T)
+            chosen = others[likeness.argmax(axis=1)]
         period = self.loops.period
         value, chosen = (np.asarray(np.log(z + 1e-300) / period, dtype=complex) for z in (value, chosen))
         parts = np.stack([chosen.real, chosen.imag], axis=1)[slowest_first(value)]
@@ -141,28 +149,30 @@ class JudgedLoops:
 
 
 def _modes(a: Floats) -> tuple[Complex, Complex, Complex]:
-    """Eigenvalues (n,), eigenvectors (n, n) in columns, and in rows those dual to them."""
+    """Eigenvalues (n,) of a matrix, its right eigenvectors (n, n) in columns, and the left ones dual to them in
+    rows.
+    """
     value, right = np.linalg.eig(a)
     return value + 0j, right + 0j, np.linalg.pinv(right) + 0j
 
 
-def _apart(values: Floats, references: Floats) -> Floats:
-    """Differences from references over these, infinite where only one of both is finite and not zero."""
+def _relative_difference(values: Floats, references: Floats) -> Floats:
+    """Relative differences of values from references; infinite where only one of both is finite and not zero."""
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.abs(values / references - 1)
     return np.where(values == references, 0.0, np.where(np.isfinite(shares), shares, np.inf))
 
 
-def _beside(kind: str, margin: Margin, other: Margin, cause: str) -> str:
-    """A margin of a kind beside that of another loop, as tables show them."""
+def _margin_words(kind: str, margin: Margin, other: Margin, cause: str) -> str:
+    """A margin of a kind, and the one of another loop, in the words of tables."""
     word, factor, unit = SHOWN[kind]
-    computed, better = (f"{factor * getattr(each, kind):.4g}{unit}" for each in (margin, other))
+    computed, better = (f"{factor * getattr(of_loop, kind):.4g}{unit}" for of_loop in (margin, other))
     return f"{word} {computed}, {better} {cause}"
 
 
 def unstable_with_more(system: System, motion: Motion | None, time: float) -> tuple[str, ...]:
-    """Warning that the closed loop of a system, as it starts, decays and one around a richer system grows; empty also
-    where a law has no slope.
+    """Warning if the closed loop of a system, as it starts, decays, but one around a richer system grows; else empty,
+    also where a law has no slope.
     """
     try:
         state = frozen(system, motion, time, "start")

@@ -10,7 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import LIMIT, apart, fuller, not_known, percent, wrong_by
+from gbeam.analysis.accuracy.estimate import (
+    LIMIT,
+    error_warning,
+    not_known,
+    percent,
+    reference_model,
+    relative_difference,
+)
 from gbeam.analysis.steady.frequency_errors import Richer, among
 from gbeam.analysis.steady.subject import Subject
 from gbeam.analysis.system.linear import instabilities
@@ -32,7 +39,7 @@ SCAN = 64  # values at which the equilibrium is looked at before Brent's method
 
 
 def _state(path: Path, of: System, value: float) -> SteadySystem | None:
-    """Steady state at a value, or None."""
+    """Steady state at a value of a path, or None if there is none."""
     try:
         return path(of, value)
     except (ComputationError, np.linalg.LinAlgError):
@@ -40,15 +47,18 @@ def _state(path: Path, of: System, value: float) -> SteadySystem | None:
 
 
 def _in_turn(path: Path, of: System, values: Sequence[float]) -> Iterator[float]:
-    """Yield values in turn; the states at the next 1, 2, 4, ... values are solved for at once before."""
+    """Yield values in turn. Before, states are solved for in groups of the next 1, 2, 4, ... values at once."""
     for k, value in enumerate(values):
-        if k and not k & (k - 1):
+        power_of_two = k & (k - 1) == 0
+        if k and power_of_two:
             path.ahead(of, values[k : 2 * k])
         yield value
 
 
 def _doubts(path: Path, subject: Subject, value: float) -> tuple[str, ...]:
-    """Doubts about one body, or about a system: its open loops, and friction that holds it just below a value."""
+    """Doubts about one body, or about a system: about its bodies, its open loops, and friction that holds it just below
+    a value.
+    """
     if subject.body:
         return input_warnings(subject.structure)
     state = _state(path, subject.system, (1 - CLOSE) * value)
@@ -92,12 +102,14 @@ def first_loss_along(
         grown = instabilities(beyond, beyond.moving, subject.directions)
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
-        parts = (symmetric(each) for each in (state.linear.stiffness, state.linear.mass))  # others store no energy
-        direction = subject.directions(state, symmetric_modes(*parts)[1][:, :1])[0]
+        # Only symmetric parts store energy.
+        stiffness, mass = symmetric(state.linear.stiffness), symmetric(state.linear.mass)
+        direction = subject.directions(state, symmetric_modes(stiffness, mass)[1][:, :1])[0]
     way = f" {along(direction)}" if direction else ""
     reason = f"{kind}{way} at {root:.6g} {unit}"
     # Half way, where nothing grows yet without bound, with half of the load or less.
-    if undecided := not_known(2 * path(of, root / 2).bend, reason):
+    undecided = not_known(2 * path(of, root / 2).bend, reason)
+    if undecided:
         words = f"{subject.kind} keeps its equilibrium up to there, and {undecided['message']}"
         return replace(answer(None, NOT_KNOWN, direction, words), searched_to=root, **undecided)
     return answer(root, kind, direction, f"{subject.kind}: {reason}")
@@ -108,7 +120,7 @@ LOWEST = 4  # frequencies followed
 
 
 def with_frequencies(critical: Critical, path: Path, system: System, progress: Progress = None) -> Critical:
-    """A critical value with the lowest frequencies, undamped, on the way to it."""
+    """Add to a critical value the lowest undamped frequencies on the way to it."""
     end = critical.searched_to if critical.value is None else (1 - CLOSE) * critical.value
     values = end * np.sin(np.linspace(0.0, np.pi / 2, FOLLOWED + 1)) if end else np.zeros(1)
     frequency, last = np.full((len(values), LOWEST), np.nan), None
@@ -118,8 +130,8 @@ def with_frequencies(critical: Critical, path: Path, system: System, progress: P
         if state is not None:
             c = state.linear.velocity
             undamped = state.linear._replace(velocity=(c - c.T) / 2)  # what is overdamped has no frequency
-            known = vibrations(undamped, zero=max(state.zero, ZERO)).frequency[:LOWEST]
-            row[: len(known)] = known / (2 * np.pi)
+            lowest = vibrations(undamped, zero=max(state.zero, ZERO)).frequency[:LOWEST]
+            row[: len(lowest)] = lowest / (2 * np.pi)
             last = state
     turning = last is not None and last.whirl is not None and last.whirl.turning
     return replace(critical, followed=values, frequency=frequency, frame="turning" if turning else "ground")
@@ -132,7 +144,7 @@ CLOSE = 1e-6  # of the critical value: tolerance of its root
 
 
 def judged(critical: Critical, path: Path, subject: Subject, progress: Progress = None) -> Critical:
-    """The critical value with errors estimated by richer models, and warnings if above one in a hundred."""
+    """Add to a critical value its errors, estimated by richer models, and warnings if they exceed 1 %."""
     system, critical = subject.system, replace(critical, error_note=left_unjudged(subject.system))
     if critical.value == 0 or critical.kind == NOT_KNOWN or not judged_bodies(system):
         return critical
@@ -147,14 +159,14 @@ def judged(critical: Critical, path: Path, subject: Subject, progress: Progress 
     same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress, part=(1, count))
     errors = _errors(at, same, exact)
     if richer.rough is not None:
-        errors = errors.adding(mesh=apart(_lost(richer.rough.model, path, at, progress), at))
+        errors = errors.adding(mesh=relative_difference(_lost(richer.rough.model, path, at, progress), at))
     if not richer.theories:
         errors = replace(errors, model=richer.of_model(errors.model))
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.by_theories(system)
     slender, *thick = (_lost(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2))
-    beam_theory = max(apart(at if math.isinf(slender) else slender, value) for value in thick)
+    beam_theory = max(relative_difference(at if math.isinf(slender) else slender, value) for value in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
     words = _in_words(richer, point, models, plates)
     model = critical.model if subject.body else "the system"
@@ -163,13 +175,18 @@ def judged(critical: Critical, path: Path, subject: Subject, progress: Progress 
 
 
 def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
-    """Errors of a critical value by those of the same model and of the exact one, both with more shapes."""
-    model, total = (math.inf, math.inf) if math.isinf(exact) else (abs(same / exact - 1), abs(at / exact - 1))
+    """Errors of the critical value `at`, from those of the same model and of the exact one with more shapes."""
+    if math.isinf(exact):
+        model = total = math.inf
+    else:
+        model, total = abs(same / exact - 1), abs(at / exact - 1)
     return ErrorEstimate(0.0, abs(at / same - 1), model, total=total)
 
 
 def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
-    """Causes of the beam theory's error, in words, by the shape with the least stiffness; "" without equilibrium."""
+    """Causes of the beam theory's error in words, by the mode with the least stiffness; "" if there is no
+    equilibrium.
+    """
     try:
         slender, thick = (transfer(point, model) for model in models[:2])
     except ComputationError:
@@ -181,7 +198,7 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
 
 
 def _unseen(critical: Critical, path: Path, system: System, progress: Progress) -> tuple[str, ...]:
-    """Warn if a richer model, with twist or more modes, loses the equilibrium before the search's end."""
+    """Warn if a richer model, with twist or more modes, loses its equilibrium before the end of the search."""
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
     richer, lacked = Richer(path(system, 0.0)), "more modes"
     rich = richer.exact.model
@@ -190,9 +207,8 @@ def _unseen(critical: Critical, path: Path, system: System, progress: Progress) 
     lost = _lost(rich, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
-    return (
-        f"with {lacked}, which this model has not, the equilibrium is lost at an estimated {lost:.4g} {critical.unit}",
-    )
+    value = f"{lost:.4g} {critical.unit}"
+    return (f"with {lacked}, which this model has not, the equilibrium is lost at an estimated {value}",)
 
 
 def _lost(
@@ -203,12 +219,15 @@ def _lost(
     shares: Sequence[float] = SHARES,
     part: tuple[int, int] = (0, 1),
 ) -> float:
-    """Value at which a richer model loses its equilibrium; infinity if it keeps it up to the last of the shares of
-    `near`. `part` is the number of models done, and of all, for the progress.
+    """Value at which a richer model loses its equilibrium; infinite if it keeps it up to the last of the shares of
+    `near`.
+
+    `part` has the number of models done and the number of all, for the progress.
     """
 
     @cache
     def margin(value: float) -> float:
+        """Stability margin of the state at a value; negative if there is none."""
         state = _state(path, rich, value)
         return -1.0 if state is None else state.margin
 
@@ -225,12 +244,12 @@ def _lost(
 
 
 def doubtful_loss(quantity: str, model: str, errors: ErrorEstimate, theory: str = "") -> tuple[str, ...]:
-    """Warn of a critical value with an error above one in a hundred, or that the richer model does not have."""
+    """Warn of a critical value that is wrong by more than 1 %, or that the richer model does not have."""
     if math.isinf(errors.total):
         return (
-            f"the critical {quantity} is {model}'s own: {fuller(errors)} keeps its equilibrium to "
+            f"the critical {quantity} is {model}'s own: {reference_model(errors)} keeps its equilibrium to "
             f"{SHARES[-1]:g} times that at least",
         )
     if not errors.total > LIMIT:
         return ()
-    return (wrong_by(f"the critical {quantity}", percent(errors.total), errors, theory),)
+    return (error_warning(f"the critical {quantity}", percent(errors.total), errors, theory),)

@@ -19,7 +19,6 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_all
 from gbeam.mechanics.tree.system import System
@@ -34,33 +33,34 @@ STILL = 1e-9  # of the largest coordinate of a body in any mode: it does not def
 def modes_of(
     subject: Subject, state: SteadySystem, moving: Vibrations, *, gyroscopic: bool = True, name: str = ""
 ) -> Modes:
-    """Describe the modes, among those `moving`, of a system about a steady state, each scaled so that the largest
+    """Describe those modes of a system about a steady state that are among `moving`. Each is scaled so that the largest
     component of its points and of its bodies' stations and edges is one.
     """
     system = state.system
     rigid = len(state.local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2
     # Static shapes of a body bring modes where others hang on it, and beside others those that are not its own.
     hung = {joint.on.partition(".")[0] for joint in system.joints.values()}
-    (only,) = system.flexible.items() if len(system.flexible) == 1 else ((ROOT, None),)
-    static = 0 if only[1] is None or only[0] in hung else only[1].size - only[1].resolved
+    static = 0
+    if len(system.flexible) == 1:
+        ((name_of_body, body_alone),) = system.flexible.items()
+        static = 0 if name_of_body in hung else body_alone.size - body_alone.resolved
     moving = moving.oscillating(slice(len(state.local.y) - static - rigid))
-    shape, turn = (np.einsum("pan,nk->kpa", each, moving.modes) for each in state.slopes_of_frames)
-    bodies = {
-        body: (structure, state.q[columns], moving.modes[columns])
-        for body, structure in system.flexible.items()
-        if (columns := deforming(state.names, body))
-    }
-    moved = [shape, *(each for of_body in bodies.values() for each in _moved(*of_body))]
-    largest = largest_component(
-        np.concatenate([each.reshape(len(each), int(np.prod(each.shape[1:]))) for each in moved], axis=1)
-    )
+    shape, turn = (np.einsum("pan,nk->kpa", slopes, moving.modes) for slopes in state.slopes_of_frames)
+    bodies = dict[str, tuple[Structure, Floats, Complex]]()
+    for body_name, structure in system.flexible.items():
+        columns = deforming(state.names, body_name)
+        if columns:
+            bodies[body_name] = structure, state.q[columns], moving.modes[columns]
+    moved = [shape, *(part for of_body in bodies.values() for part in _moved(*of_body))]
+    flat = [part.reshape(len(part), int(np.prod(part.shape[1:]))) for part in moved]
+    largest = largest_component(np.concatenate(flat, axis=1))
     scale = np.where(largest == 0, 1, largest)
     of_frame = framed(state.whirl, moving.frequency / (2 * np.pi), moving.modes)
     warnings, time = subject.warnings(state, name), state.drive.time
     if state.changing:
         of_frame.pop("ground_frequency", None)
         warnings += (f"the system turns, and its equations with it: these are modes of the place at {time:g} s",)
-    reduced = [each for each in system.flexible.values() if each.resolved < each.size]
+    reduced = [body for body in system.flexible.values() if body.resolved < body.size]
     return Modes(
         motion=name,
         time=time,
@@ -75,12 +75,12 @@ def modes_of(
         share=state.shares(moving.modes),
         place=np.stack([frame.p for frame in state.frames]),
         attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
-        bodies={body: _in_modes(state, body, *of_body, scale) for body, of_body in bodies.items()},
+        bodies={body_name: _in_modes(state, body_name, *of_body, scale) for body_name, of_body in bodies.items()},
         instabilities=instabilities(state, moving, subject.directions),
         rigid=rigid,
         overdamped=moving.decaying,
         accelerated=state.accelerated,
-        reached=min((float(each.rest[0][each.resolved - 1]) / (2 * np.pi) for each in reduced), default=math.nan),
+        reached=min((float(body.rest[0][body.resolved - 1]) / (2 * np.pi) for body in reduced), default=math.nan),
         assembly=assembly_of(system),
         notes=notes_on({name: subject.motion}),
         warnings=warnings,
@@ -89,7 +89,7 @@ def modes_of(
 
 
 def _moved(structure: Structure, q: Floats, modes: Complex) -> list[Any]:
-    """Displacements (k, ...) of the stations of a body and of its edges by modes (n, k)."""
+    """Displacements (k, ...) of the stations of a body, and of the edges of its sections, in modes (n, k)."""
     edges = edges_of(structure, q, modes)
     stations = np.moveaxis(structure.station_slopes(q) @ modes, -1, 0)
     return [stations] if edges is None else [stations, edges.T]
@@ -98,17 +98,16 @@ def _moved(structure: Structure, q: Floats, modes: Complex) -> list[Any]:
 def _in_modes(
     state: SteadySystem, name: str, structure: Structure, q: Floats, modes: Complex, scale: Complex
 ) -> BodyModes:
-    """Describe one body in modes (n, k) of a system, each over its `scale`."""
+    """Describe one body in modes (n, k) of a system, each divided by its `scale`."""
     scaled, recovery, twist = modes / scale, structure.recovery, structure.twist_slopes(q)
     shape = np.moveaxis(structure.station_slopes(q) @ scaled, -1, 0)
     moves = np.abs(scaled).max(axis=0, initial=0.0) > STILL * np.abs(scaled).max(initial=0.0)
+    ways = zip(directions_of(structure, q, scaled), moves, strict=True)
     return BodyModes(
         model=structure.kind,
         base=state.base_of(name),
         damping_given=structure.damping_ratio is not None,
-        direction=tuple(
-            way if each else "" for way, each in zip(directions_of(structure, q, scaled), moves, strict=True)
-        ),
+        direction=tuple(way if in_motion else "" for way, in_motion in ways),
         coordinates=modes.T,
         stations=np.asarray(structure.stations),
         shape=shape,
@@ -120,7 +119,9 @@ def _in_modes(
 
 
 def decided(computed: Modes, bend: float) -> Modes:
-    """Modes about a state, without the instabilities of a stiffness of first order where it bends too far for that."""
+    """Modes about a state. Where it bends too far for a stiffness of first order, that stiffness cannot decide
+    instabilities, and they are left out.
+    """
     undecided = not_known(bend, str(computed.instabilities[0])) if computed.instabilities else {}
     return replace(computed, instabilities=(), **undecided) if undecided else computed
 

@@ -43,7 +43,9 @@ NOTHING = 1e-12  # of the beam's stiffness: loads that add less are none
 
 
 def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
-    """Return `motion` if it is a hub; else raise InputError with the verb that can answer."""
+    """Return `motion` if it is a hub; else raise InputError, with the words of the question and of what to ask
+    `instead`.
+    """
     if isinstance(motion, Hub):
         return motion
     raise InputError(
@@ -112,7 +114,7 @@ def critical_speed(
 
 
 def first_lost_speed(subject: Subject, path: Path, upper: float | None, progress: Progress) -> Critical:
-    """Lowest rate, with its errors, at which the equilibrium is lost along a path that holds the rate."""
+    """Lowest rate at which the equilibrium is lost along a path that holds the rate, with its errors."""
     limit = SEARCH_FACTOR * lowest_frequency(path, subject.system) if upper is None else positive("to", upper, "rad/s")
     refuse_changing(path, subject.system, limit / SEARCH_FACTOR)
     lost = first_loss_along(path, subject, limit, subject.rate, "rad/s", progress)
@@ -130,8 +132,10 @@ def lowest_frequency(path: Path, system: System) -> float:
 def turned(
     subject: Subject, angle: str | None, time: float, what: str, instead: str, name: str, *, held: bool = False
 ) -> tuple[Path, Profile | None]:
-    """Path of steady states by the rate of a subject that turns about an `angle`, by default a hub's, and the history
-    of the rate in the motion, if any; InputError, with the words `what` and `instead`, if there is nothing to turn.
+    """Path of steady states by the rate of a subject that turns about an `angle`, by default a hub's.
+
+    Besides, the history of the rate in the motion, if any. InputError, with the words `what` and `instead`, if there is
+    nothing to turn.
     """
     subject.require_coordinates()
     system, motion = subject.system, subject.ground

@@ -38,7 +38,7 @@ LOST = "shapes and model are not judged: the exact model with more shapes comes 
 
 
 def stepless(system: System) -> dict[Quantity, float]:
-    """Errors of the time steps of a state of rest, which takes none: zero of every quantity."""
+    """Errors of the time steps for a state of rest, which takes none: zero for every quantity."""
     kinds = (DEFLECTION, *LOADS, "sheared")
     return {PLACE: 0.0} | {(name, kind): 0.0 for name in system.flexible for kind in kinds}
 
@@ -50,11 +50,12 @@ def rest_errors(state: SteadySystem, start: Floats, *, stable: bool) -> tuple[Er
         lambda _: solution, partial(standing, state), stepless(system), start=start, tolerance=LIMIT
     )
     errors = replace(errors, note=LOST) if FAR in errors.note else errors
-    return errors, (*doubts(errors, LIMIT), *off_axis, *(_sideways(state) if stable and errors.note != LOST else ()))
+    sideways = _sideways(state) if stable and errors.note != LOST else ()
+    return errors, (*doubts(errors, LIMIT), *off_axis, *sideways)
 
 
 def _sideways(state: SteadySystem) -> tuple[str, ...]:
-    """Warn of an equilibrium that a beam with torsion would not keep: a strip on edge buckles sideways."""
+    """Warn of an equilibrium that a beam with torsion would not keep, as a strip on edge that buckles sideways."""
     theories = theories_of(state.system)
     if not theories:
         return ()
@@ -127,7 +128,7 @@ def static(
 
 
 def _pushed(motion: Motion | None, time: float, acceleration: Numbers) -> Drive:
-    """Drives at a time, s, on ground that is accelerated, m/s²; InputError beside a motion."""
+    """Drives at a time, s, on ground with an acceleration, m/s²; InputError if there is a motion, too."""
     if motion is not None:
         raise InputError("acceleration", "is given beside a motion", "give one of them")
     a = np.asarray(acceleration, dtype=float)
@@ -174,7 +175,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
 
 
 def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[str, BodyRest]:
-    """Describe the bodies that deform, and rigid specimens, in a steady state, by name."""
+    """Describe the bodies that deform, and rigid specimens, in a steady state by their names."""
     system, point, time = state.system, state.point, np.array([state.drive.time])
     inputs = standing(state, system).inputs(system, None)
     moving = system.tree.motion(point.y[None], point.yd[None], point.ydd[None], inputs)
@@ -205,7 +206,9 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
 
 
 def _stability(state: SteadySystem) -> tuple[bool | None, tuple[str, ...], dict[str, Any]]:
-    """Stability of a steady state, None where it is not known; warnings if it is lost; and why it is not known."""
+    """Stability of a steady state, None where it is not known; a warning if it is lost; and the reason why it is not
+    known.
+    """
     try:
         growing = state.moving.growing
     except ComputationError as error:
@@ -216,13 +219,15 @@ def _stability(state: SteadySystem) -> tuple[bool | None, tuple[str, ...], dict[
         return True, (), {}
     else:
         lost = "its stiffness is not positive definite, and any damping would spoil what gyroscopic coupling holds"
-    if undecided := not_known(state.bend, lost):
+    undecided = not_known(state.bend, lost)
+    if undecided:
         return None, (), undecided
     return False, (f"unstable, it would not stay there: {lost}",), {}
 
 
 def _coupled_alone(state: SteadySystem) -> bool:
-    """True if gyroscopic coupling, and no damping, acts on small departures."""
+    """True if gyroscopic coupling, but no damping, acts on small departures."""
     velocity = state.linear.velocity
-    damping, coupling = (np.abs(velocity + sign * velocity.T).max(initial=0.0) for sign in (1, -1))
+    damping = np.abs(velocity + velocity.T).max(initial=0.0)
+    coupling = np.abs(velocity - velocity.T).max(initial=0.0)
     return bool(coupling > 0 and damping <= ROUNDING * coupling)

@@ -26,8 +26,8 @@ from gbeam.results.parts import Base
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A system, and the motion of its ground, that a question is about; of one body alone its name, and the motion in
-    which it was given.
+    """A system, and the motion of its ground, that a question is about. If one body is alone, `body` is its name, and
+    `motion` the one in which it was given.
     """
 
     system: System
@@ -74,7 +74,7 @@ class Subject:
         return turned_by_effort(self.system, HINGE, time)
 
     def held(self, time: float) -> Drive:
-        """Drives at a time, s, that hold a free hub at rest, at angle zero."""
+        """Drives at a time, s, on which a free hub is held at rest, at angle zero."""
         free = self.body and self.motion is not None and self.motion.free
         return Drive(self.ground, time, f"{HINGE}.angle", rate=0.0) if free else Drive(self.ground, time)
 
@@ -84,12 +84,14 @@ class Subject:
             self.structure.require_coordinates()
 
     def columns(self, state: Steady) -> list[int]:
-        """Indices of the coordinates, of a steady state, that deform the body that is alone; of a system of all."""
+        """Indices of the coordinates of a steady state that deform the body that is alone, or of all coordinates of a
+        system.
+        """
         return deforming(state.names, self.body) if self.body else [*range(len(state.names))]
 
     def directions(self, state: Any, modes: Complex | Floats) -> tuple[str, ...]:
-        """Words for what each mode (n, k) moves most: a body and an axis of its root or, of one body alone, the axis,
-        or twist where the sections' edges move more.
+        """Words for what each mode (n, k) moves most: a body and an axis of its root. For one body alone they are the
+        axis, or twist where the sections' edges move more.
         """
         if not self.body:
             return state.directions(modes)
@@ -103,16 +105,16 @@ class Subject:
     def doubts(
         self, name: str = "", base: Base | None = None, span: tuple[float, float] = (0.0, 0.0)
     ) -> tuple[str, ...]:
-        """Doubts about the bodies' models, and of one body about its motion, called `name`, or a motion of its `base`,
-        over a span of time, s.
+        """Doubts about the bodies' models. For one body there are doubts about its motion, too, called `name`, or about
+        a motion of its `base`, over a span of time, s.
         """
         if not self.body:
             return self.system.warnings
         return input_warnings(self.structure, self.motion, name=name, span=span, base=base)
 
     def warnings(self, state: SteadySystem, name: str, *, resting: bool = False) -> tuple[str, ...]:
-        """Doubts about the models of the bodies in a state that is `resting`, or departed from, and what it leaves out;
-        `name` is the motion's.
+        """Doubts about the models of the bodies in a state, and about what they leave out in it. The state is
+        `resting`, or one from which a system departs; `name` is that of the motion.
         """
         if not self.body:
             return state.warnings + state.point.sticking(state.system, resting=resting) + open_loops(self.system)
@@ -127,14 +129,16 @@ class Subject:
 
     @property
     def resolved(self) -> int:
-        """Number of the lowest modes that are of the bodies, and not of static shapes among their coordinates."""
+        """Number of the lowest modes that belong to the bodies. The others are made of static shapes among their
+        coordinates.
+        """
         shapes = sum(body.size - body.resolved for body in self.system.flexible.values())
         return len(local_names(self.system.coordinates)) - shapes
 
 
 def subject_of(structure: Structure | System, motion: Motion | None) -> Subject:
-    """Subject of a question about a system whose ground has a motion, or about a structure alone in it, which is the
-    same as the system of it.
+    """Subject of a question about a system whose ground has a motion, or about a structure alone in it. The latter is
+    the same as the system of this structure.
     """
     system = structure if isinstance(structure, System) else System.of(structure, BEAM)
     body = system.alone
@@ -161,7 +165,9 @@ def directions_of(structure: Structure, q: Floats, modes: Complex | Floats) -> t
 
 
 def edges_of(structure: Structure, q: Floats, modes: Complex | Floats) -> Complex | Floats | None:
-    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k); None of a model without it."""
+    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k); None for a model without
+    twist.
+    """
     twist = structure.twist_slopes(q)
     if twist is None or structure.source is None:
         return None

@@ -35,10 +35,10 @@ from gbeam.analysis.accuracy.estimate import (
     UNMOVED,
     Judgement,
     causes,
-    in_words,
+    causes_in_words,
     negligible,
-    of_bodies,
     percent,
+    twist_warnings,
 )
 from gbeam.analysis.accuracy.looks import Looks, times_of_peaks
 from gbeam.analysis.system.richer import (
@@ -194,7 +194,7 @@ def system_errors(
     for name, body in judged.items():
         causes, distances = lacking.causes.get(name, {}), lacking.bodies.get(name, np.zeros(0))
         named = name if len(judged) > 1 else ""
-        moved += of_bodies(body, named, causes, distances, sizes[name, DEFLECTION], tolerance)
+        moved += twist_warnings(body, named, causes, distances, sizes[name, DEFLECTION], tolerance)
     return errors, tuple(moved)
 
 
@@ -294,7 +294,7 @@ def _judged(system: System, known: _Known, apart: _Apart, lacking: Lacking, lost
         loads=ErrorEstimate.largest(loads),
         stress=ErrorEstimate.largest(stress),
         beams=tuple(judged),
-        by_beam=np.array([judgement.apart(PLACE, (computed, better)) for better in apart.alone or [apart.truth]]),
+        by_beam=np.array([judgement.difference(PLACE, (computed, better)) for better in apart.alone or [apart.truth]]),
         displacement_by_beam=np.array([each.total for each in bent]),
         loads_by_beam=np.array([each.total for each in loads]),
         load_peaks_by_beam=np.array([each.peak for each in loads]),
@@ -353,7 +353,7 @@ def doubts(errors: Errors, tolerance: float, cure_of_steps: str = SMALLER) -> tu
         every += [(error.step, STEPS, cure_of_steps), (error.friction, *CREEPS)]
         every = sorted((each for each in every if each[0] > SHARE * stated), key=itemgetter(0), reverse=True)
         share = percent(stated)
-        warnings.append(f"{what} wrong by an estimated {share} of {size}: {in_words(every, of_body)}")
+        warnings.append(f"{what} wrong by an estimated {share} of {size}: {causes_in_words(every, of_body)}")
     return tuple(warnings)
 
 
@@ -403,21 +403,21 @@ def _departing(
     if not all(solution.system.flexible[name].exact for name in bases):
         same = richer(solution.system, bases, exact=False, along=along).system
         start = _begun(starting, rich.system, within, departures, within.of_new, like=same)
-        of_model = total.less(departures.answer(within.of_new(residual), start))
+        of_model = total.minus(departures.answer(within.of_new(residual), start))
     alone = list[Correction]()
     for name in bases if len(bases) > 1 else ():
         # The residual of a system in which it alone is exact; the others feel it only through the joints.
         one_richer = richer(solution.system, {name: bases[name]}, exact=True, along=along)
         one = solution.within(one_richer.system, (), one_richer.shared)
-        kept = [k for k, body in enumerate(one.more.bodies) if body == name or body not in bases]
-        onto = np.zeros((len(one.more.names), residual.shape[1]))
-        onto[kept, [within.more.names.index(one.more.names[k]) for k in kept]] = 1.0
+        kept = [k for k, body in enumerate(one.richer.bodies) if body == name or body not in bases]
+        onto = np.zeros((len(one.richer.names), residual.shape[1]))
+        onto[kept, [within.richer.names.index(one.richer.names[k]) for k in kept]] = 1.0
         start = _begun(starting, one_richer.system, one, departures, lambda left: left @ onto, rich.system)  # noqa: B023
         alone.append(departures.answer(one.residual() @ onto, start))
     rough = _rougher(solution, bases, starting)
-    parts = [total, *([] if of_model is None else [of_model, total.less(of_model)]), *alone]
-    sizes = [within.more.sizes(part) for part in parts]
-    sizes += [] if rough is None else [rough[0].more.sizes(rough[1])]
+    parts = [total, *([] if of_model is None else [of_model, total.minus(of_model)]), *alone]
+    sizes = [within.richer.sizes(part) for part in parts]
+    sizes += [] if rough is None else [rough[0].richer.sizes(rough[1])]
     looks = look(np.concatenate(sizes, axis=1))
     computed, truth = solution.at(looks.at).read(bases), within.moved(total, looks.at)
     few_shapes = computed if of_model is None else within.moved(of_model, looks.at)
@@ -425,7 +425,7 @@ def _departing(
         looks, computed, truth, (few_shapes, truth), (computed, few_shapes),
         [within.moved(each, looks.at) for each in alone],
         None if rough is None else rough[0].moved(rough[1], looks.at),
-        _rings(rich.system, bases, within, *departures.shaken(residual, begun)),
+        _rings(rich.system, bases, within, *departures.ringing(residual, begun)),
     )  # fmt: skip
 
 
@@ -443,7 +443,7 @@ def _rings(system: System, bodies: Iterable[str], within: Within, rate: Floats, 
     """Bounds of ringing of deflections and, by the elastic forces, of root loads, by amplitudes (n, k) of modes."""
     sizes = dict[Quantity, Floats]()
     for name in bodies:
-        body, columns = system.flexible[name], [k for k, of in enumerate(within.more.bodies) if of == name]
+        body, columns = system.flexible[name], [k for k, of in enumerate(within.richer.bodies) if of == name]
         q = amplitude[columns].T
         lengths = first_order_sizes(body, q, elastic_accelerations(body, q))
         sizes |= {(name, what): each for what, each in zip((DEFLECTION, "force", "moment"), lengths, strict=True)}
@@ -471,10 +471,10 @@ def _beyond(
     def begun(departures: Departures, within: Within, plate: Floats) -> State | None:
         if starting is None or starting.state is None:
             return _begun(starting, thick, within, departures, lambda left: left + within.of.q[0] @ plate)
-        departure = np.zeros((2, len(within.more.names)))
+        departure = np.zeros((2, len(within.richer.names)))
         for sign, other in ((-1, bent({name: theory.slender for name, theory in theories.items()})), (1, thick)):
             names, values = other.unknown_coordinates, np.array(starting.state(other))
-            departure[:, [within.more.names.index(name) for name in names[-values.shape[1] :]]] += sign * values
+            departure[:, [within.richer.names.index(name) for name in names[-values.shape[1] :]]] += sign * values
         return departure[0], departure[1]
 
     lacking = beyond(

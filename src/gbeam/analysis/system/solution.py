@@ -19,7 +19,7 @@ from gbeam.analysis.accuracy.correction import (
     Quantity,
     Reading,
     Within,
-    looked,
+    matrix_times,
     pieces,
 )
 from gbeam.analysis.system.histories import Carried, carried, deflections, loads_of
@@ -118,7 +118,7 @@ class Solution:
 
     def bases(self, bodies: Iterable[str]) -> dict[str, Base]:
         """Motions (t, 3) of the roots of the bodies, by name, at a selection of the times."""
-        times = looked(len(self.of.time))
+        times = matrix_times(len(self.of.time))
         at = self.of.at(times)
         state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, times))
         roots = {name: state.roots[k] for k, name in enumerate(self.system.order)}
