@@ -295,7 +295,7 @@ def test_a_steady_state_that_is_far_is_found_alone() -> None:
     path = Path(Drive(coordinate="spin.angle"), turning_at)
     path(system, 1.0)
     path.ahead(system, [2.0, 500.0])
-    assert path.equilibria._known(system).keys() == {1.0, 2.0}
+    assert path.equilibria._states(system).keys() == {1.0, 2.0}
 
 
 @pytest.mark.parametrize("held", [True, False])

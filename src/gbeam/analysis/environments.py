@@ -140,6 +140,7 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, 
     """Responses by environment, and the failures of those that have no state to start from."""
 
     def answer(name: str) -> Response:
+        """Response in one environment."""
         motion = case.environments[name]
 
         def report(what: str, share: float) -> None:

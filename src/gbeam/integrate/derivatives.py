@@ -83,9 +83,10 @@ class Derivatives:
         ones, too.
         """
         count = len(self.age)
+        by_step = self.slope is not None and len(self.slope) == count > 1
         if not count and self.even:
-            self.slope = None
-        elif self.slope is not None and len(self.slope) == count > 1 and not self.even:
+            self.slope = None  # a new window computes its own
+        elif by_step and not self.even:
             of_last = np.broadcast_to(self.slope[-1:, -1:], (added, *self.slope.shape[1:]))
             self.slope = np.concatenate([self.slope, of_last])
         elif self.slope is not None:
@@ -198,8 +199,8 @@ class Derivatives:
         return interpolated(stages.times[chosen], values, stages.times[begin : begin + count])
 
     def _maps_of(self, kept: slice) -> Any:
-        """Maps of a slice of the steps; None where they have to be computed again, as one of all steps or with
-        controllers in the loop.
+        """Maps of a slice of the steps. None if one map serves all steps, or if controllers are in the loop: such maps
+        are computed again.
         """
         if self.maps is None or self.sampling is not None:
             return None

@@ -47,6 +47,7 @@ class _Mean:
     """
 
     def __init__(self, t: Tableau, mass: Floats, c: Floats, k: Floats) -> None:
+        """Solve the equations of the stages by mean matrices, for unit forces and for unit states before the step."""
         self.c, self.k, (stages, n) = c, k, (t.w_q.shape[-2], len(mass))
         alike_k, alike_c = (np.broadcast_to(matrix, (1, stages, n, n)) for matrix in (k, c))
         (jacobian,), (onto,) = t.jacobians(alike_k, alike_c, mass[None, None])

@@ -90,6 +90,9 @@ class Sampling:
     failure: tuple[int, ComputationError] | None = None
 
     def __init__(self, controllers: Controllers, residual: Any, drive: Any, steps: Steps) -> None:
+        """Plan the samples: at the beginning of which steps they are taken, and in which step their commands begin to
+        act.
+        """
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
         self.held = np.zeros((len(steps), max((part.stop for part in controllers.drives), default=0)))
         start, begun = steps.begin[0], steps.begin + NEAR * steps.length
@@ -213,6 +216,9 @@ class Held:
     """The commands that act in the steps of a window, `u` (t, m), corrected with its states."""
 
     def __init__(self, sampling: Sampling, first: int, count: int) -> None:
+        """Take over the commands that act in the steps of a window so far, and list the samples that are due in each
+        step.
+        """
         self.sampling, self.first = sampling, first
         sampling.hold(first + count)
         self.u = sampling.held[first : first + count].copy()

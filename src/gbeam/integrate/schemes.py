@@ -108,12 +108,12 @@ def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
 
 @cache
 def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: float) -> Scheme:
-    """The one-step family: alpha_m and alpha_f are the weights of the old acceleration and of the old forces (Chung and
-    Hulbert), beta and gamma Newmark's parameters.
+    """Make a scheme of the one-step family. alpha_m and alpha_f are the weights of the old acceleration and of the old
+    forces (Chung and Hulbert), beta and gamma Newmark's parameters.
     """
     share = (1 - alpha_f) / (1 - alpha_m)
     # z = (q*, v*, c): what the stage starts from, and the share c of the new a that is known before.
-    q, v, c, x = np.eye(4)
+    q, v, c, x = np.eye(4)  # all below are coefficients of these
     a = c + share * x
     q_new, v_new = q + beta * share * x, v + gamma * share * x
     carried = (alpha_f * x - alpha_m * a) / (1 - alpha_m)

@@ -61,6 +61,7 @@ def taken_together(
         )
         # The compiler would compute these anew wherever they are read, and the matrix below for each of its pivots.
         c, k, f = jax.lax.optimization_barrier((c, k, f))
+        # (c_v C + c_q K + M) x = F − C v₀ − K q₀ at all stages together
         q0, v0 = _combined(t.w_q, z), _combined(t.w_v, z)
         rows, damped = [], [c_stage + damping for c_stage in c[:stages]]
         for i in range(stages):
@@ -158,7 +159,7 @@ class Run:
             leaves, form = self.residual
             return "nonlinear", form, *map(np.shape, leaves), self.equations.idle is None, magnitude
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
-            return None
+            return None  # its equations are no sums of terms, or its steps start anew at times of its own
         return "linear", len(self.q), magnitude, self.parts
 
     @property
@@ -348,8 +349,8 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in now])
         last, count = np.stack([chunk.last for chunk in now]), max(chunk.count for chunk in now)
         carry, history = _steps(*residual, tableau, carry, inputs, at_ends, last, count)
-        *piece, left = (np.asarray(values) for values in history)
-        sound &= ((left <= newton.ACCEPTED) | ~inside).all(axis=1)  # NaN is not
+        *piece, error = (np.asarray(values) for values in history)
+        sound &= ((error <= newton.ACCEPTED) | ~inside).all(axis=1)  # NaN is not
         anew = going & [end.anew for end in ends]
         if scheme.ends and anew.any():
             at_last = np.arange(len(runs)), inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)

@@ -91,6 +91,7 @@ def _chunk(
     # x = onto z + constant at all stages.
     x = np.linalg.solve(jacobian, np.concatenate([-by_state, f.reshape(len(steps), stages * n, p)], axis=-1))
     onto, constant = x[..., : m * n], x[..., m * n :]
+    # Each step is an affine map of z, and the states before the steps are a recurrence.
     by_stage = x.reshape(len(steps), stages, n, m * n + p)
     unit = np.eye(m * n, m * n + p).reshape(m, n, m * n + p)
     maps = np.einsum("tij,jnk->tink", t.g, unit) + np.einsum("tis,tsnk->tink", t.d, by_stage)

@@ -73,6 +73,7 @@ class TracedLoop:
     begun, failure = True, None
 
     def __init__(self, controllers: Any, steps: Steps) -> None:
+        """Plan the samples, as :class:`gbeam.integrate.sampled.Sampling` does, and make the laws at their times."""
         plan = Sampling(controllers, None, None, steps)
         self.controllers, self.steps, self.taken = controllers, steps, plan.taken
         self.at = [np.flatnonzero(taken >= 0) for taken in plan.taken]  # steps at whose beginning a sample is taken
@@ -197,6 +198,7 @@ class _Changes:
     """Changes of samples, carried through the steps of a run; each step passes the change of its state."""
 
     def __init__(self, loop: TracedLoop, parts: list[tuple[Array, ...]]) -> None:
+        """Arrange the derivatives by steps, and find how many commands of each controller wait until they act."""
         self.drives, self.at = loop.controllers.drives, loop.at
         self.starts = [part[-1] for part in parts]
         # Commands wait in a ring, as long as the latest is ahead of the one that acts.

@@ -57,13 +57,16 @@ class Window:
         self.z, self.x, self.start = z[None], np.zeros((0, len(self.scheme.offsets), len(x))), x
 
     def room(self, end: int, *, single: bool) -> int:
-        """Number of steps before `end` that may be appended, if the last one is near its solution. A window is longer
-        where all its steps have a `single` set of derivatives.
+        """Number of steps before `end` to append, if the last one is near its solution.
+
+        A window is longer where all its steps have a `single` set of derivatives. None are added to one with samples of
+        controllers, with many steps, or with a single step that has failed before.
         """
         count = len(self)
         if count and (self.sampling is not None or count > FEW or self.limit == 1):
             return 0
-        return max(min(self.growth, end - self.first - count, (LONGEST if single else MOST) - count), 0)
+        most = LONGEST if single else MOST
+        return max(min(self.growth, end - self.first - count, most - count), 0)
 
     def extend(self, added: int) -> None:
         """Append steps, and guess each like the last one."""
@@ -173,6 +176,7 @@ class Window:
         lengths = length[:1] if (length == length[0]).all() else length
         if not np.array_equal(lengths, self.lengths):
             t: Tableau = self.scheme.tableau(lengths)
+            # Weights of (z, x) in q and q̇ at the stages.
             q_row = np.concatenate([t.w_q, t.c_q], axis=-1)
             v_row = np.concatenate([t.w_v, t.c_v], axis=-1)
             self.lengths, self.tableau, self.weights = lengths, t, np.stack([q_row, v_row], axis=1)

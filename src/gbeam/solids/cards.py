@@ -263,6 +263,7 @@ class _Abaqus(_Reader):
         self.lumps += [Lump(name, nodes[0], 0.0, np.zeros(3), np.diag(moments[:3])) for nodes in elements]
 
     def _spring(self, name: str, options: Options, rows: Rows, elements: Nodes) -> None:
+        """Add the spring of each element, between its two nodes or from its node to the base, along one component."""
         counts = {len(nodes) for nodes in elements}  # of nodes: two between nodes, one to the base
         ways = {int(float(cell or 0)) for cell in rows[0][: max(counts, default=1)]}
         axial = not ways <= {*range(1, 7)}
@@ -287,6 +288,7 @@ class _Abaqus(_Reader):
         return f"*COUPLING {self._coupled.get('CONSTRAINT NAME', '')}".strip(), int(self._coupled["REF NODE"]), weights
 
     def _kinematic(self, _: str, __: Options, rows: Rows, ___: Nodes) -> None:
+        """Add a kinematic coupling: a rigid link of the nodes of a surface to the reference node."""
         name, node, weights = self._surface()
         held = set[int]()
         for row in rows:  # first and last component, or one alone

@@ -35,7 +35,7 @@ def _edges_of_held(mesh: Mesh) -> Flags:
         held = np.zeros_like(flags)
         held[nodes] = True
         for block, face, elements in outer_faces(mesh):
-            on = block.nodes[elements][:, on_face(block.kind, face)]
+            on = block.nodes[elements][:, on_face(block.kind, face)]  # nodes of each face
             flags[on[held[on] & ~held[on].all(axis=1, keepdims=True)]] = True
     return flags
 

@@ -33,7 +33,8 @@ class _Variable(NamedTuple):
 
 def read_exodus(path: Path) -> TextMesh:
     """Read a mesh whose groups are its blocks and sets, by their names or as `block 1`, `node set 1`, `side set 1`."""
-    stored, mesh = (_classic if path.read_bytes()[:3] == CLASSIC else _of_hdf5)(path), TextMesh()
+    read = _classic if path.read_bytes()[:3] == CLASSIC else _of_hdf5
+    stored, mesh = read(path), TextMesh()
     coordinates = [stored[f"coord{axis}"].values for axis in "xyz" if f"coord{axis}" in stored]
     places = np.array(coordinates or stored["coord"].values, dtype=float)
     if len(places) != 3:
@@ -123,7 +124,8 @@ def _on_side(kind: str, element_type: str, side: int) -> Any:
     if DIMENSIONS[kind] == 3 and kind in KINDS:
         return on_face(kind, _SIDES[corners_of(kind)][side - 1])
     corners = 3 if kind.startswith("triangle") else 4
-    edge = side - 1 - 2 * ("SHELL" in element_type.upper())  # the first two sides of shells are their faces
+    faces = 2 if "SHELL" in element_type.upper() else 0  # the first sides of shells
+    edge = side - 1 - faces
     if DIMENSIONS[kind] != 2 or edge < 0:
         return slice(None)
     middle = [corners + edge] if kind[-1].isdigit() else []

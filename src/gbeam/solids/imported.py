@@ -91,6 +91,7 @@ class ImportedModel(Value):
     numbers: ArrayLike | None = None
 
     def __post_init__(self) -> None:
+        """Check the matrices, nodes, unknowns and numbers, and store them as arrays."""
         m = sparse_matrix("mass", self.mass)
         k = sparse_matrix("stiffness", self.stiffness, m.shape[0])
         places = np.asarray(array("nodes", self.nodes), dtype=float)

@@ -174,6 +174,7 @@ class Linked:
 
         total = self.condensed(matrix)
         for between, stiffness, _ in self._links.springs.values():
+            # The rotation of the first link relative to the second one, or to the base.
             turn, *second = (self._turn[3 * self._number[name] :][:3] for name in between)
             turn = turn - second[0] if second else turn
             total = total + turn.T @ diags_array(stiffness[3:]) @ turn

@@ -60,6 +60,7 @@ class ModalTest(Value):
     numbers: Annotated[ArrayLike | None, "numbers (k,) of the nodes, 0 to k - 1 where left out"] = None
 
     def __post_init__(self) -> None:
+        """Check the modes, turn complex shapes in phase, and sort all by frequency."""
         frequency, ratio = (np.atleast_1d(np.asarray(array(n, getattr(self, n)), dtype=float)) for n in _RATES)
         nodes = np.asarray(array("nodes", self.nodes), dtype=float)
         shapes, mass = (_numbers(name, getattr(self, name)) for name in ("shapes", "modal_mass"))

@@ -26,6 +26,7 @@ class LargestNorms:
     """
 
     def __init__(self, maps: Floats, q: Floats) -> None:
+        """Compute the norms of the foremost maps, then those of the others at the times that the bounds leave."""
         self.maps, self.q = maps, q
         count = maps.shape[1]
         self.size, self.when, self.over = np.zeros(count), np.zeros(count, dtype=int), np.zeros(len(q))

@@ -80,6 +80,7 @@ class RigidSpecimen(Value):
     ] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        """Check the places, the inertia and the bolts, and store them as arrays."""
         shapes = {"centre": (3,), "inertia": (3, 3), "corners": (-1, 3), "bolts": (-1, 3), "bolt_axis": (3,)}
         for name, shape in shapes.items():
             value = getattr(self, name)

@@ -61,7 +61,7 @@ def _larger(one: Mapping[_K, Any], other: Mapping[_K, Any]) -> dict[_K, Any]:
     return {key: np.maximum(value, other[key]) for key, value in one.items()}
 
 
-def beyond(
+def thick_beam_differences(
     solved: Posed,
     of: Trajectory,
     theories: Mapping[str, Theory],

@@ -127,7 +127,9 @@ class Outputs:
         return np.concatenate([moved[:, -1], a[:, -1], -moment[:, 0], *strains, named, y[:, :i], yd[:, :i]], axis=-1)
 
     def inputs(self, u: Array) -> Inputs:
-        """Inputs of the tree from vectors u (..., m)."""
+        """Inputs of the tree from vectors u (..., m): the torque on a free hub or the motion of the base, then the
+        loads.
+        """
         drives, ground = self.drives, self.drives.ground
         if self.first:
             driven, loads = np.split(u, [1], axis=-1)
@@ -159,7 +161,7 @@ class Outputs:
         i = self.first
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
-        full = (u if i else np.concatenate([u[:3], rate, u[3:]]))[None]
+        full = (u if i else np.concatenate([u[:3], rate, u[3:]]))[None]  # with the angular velocity, a state
         ydd = accelerations(self.tree, y[None], yd[None], self.inputs(full))
         rates = np.concatenate([yd, ydd[0], u[3:6] if not i else []])
         return rates, self(y[None], yd[None], ydd, full)[0]

@@ -197,6 +197,7 @@ class _Design:
     """
 
     def __init__(self, commands: Commands, vibration: Vibration, limit: float, robust: float, scale: float) -> None:
+        """Set up the rows of the vibration, over a `scale`, for frequencies that may be wrong by the share `robust`."""
         self.commands, self.limit, self.scale = commands, limit, scale
         t = commands.time
         ratios = np.linspace(1 - robust, 1 + robust, _ROBUST) if robust else np.ones(1)

@@ -79,6 +79,8 @@ def verify(
     mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 
     def simulated(motion: Any, what: str) -> Response:
+        """Response to a motion; ComputationError if it is not done."""
+
         def report(doing: str, share: float) -> None:
             tell(progress, f"checking {what}: {doing}", share)
 
@@ -286,6 +288,7 @@ class _Trials:
         start: Floats,
         progress: Progress,
     ) -> None:
+        """Read the flight, and check the measures and the directions in which the control point may be moved."""
         self.progress = progress
         tell(progress, "flight", 0.0)
         self.answers, self.flight = Answers(system, flight, settings), flight

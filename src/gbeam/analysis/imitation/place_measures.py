@@ -230,6 +230,7 @@ class Answers:
     """
 
     def __init__(self, system: System, flight: Flight, settings: ResponseSettings) -> None:
+        """Find the point and the mode that the flight moves most, and times that are close enough for that mode."""
         span = np.linspace(settings.start, settings.start + settings.duration, SAMPLES)
         self.specimen, flown = Specimen.of(system, span), flight.base(span)
         loads = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)

@@ -16,10 +16,11 @@ from gbeam.analysis.response.contacts import creeping, missed_stop, turned_over
 from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.analysis.response.posed import Posed, begun
 from gbeam.analysis.response.step_errors import difference
-from gbeam.analysis.system.accuracy import UNSMOOTHED, Starting, system_errors, unjudged, unmoved
+from gbeam.analysis.system.accuracy import UNSMOOTHED, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
 from gbeam.analysis.system.histories import Carried, deflections, histories, loads_of
 from gbeam.analysis.system.point import Point
+from gbeam.analysis.system.richer_readings import Starting
 from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.start import unknown_at_start
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace

@@ -82,6 +82,7 @@ class Richer:
     """
 
     def __init__(self, state: SteadySystem) -> None:
+        """Make the richer models. `one_model` is true where no body has another model than its own."""
         of = state.system
         bodies, rough = judged_bodies(of), coarser(of)
         self.theories = theories_of(of, straight=state.bent(bodies) <= STRAIGHT)
@@ -126,6 +127,7 @@ class Richer:
         growth = 0.0
 
         def reference(richer: More | None) -> Floats:
+            """Frequencies in one of the models; NaN if it is lacking or has no equilibrium."""
             nonlocal growth
             unknown = np.full(len(coordinates), np.nan)
             if richer is None:
@@ -159,7 +161,7 @@ class Richer:
             q = np.zeros(0) if state is None else state.q[deforming(state.names, name)]
             plates[name] = theory.plate(np.pad(q, (0, theory.thick.size - len(q)))[None])
             variants.append((theory.slender, *theory.variants(plates[name])))
-        kinds = zip(*variants, strict=True)
+        kinds = zip(*variants, strict=True)  # all slender beams, all thick ones, all with plate action
         return [with_beams(of, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
 
     def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
@@ -185,9 +187,10 @@ class Richer:
         like_plated = matched(mac(shape[lower], flat, mass))[0]
         pairs = (thick, like), (plated, like_plated)
         shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
-        known = [of_thick.names.index(name) for name in of_slender.names]
-        bending = deep[:, known]
-        energy = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(known, known)], bending).real
+        # Modes of thick beams that no slender one resembles, and that bend enough to be excited.
+        shared = [of_thick.names.index(name) for name in of_slender.names]
+        bending = deep[:, shared]
+        energy = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(shared, shared)], bending).real
         unmatched = np.setdiff1d(np.arange(len(thick)), like)
         unseen = [j for j in unmatched if energy[j] > BENT and thick[j] < slender[lower].max(initial=0.0)]
         worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])

@@ -49,6 +49,7 @@ class JudgedLoops:
     """
 
     def __init__(self, state: SteadySystem, loops: Loops, cut: str | None = None) -> None:
+        """Put the laws around each richer model. If one has no such state, the errors are not known."""
         self.loops, self.cut, self.note, self.others = loops, cut, left_unjudged(state.system), dict[str, Other]()
         self.known = bool(judged_bodies(state.system)) or not self.note
         if not judged_bodies(state.system):

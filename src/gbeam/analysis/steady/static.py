@@ -141,11 +141,13 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
     """Describe a system at rest in a steady state: places, efforts and loads, with errors and warnings."""
     system, point, solution = state.system, state.point, standing(state, state.system)
     inputs = solution.inputs(system, None)
-    (begun, _), (resting, _) = (
-        histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
-        for y in (system.start[0][system.tree.free], point.y)
-    )
-    values = {key: history[0] for key, history in resting.items()}
+
+    def values_at(y: Floats) -> dict[str, Any]:
+        """Values by key at coordinates y (n,), with the rates and accelerations of the state."""
+        by_key, _ = histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
+        return {key: history[0] for key, history in by_key.items()}
+
+    begun, values = values_at(system.start[0][system.tree.free]), values_at(point.y)
     # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
     moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
     links = zip(point.tree.links, moving.q, moving.roots, strict=True)
@@ -153,7 +155,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
     for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
     stable, unstable, undecided = _stability(state)
-    errors, doubted = rest_errors(state, begun["place"][0], stable=bool(stable))
+    errors, doubted = rest_errors(state, begun["place"], stable=bool(stable))
     return Rest(
         motion=name,
         time=state.drive.time,
@@ -161,7 +163,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
         points=system.points,
         coordinates=system.coordinates,
         units=units_of(system),
-        point_displacement=values["place"] - begun["place"][0],
+        point_displacement=values["place"] - begun["place"],
         errors=errors,
         accelerated=state.accelerated,
         stable=stable,

@@ -51,16 +51,17 @@ class Channel(NamedTuple):
 
 
 def channels_of(plant: StateSpace, controllers: dict[str, Feedback]) -> tuple[float, list[Channel]]:
-    """Common period, s, and a channel for each controller; InputError unless the period is short. The first inputs and
-    outputs of the plant are those of the controllers, one after the other.
+    """Common period, s, of the samples, and a channel for each controller. InputError unless the period is short.
+
+    The first inputs and outputs of the plant are those of the controllers, in their order.
     """
     unit = next(iter(controllers.values())).sample
     ratios, common = list[Fraction](), Fraction(1)
     for name, controller in controllers.items():
         ratios.append(Fraction(controller.sample / unit).limit_denominator(SAMPLES))
         common = Fraction(math.lcm(*(r.numerator for r in ratios)), math.gcd(*(r.denominator for r in ratios)))
-        near = math.isclose(ratios[-1], controller.sample / unit, rel_tol=1e-9)
-        if not near or sum(common / r for r in ratios) > SAMPLES:
+        commensurate = math.isclose(ratios[-1], controller.sample / unit, rel_tol=1e-9)
+        if not commensurate or sum(common / r for r in ratios) > SAMPLES:
             problem = (
                 f"is {controller.sample:.10g} s beside {unit:.10g} s: no common period has at most {SAMPLES:,} samples"
             )
@@ -90,13 +91,16 @@ Over = Callable[[Fraction], tuple[Floats, Floats]]
 
 
 def over_parts(plant: StateSpace, period: float) -> Over:
-    """Function that returns Φ and Γ of a plant over a fraction of a period, s."""
+    """Function that returns the matrices Φ and Γ of a plant over a fraction of a period, s: x₊ = Φ x + Γ u with u
+    held.
+    """
     n, count = plant.b.shape
     block = np.zeros((n + count, n + count))
     block[:n, :n], block[:n, n:] = plant.a, plant.b
 
     @cache
     def over(part: Fraction) -> tuple[Floats, Floats]:
+        """Φ and Γ are blocks of the exponential of [[A, B], [0, 0]]."""
         whole = expm(block * (period * float(part)))
         return whole[:n, :n], whole[:n, n:]
 
@@ -104,8 +108,10 @@ def over_parts(plant: StateSpace, period: float) -> Over:
 
 
 def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | None = None) -> Loop:
-    """Map over the common period of a plant in the loop of `channels`. Its inputs are the plant's free ones, then the
-    references; with a `cut`, the index of a drive, a first input replaces that drive's commands.
+    """Map over the common period of a plant in the loop of `channels`.
+
+    Its inputs are the plant's free ones, then the references. With a `cut`, the index of a drive, a first input
+    replaces that drive's commands.
     """
     m, k = channels[-1].driven.stop, channels[-1].measured.stop
     free, first = plant.b.shape[1] - m, 0 if cut is None else 1
@@ -126,9 +132,9 @@ def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | N
     y = measured()
     # At one time all samples come before any command begins to act.
     events = sorted(
-        ((j + (each.part if acts else 0)) * Fraction(1, each.samples), acts, c)
-        for c, each in enumerate(channels)
-        for j in range(each.samples)
+        ((j + (channel.part if acts else 0)) * Fraction(1, channel.samples), acts, c)
+        for c, channel in enumerate(channels)
+        for j in range(channel.samples)
         for acts in (False, True)
     )
     for (time, acts, c), end in zip(events, [*(event[0] for event in events[1:]), Fraction(1)], strict=True):
@@ -151,8 +157,10 @@ def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | N
 
 
 def response_of(loop: tuple[Floats, Floats, Floats, Floats], step: float) -> Callable[[Floats], Complex]:
-    """Function that gives the complex gain (k,) at frequencies (k,) rad/s of a discrete loop (a, b, c, d) of one input
-    and one output; by Schur's form, whose triangle is solved at all frequencies at once.
+    """Function that gives the complex gain (k,) at frequencies (k,) rad/s of a discrete loop (a, b, c, d) with one
+    input and one output.
+
+    The triangle of Schur's form is solved by substitution at all frequencies at once.
     """
     triangle, basis = schur(loop[0], output="complex")
     b, c, d = basis.conj().T @ loop[1][:, 0], loop[2][0] @ basis, loop[3][0, 0]
@@ -168,18 +176,20 @@ def response_of(loop: tuple[Floats, Floats, Floats, Floats], step: float) -> Cal
 
 
 def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: float) -> Margin:
-    """Gain, phase, delay and modulus margins of an open loop (a, b, c, d), by steps, s, under negative feedback."""
+    """Gain, phase, delay and modulus margins of an open loop (a, b, c, d) with steps, s, under negative feedback."""
     highest, response = math.pi / step, response_of(loop, step)
     poles = np.log(np.linalg.eigvals(loop[0]).astype(complex) + 1e-300) / step
-    near = (np.abs(poles.imag)[:, None] + np.maximum(np.abs(poles.real), 1e-9 * highest)[:, None] * ABOUT).ravel()
-    w = np.unique(np.concatenate([np.geomspace(10.0**-DECADES * highest, highest, GRID), near]))
+    widths = np.maximum(np.abs(poles.real), 1e-9 * highest)[:, None]
+    about_poles = (np.abs(poles.imag)[:, None] + widths * ABOUT).ravel()
+    w = np.unique(np.concatenate([np.geomspace(10.0**-DECADES * highest, highest, GRID), about_poles]))
     w = w[(w >= 10.0**-DECADES * highest) & (w <= highest)]
     gains = response(w)
 
     def crossings(of: Callable[[Complex], Floats]) -> tuple[Floats, Complex]:
-        """Frequencies at which a function of the gain is zero, and the gains there."""
+        """Frequencies at which a function of the gain changes its sign, by halving, and the gains there."""
         values = of(gains)
-        starts = np.flatnonzero(np.isfinite(values[:-1] * values[1:]) & (values[:-1] * values[1:] < 0))
+        products = values[:-1] * values[1:]
+        starts = np.flatnonzero(np.isfinite(products) & (products < 0))
         low, high, above = w[starts], w[starts + 1], values[starts] > 0
         for _ in range(HALVINGS):
             middle = (low + high) / 2
@@ -188,8 +198,9 @@ def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: floa
         return high, response(high)
 
     # Frequencies of gains that are real and negative, and the factors that make them -1.
-    reals = zip(*(np.append(a, b) for a, b in zip(crossings(np.imag), (highest, gains[-1]), strict=True)), strict=True)
-    factors = [(x, -1 / gain.real) for x, gain in reals if gain.real < 0]  # real at Nyquist's frequency, too
+    frequencies, reals = crossings(np.imag)
+    frequencies, reals = np.append(frequencies, highest), np.append(reals, gains[-1])  # real at Nyquist's, too
+    factors = [(x, -1 / gain.real) for x, gain in zip(frequencies, reals, strict=True) if gain.real < 0]
     ones = zip(*crossings(lambda gain: np.abs(gain) - 1), strict=True)
     phases = [(x, float(np.angle(-gain))) for x, gain in ones]
     above = min(((k, x) for x, k in factors if k > 1), default=(math.inf, math.nan))
@@ -212,7 +223,8 @@ def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: floa
 class Loops:
     """A plant with sampled controllers around it, closed and cut at each drive, over their common `period`, s.
 
-    The first inputs and outputs of the plant are those of the controllers. Of several plants the laws are one.
+    The first inputs and outputs of the plant are those of the controllers. Loops around several plants have one set of
+    laws.
     """
 
     plant: StateSpace
@@ -229,7 +241,9 @@ class Loops:
         strained: Mapping[str, Strained] = MappingProxyType({}),
         name: str = "",
     ) -> Loops:
-        """The loops of a system about a state, with further `inputs` and `outputs`; InputError as of `channels_of`."""
+        """Make the loops of a system about a state, with further `inputs` and `outputs`; InputError as of
+        `channels_of`.
+        """
         controllers = state.system.controllers
         free = default_inputs(state.system, state.drive.motion) if inputs is None else inputs
         wanted = [*default_outputs(state.system), *strained] if outputs is None else outputs
@@ -262,19 +276,19 @@ class Loops:
 
     @cached_property
     def cuts(self) -> dict[str, Loop]:
-        """Loops that are cut at each drive that is sampled once in the period, the others closed."""
+        """Loops that are cut at each drive that is sampled once in the period, while the others stay closed."""
         once = [name for name in self.drives if name not in self.often]
         return {name: loop_of(self.plant, self.channels, self._over, cut=self.drives.index(name)) for name in once}
 
     @cached_property
     def growth(self) -> float:
-        """Rate, 1/s, at which the closed loop grows; zero where it does not."""
+        """Rate, 1/s, at which the closed loop grows; zero if it does not."""
         size = float(np.abs(np.linalg.eigvals(self.closed.a)).max(initial=0.0))
         return math.log(size) / self.period if size > 1 + ROUNDING else 0.0
 
     @cached_property
     def margins(self) -> tuple[Margin, ...]:
-        """Margins of the loops that are cut; none of a loop that grows, which has none to lose."""
+        """Margins of the loops that are cut; none if the closed loop grows, since it has none to lose."""
         margins = []
         for name, opened in self.cuts.items() if not self.growth else ():
             c, d = (-part[self.drives.index(name)][None] for part in opened.command)
@@ -283,7 +297,7 @@ class Loops:
 
     def state_space(self, cut: str | None) -> StateSpace:
         """State-space model over the period: the closed loop or, with a drive's name as `cut`, the open loop from that
-        drive to its commands; with the margins at every drive that has any.
+        drive to its commands. It has the margins at every drive that has any.
         """
         plant, drives, channels = self.plant, self.drives, self.channels
         period = f"the common period of {1e3 * self.period:.4g} ms"
@@ -346,7 +360,7 @@ def _plant(
     strained: Mapping[str, Strained] = MappingProxyType({}),
     name: str = "",
 ) -> StateSpace:
-    """The plant of a system about a state, whose first inputs and outputs are those of the controllers."""
+    """Linear model of a system about a state. Its first inputs and outputs are those of the controllers."""
     commanded = [drive for controller in controllers.values() for drive in controller.drive]
     measured = [signal for controller in controllers.values() for signal in controller.measure]
     options = {"inputs": [*commanded, *inputs], "outputs": [*measured, *outputs]}
@@ -359,8 +373,10 @@ NEAR = 1e-7  # of errors and states, by their size or one, within which the law 
 
 
 def linear_law(name: str, controller: Feedback, t: float, measured: Floats, drives: tuple[Signal, ...]) -> Law:
-    """Matrices of a controller's law. A function is linearised about the error where its system rests, or about none,
-    if it asks there for no effort and keeps its state; InputError otherwise.
+    """Matrices of a controller's law.
+
+    A function is linearised about the error with which its system rests, or about zero error, if there it asks for no
+    effort and keeps its state; InputError otherwise.
     """
     if isinstance(controller.law, tuple):
         return controller.law

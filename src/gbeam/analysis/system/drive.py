@@ -18,8 +18,10 @@ from gbeam.results.parts import Base
 @dataclass(frozen=True)
 class Drive:
     """Drives of a system in a steady state: profiles and motion of the ground at a time, or a frozen motion `base` of
-    the ground, beside gravity; forces and loads times a factor; a coordinate, or the hub below where none is named,
-    turns at a rate rad/s that changes by `faster` rad/s², and has turned by an angle.
+    the ground, beside gravity.
+
+    Forces and loads act times a factor. A coordinate, or the hub below where none is named, turns at a rate rad/s that
+    changes by `faster` rad/s², and has turned by an angle.
     """
 
     motion: Motion | None = None
@@ -32,17 +34,19 @@ class Drive:
     faster: float = 0.0
 
     def inputs(self, system: System) -> Inputs:
-        """Inputs of a system's tree; a coordinate that turns without being prescribed is added as the last of these."""
+        """Inputs of a system's tree. A coordinate that turns without being prescribed is appended to the prescribed
+        ones.
+        """
         hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
         inputs, base = system.inputs(np.asarray(float(self.time)), None if hub_turns else self.motion), self.base
         if hub_turns:
-            base = self.motion.mount.base(*(np.asarray(float(each)) for each in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
+            base = self.motion.mount.base(*(np.asarray(float(value)) for value in (self.turn, self.rate, 0.0)))  # type: ignore[union-attr, arg-type]
         if base is not None:
             ground = inputs.ground
             a = base.a_WO_B if hub_turns else base.a_WO_B + ground.a
             inputs = replace(inputs, ground=replace(ground, w=base.w_WB_B, a=a, alpha=base.alpha_WB_B))
         if self.factor != 1.0:
-            loads = tuple(None if each is None else self.factor * each for each in inputs.loads)
+            loads = tuple(None if load is None else self.factor * load for load in inputs.loads)
             wrenches = None if inputs.wrenches is None else self.factor * inputs.wrenches
             inputs = replace(inputs, loads=loads, wrenches=wrenches)
         prescribed = np.zeros((3, 0)) if inputs.prescribed is None else np.array(inputs.prescribed)
@@ -65,12 +69,14 @@ class Drive:
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns: `turning`, or the only prescribed angle, or the only angle; "" for a hub."""
+    """Name of the coordinate that turns: `turning`, or the only prescribed angle, or the only angle. It is "" for a
+    hub.
+    """
     angles = [
-        f"{name}.{each}"
+        f"{name}.{coordinate}"
         for name, joint in system.joints.items()
-        for each in joint.coordinates
-        if each.startswith("angle")
+        for coordinate in joint.coordinates
+        if coordinate.startswith("angle")
     ]
     if turning is None and isinstance(motion, Hub):
         return ""
@@ -82,7 +88,8 @@ def turning_of(system: System, motion: Motion | None, turning: str | None) -> st
             fix = f"choose from {', '.join(angles)}"
             raise InputError("turning", f"is {turning!r}, which is no angle of a joint", fix)
         return turning
-    choices = [each for each in angles if system.coordinates.index(each) in system.tree.fixed] or angles
+    prescribed = [angle for angle in angles if system.coordinates.index(angle) in system.tree.fixed]
+    choices = prescribed or angles
     if len(choices) != 1:
         raise InputError("turning", "is missing", f"say which angle turns: {', '.join(choices)}")
     return choices[0]
@@ -94,7 +101,7 @@ def turning_at(drive: Drive, value: float) -> Drive:
 
 
 def loaded(drive: Drive, value: float) -> Drive:
-    """Return drives with loads and forces times a factor."""
+    """Return drives whose loads and forces are multiplied by a factor."""
     return replace(drive, factor=value)
 
 

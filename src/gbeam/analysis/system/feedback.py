@@ -34,6 +34,7 @@ class SystemControllers:
     """The controllers of a system: see :class:`gbeam.integrate.sampled.Controllers`."""
 
     def __init__(self, system: System, tree: Any = None, laws: list[TracedLaw] | None = None) -> None:
+        """Prepare the parts of the commands that belong to each controller, and where each command acts."""
         self.system, self.tree, self.traced_laws = system, system.tree if tree is None else tree, laws
         self.names, self.every = list[str](system.controllers), list[Feedback](system.controllers.values())
         ends = [0, *accumulate(len(controller.drive) for controller in self.every)]
@@ -52,10 +53,10 @@ class SystemControllers:
     @property
     def timing(self) -> list[tuple[float, float]]:
         """Time between samples and delay of each controller, s."""
-        return [(each.sample, each.delay) for each in self.every]
+        return [(controller.sample, controller.delay) for controller in self.every]
 
     def corners(self, start: float, end: float) -> Floats:
-        """Times of samples, and at which commands begin to act, s."""
+        """Times, s, of samples and of commands that begin to act."""
         changes = [start + delay + np.arange(0.0, end - start, period) for period, delay in self.timing]
         samples = [start + np.arange(0.0, end - start, period) for period, _ in self.timing]
         return np.concatenate([*changes, *samples]) if changes else np.zeros(0)
@@ -74,7 +75,7 @@ class SystemControllers:
         return self.every[controller].start if self.traced_laws is None else self.traced_laws[controller].start
 
     def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
-        """Command of one controller by its law, that command within its limits, and its next state."""
+        """Command that the law of one controller asks for, that command within its limits, and the next state."""
         if self.traced_laws is not None:
             law = self.traced_laws[controller]
             k = int(np.abs(law.times - t).argmin())
@@ -86,7 +87,7 @@ class SystemControllers:
         return asked, feedback.limited(asked), state
 
     def refuse_memory(self, controller: int, t: float, measured: Array, state: Any, answer: Any) -> None:
-        """Raise InputError if a function answers a sample otherwise than it did."""
+        """Raise InputError if a law that is a function does not repeat its answer to a sample."""
         if self.traced_laws is None:
             with naming_controller(self.names[controller]):
                 refuse_memory(self.every[controller], t, measured, state, answer)
@@ -103,14 +104,14 @@ class SystemControllers:
     @cached_property
     def traced(self) -> bool:
         """True if JAX traces a controller."""
-        return any(each.traced for each in self.every)
+        return any(controller.traced for controller in self.every)
 
     def of(self, residual: Any, laws: list[TracedLaw] | None = None) -> SystemControllers:
-        """Controllers that measure by the values of a tree, and command by those of laws."""
+        """The controllers with measurements by the values of another tree, and commands by other laws."""
         return SystemControllers(self.system, residual, laws)
 
     def laws(self, times: list[Floats]) -> list[TracedLaw]:
-        """Laws of the controllers, each at the times (s,) of its samples, s, as functions that JAX traces."""
+        """Laws of the controllers as functions that JAX traces, each at the times (s,) of its samples, s."""
         for name, controller in self.system.controllers.items():
             for signal in {*controller.measure} & carried_of(self.system).keys():
                 if holds_jax(self.system.bodies[signal.partition(".")[0]]):
@@ -120,7 +121,9 @@ class SystemControllers:
 
 
 def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop:
-    """Record of the controllers at times (t,) s: samples, commands asked for and commands acting, as held then."""
+    """Record of the controllers at times (t,) s: samples, commands asked for, and commands that act. Between samples
+    they are held.
+    """
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
     measured, asked, acting, saturated = [], [], [], []
     largest: list[list[Floats]] = [[], [], []]
@@ -154,7 +157,9 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
 
 
 def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
-    """A controller's law at the times of its samples (s,) s, as a function of its parameters and references for JAX."""
+    """Express a controller's law at the times of its samples (s,) s as a function of its parameters and references for
+    JAX.
+    """
     from jax.flatten_util import ravel_pytree
 
     from gbeam.integrate.traced import TracedLaw
@@ -171,6 +176,7 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
             law, parameters = _of_function(controller, start, restored)
 
     def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
+        """Command as the law asks for it, the command within its limit, and the next state."""
         parts, limit = parameters
         asked, after = law(parts, t, references + sign * y, state)
         if limit is None:
@@ -187,7 +193,9 @@ def _linear(parts: Any, _: Any, error: Array, state: Array) -> tuple[Array, Arra
 
 
 def _of_function(controller: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
-    """A law that is a function, compiled, with the values that it refers to as first argument; and these values."""
+    """Compile a law that is a function, with the values that it refers to as its first argument. Returns the compiled
+    function and these values.
+    """
     import jax
     import jax.numpy as jnp
     from jax.flatten_util import ravel_pytree
@@ -195,6 +203,7 @@ def _of_function(controller: Feedback, start: Array, restored: Any) -> tuple[Any
     count = len(controller.drive)
 
     def plain(t: Any, error: Array, state: Array) -> tuple[Array, Array]:
+        """Efforts and next state as flat arrays."""
         if controller.stateful:
             efforts, after = answer_of(controller, t, error, restored(state))
             return jnp.asarray(efforts, dtype=float).reshape(-1), ravel_pytree(after)[0].astype(float)

@@ -21,26 +21,32 @@ from gbeam.mechanics.tree.system import System
 
 
 class Strained(NamedTuple):
-    """A gauge on a body: strains by unit coordinates (n,) or, with a `section`, by unit force and moment there (6,)."""
+    """A gauge on a body: strains per unit coordinate (n,) or, with a `section`, per unit force and moment there
+    (6,).
+    """
 
     body: str
     share: Floats
     section: int | None = None
 
     def read(self, system: System, state: State, acting: list[list[Acting]], inputs: Inputs) -> Array:
-        """Reading (t,) of the gauge at states (t,) of the system's tree."""
+        """Reading (t,) of the gauge at states (t,) of the system's tree, where wrenches are `acting` on points of
+        bodies.
+        """
         k, body = system.order.index(self.body), system.flexible[self.body]
         if self.section is None:
             return state.q[k][-1] @ self.share
         assert body.sections is not None
         q, qd, qdd, base, hung = carried(system, state, self.body, acting)
         loads = sections(body, body.sections, base, q, qd, qdd, inputs.loads[k], hung)
-        of_section = [load[:, self.section] for load in (loads.section_force, loads.section_moment)]
-        return namespace(*of_section).concatenate(of_section, axis=-1) @ self.share
+        force, moment = loads.section_force[:, self.section], loads.section_moment[:, self.section]
+        return namespace(force, moment).concatenate([force, moment], axis=-1) @ self.share
 
 
 def carrying(system: System, name: str) -> Strained:
-    """Gauge that reads a component of the force or moment in a section, by its name: ``strip.root.moment_y``."""
+    """Make the gauge that reads a component of the force or moment in a section, by its name, such as
+    ``strip.root.moment_y``.
+    """
     owner, _, component = name.rpartition(".")
     body, _, point = owner.partition(".")
     kind, axis = component.split("_")
@@ -59,8 +65,10 @@ def read_signals(
     inputs: Inputs,
     strained: Mapping[str, Strained] | None = None,
 ) -> Array:
-    """Values (..., k) of the `wanted` signals, gauges `strained` and section loads among them, at free coordinates,
-    rates and accelerations (..., n) and inputs, broadcast.
+    """Values (..., k) of the `wanted` signals at free coordinates, rates and accelerations (..., n) and inputs,
+    broadcast.
+
+    Gauges `strained` and loads of sections may be among the signals.
     """
     section_loads = carried_of(system)
     gauges = {**(strained or {}), **{name: carrying(system, name) for name in wanted if name in section_loads}}
@@ -88,9 +96,8 @@ def read_signals(
     )
     state = tree.motion(y, yd, ydd, inputs)
     *_, acting = tree.demanded(state, inputs)
-    others = iter(xp.moveaxis(plain, -1, 0))
-    signals = [
-        gauges[name].read(system, state, acting, inputs).reshape(shape) if name in gauges else next(others)
-        for name in wanted
-    ]
+    others, signals = iter(xp.moveaxis(plain, -1, 0)), []
+    for name in wanted:
+        gauge = gauges.get(name)
+        signals.append(next(others) if gauge is None else gauge.read(system, state, acting, inputs).reshape(shape))
     return xp.stack([xp.broadcast_to(values, shape) for values in signals], axis=-1)

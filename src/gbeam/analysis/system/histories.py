@@ -35,16 +35,16 @@ class Carried(NamedTuple):
 
     @classmethod
     def joined(cls, pieces: list[Carried]) -> Carried:
-        """A body over all times of pieces, one after the other."""
+        """Join pieces of a body's history, one after the other in time."""
         if len(pieces) == 1:
             return pieces[0]
         first = pieces[0]
         xp = namespace(*first[:3])
-        bases, hung = ([getattr(piece, name) for piece in pieces] for name in ("base", "hung"))
-        base = Base(*(xp.concatenate([getattr(each, name) for each in bases]) for name in _OF_BASE))
-        load = (xp.concatenate([getattr(each, name) for each in hung]) for name in ("force", "moment"))
+        base = Base(*(xp.concatenate([getattr(piece.base, name) for piece in pieces]) for name in _OF_BASE))
+        force = xp.concatenate([piece.hung.force for piece in pieces])
+        moment = xp.concatenate([piece.hung.moment for piece in pieces])
         q, qd, qdd = (xp.concatenate([piece[k] for piece in pieces]) for k in range(3))
-        return cls(q, qd, qdd, base, Hung(first.hung.station, *load))
+        return cls(q, qd, qdd, base, Hung(first.hung.station, force, moment))
 
     def at(self, times: Any) -> Carried:
         """Return the body at an index, slice or array of the times."""
@@ -57,8 +57,10 @@ class Carried(NamedTuple):
 def histories(
     system: System, y: Array, yd: Array, ydd: Array, inputs: Inputs, *, inertial: bool
 ) -> tuple[dict[str, Floats], dict[str, Carried]]:
-    """Histories by key, of points, coordinates, efforts and the ground's load, from free coordinates (t, n) and rates,
-    with momentum and energy if the ground is `inertial`; and the state of each flexible body by name.
+    """Histories by key of points, coordinates, efforts and the ground's load, and the states of flexible bodies by
+    name.
+
+    They follow from free coordinates (t, n) and rates. If the ground is `inertial`, they include momentum and energy.
     """
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
@@ -95,8 +97,8 @@ def deflections(body: Structure, q: Array) -> Array:
 
 
 def deflection(system: System, point: str, q: Array) -> Array | None:
-    """Displacement (t, 3) m of a named point relative to its flexible body's root, by coordinates (t, n); None if the
-    point is of a rigid body.
+    """Displacement (t, 3) m of a named point relative to the root of its flexible body, from coordinates (t, n). None
+    if the point belongs to a rigid body.
     """
     name, k = system.point("point", point)
     body = system.flexible.get(name)
@@ -106,7 +108,7 @@ def deflection(system: System, point: str, q: Array) -> Array | None:
 
 
 def carried(system: System, state: State, name: str, acting: list[list[Acting]]) -> Carried:
-    """State of one flexible body over time; `acting` has the wrenches on the points of every body."""
+    """State of one flexible body over time. `acting` has the wrenches on the points of every body."""
     k = system.order.index(name)
     places, root = list(stations_of(system.bodies[name]).values()), state.roots[k]  # type: ignore[arg-type]
     q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
@@ -121,15 +123,14 @@ def carried(system: System, state: State, name: str, acting: list[list[Acting]])
 
 
 def loads_of(body: Structure, of: Carried, time: Floats) -> Loads:
-    """Loads along a body at times (t,) s, at which it is in a state."""
+    """Loads along a body at times (t,) s, from its state at these times."""
     loads = section_forces(body, of.base, of.q, of.qd, of.qdd, time, hung=of.hung)
     xp = namespace(loads.force)
+    force, moment = xp.abs(loads.force).max(axis=(0, 2)), xp.abs(loads.moment).max(axis=(0, 2))
     # A joint that is free carries nothing but rounding.
-    force, moment = (xp.abs(load).max(axis=(0, 2)) for load in (loads.force, loads.moment))
     idle = {"force": force * body.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * body.length}
-    kept: dict[str, Any] = {
-        key: xp.where(none[:, None], 0.0, getattr(loads, key))
-        for name, none in idle.items()
-        for key in (name, f"section_{name}")
-    }
+    kept = dict[str, Any]()
+    for name, none in idle.items():
+        for key in (name, f"section_{name}"):
+            kept[key] = xp.where(none[:, None], 0.0, getattr(loads, key))
     return replace(loads, **kept)

@@ -106,7 +106,7 @@ class Initial(Value):
             if np.shape(self.acceleration) != (3,):
                 fix = "give three finite components, x, y and z"
                 raise InputError("acceleration", f"is {self.acceleration!r}", fix)
-            object.__setattr__(self, "acceleration", tuple(float(each) for each in self.acceleration))
+            object.__setattr__(self, "acceleration", tuple(float(component) for component in self.acceleration))
         for name in ("tip_displacement", "tip_velocity"):
             for axis in getattr(self, name) or {}:
                 choice(name, axis, get_args(Across))
@@ -159,10 +159,12 @@ class Moved(NamedTuple):
 
 
 def _moved(where: str, points: Mapping[str, Mapping[Any, float] | None] | None) -> list[Moved]:
-    """Components of points by name; those of the tip alone are given without its name."""
-    of = {name: values or {} for name, values in (points or {}).items()}
-    places = {name: where if where.startswith("tip_") else f"{where}.{name}" for name in of}
-    return [Moved(f"{places[name]}.{axis}", name, axis, of[name][axis]) for name in of for axis in of[name]]
+    """Components of points by name. Those of the tip alone are given at `where`, others at the point's name below."""
+    moved = list[Moved]()
+    for name, values in (points or {}).items():
+        place = where if where.startswith("tip_") else f"{where}.{name}"
+        moved += [Moved(f"{place}.{axis}", name, axis, value) for axis, value in (values or {}).items()]
+    return moved
 
 
 def _in_words(moved: Sequence[Moved], how: str, size: float, unit: str) -> str:
@@ -182,38 +184,41 @@ def begun(initial: Initial | State) -> Initial:
 
 
 def on_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) -> dict[str, list[Moved]]:
-    """Components by the names of bodies that deform, the points without them. A point may be named without its body
-    where one alone deforms. InputError if there is no such point, or no shape moves it so.
+    """Assign components to the bodies that deform, by name; the points lose their bodies' names.
+
+    A point may be named without its body where one body alone deforms. InputError if there is no such point, or no
+    shape moves it in this direction.
     """
-    out: dict[str, list[Moved]] = {name: [] for name in flexible}
-    for each in moved:
-        owner, _, point = each.point.rpartition(".")
-        deforming = {name: body for name, body in flexible.items() if body.size}
-        points = [f"{name}.{station}" for name, body in deforming.items() for station in stations_of(body)]
+    by_body: dict[str, list[Moved]] = {name: [] for name in flexible}
+    deforming = {name: body for name, body in flexible.items() if body.size}
+    points = [f"{name}.{station}" for name, body in deforming.items() for station in stations_of(body)]
+    for component in moved:
+        owner, _, point = component.point.rpartition(".")
         if not owner and len(deforming) == 1:
             (owner,) = deforming
-        where = f"response.initial.{each.where}"
+        where = f"response.initial.{component.where}"
         if f"{owner}.{point}" not in points:
-            problem = f"is of {each.point}, which is no point of a body that deforms"
+            problem = f"is of {component.point}, which is no point of a body that deforms"
             if not owner and len(deforming) > 1:
-                problem = f"is of {each.point}, and {len(deforming)} bodies deform"
+                problem = f"is of {component.point}, and {len(deforming)} bodies deform"
             fix = f"name one of {', '.join(points)}" if points else "leave it out: no body deforms"
             raise InputError(where.rpartition(".")[0], problem, fix)
         body = flexible[owner]
-        number = "xyz".index(each.axis)
+        number = "xyz".index(component.axis)
         if not np.any(body.station_places.first[stations_of(body)[point], number]):
             family = ("axial", "y", "z")[number]
             fix = f"give model.modes.{family} = 1 or more"
             raise InputError(where, "is along a direction without shapes", fix)
-        if any((point, each.axis) == (other.point, other.axis) for other in out[owner]):
+        if any((point, component.axis) == (other.point, other.axis) for other in by_body[owner]):
             raise InputError(where, "is given twice", "keep one of them")
-        out[owner].append(Moved(where, point, each.axis, each.value))
-    return out
+        by_body[owner].append(Moved(where, point, component.axis, component.value))
+    return by_body
 
 
 def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
-    """Coordinates (n,) of least strain energy with displacements of points, by Newton's method with multipliers; NaN
-    where JAX traces the body and there are none.
+    """Coordinates (n,) of least strain energy with displacements of points.
+
+    They are found by Newton's method with Lagrange's multipliers; NaN where JAX traces the body and there are none.
     """
     stations, axes, wanted = _rows(body, moved)
     if body.traced:
@@ -223,8 +228,8 @@ def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
     q = np.zeros(body.size)
     for _ in range(_ITERATIONS):
         coefficients, elastic = body.about(q)
-        left = wanted - body.displacement(q)[stations, axes]
-        change = _constrained(coefficients.stiffness, -elastic, body.station_slopes(q)[stations, axes], left)
+        missing = wanted - body.displacement(q)[stations, axes]
+        change = _constrained(coefficients.stiffness, -elastic, body.station_slopes(q)[stations, axes], missing)
         q = q + change
         if np.abs(change).max() <= 1e-12 * np.abs(q).max():
             return q
@@ -233,7 +238,7 @@ def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
 
 
 def rates_of(body: Structure, q: Array, moved: Sequence[Moved]) -> Array:
-    """Rates (n,) with velocities of points, in the shape of least strain energy; zero without any."""
+    """Rates (n,) with the velocities of points, in the shape of least strain energy; zero without any velocity."""
     if not moved:
         return 0.0 * q
     stations, axes, wanted = _rows(body, moved)
@@ -241,16 +246,15 @@ def rates_of(body: Structure, q: Array, moved: Sequence[Moved]) -> Array:
 
 
 def _rows(body: Structure, moved: Sequence[Moved]) -> tuple[tuple[int, ...], tuple[int, ...], Array]:
-    """Stations and axes of components, and their values (k,)."""
+    """Numbers of the stations and of the axes of components, and their values (k,)."""
     indices = stations_of(body)
-    stations, axes = (
-        tuple(each) for each in zip(*((indices[m.point], "xyz".index(m.axis)) for m in moved), strict=True)
-    )
-    return stations, axes, np.asarray([m.value for m in moved], dtype=float)
+    stations = tuple(indices[component.point] for component in moved)
+    axes = tuple("xyz".index(component.axis) for component in moved)
+    return stations, axes, np.asarray([component.value for component in moved], dtype=float)
 
 
 def _constrained(stiffness: Array, force: Array, slopes: Array, value: Array) -> Array:
-    """Solve K x = f + Jᵀ λ with J x = v for x (n,)."""
+    """Solve K x = f + Jᵀ λ with J x = v for x (n,); J are the `slopes`, v the `value`."""
     solve = namespace(stiffness, force, slopes).linalg.solve
     unconstrained, shapes = solve(stiffness, force), solve(stiffness, slopes.T)
     return unconstrained + shapes @ solve(slopes @ shapes, value - slopes @ unconstrained)

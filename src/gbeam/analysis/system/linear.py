@@ -30,14 +30,16 @@ from gbeam.results.state_space import Signal, StateSpace
 
 
 def framed(whirl: Whirl | None, frequency: Floats, modes: Complex) -> dict[str, Any]:
-    """Fields of a result that say the frame of frequencies (k,) Hz of modes (n, k), with those in the ground frame."""
+    """Fields of a result that say in which frame frequencies (k,) Hz of modes (n, k) are, with those in the ground
+    frame. They are empty where nothing turns.
+    """
     if whirl is None or not whirl.turning:
         return {}
     return {"frame": "turning", "ground_frequency": whirl.in_ground(frequency, modes)}
 
 
 def largest_component(shape: Complex) -> Complex:
-    """The component (k,) of each mode (k, ...) that is largest in size."""
+    """The component of each mode (k, ...) that has the largest absolute value, (k,)."""
     flat = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
     return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
 
@@ -45,13 +47,15 @@ def largest_component(shape: Complex) -> Complex:
 def instabilities(
     point: Steady, moving: Vibrations, directions: Callable[..., tuple[str, ...]] | None = None
 ) -> tuple[Instability, ...]:
-    """Growing motions about a steady state, by its words for directions, or others."""
+    """Growing motions about a steady state, described by its words for directions, or by other ones."""
     say = partial(directions, point) if directions else point.directions
+
+    def directions_of(modes: Complex) -> tuple[str, ...]:
+        return say(modes) if modes.size else ()
+
     flutter = np.flatnonzero(moving.flutter)
-    diverging, fluttering = (
-        zip(values, say(modes) if modes.size else (), strict=True)
-        for values, modes in ((moving.diverging, moving.divergence), (moving.value[flutter], moving.modes[:, flutter]))
-    )
+    diverging = zip(moving.diverging, directions_of(moving.divergence), strict=True)
+    fluttering = zip(moving.value[flutter], directions_of(moving.modes[:, flutter]), strict=True)
     return (
         *(Instability("divergence", float(v.real), 0.0, way) for v, way in diverging),
         *(Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), way) for v, way in fluttering),
@@ -59,8 +63,8 @@ def instabilities(
 
 
 def frozen(system: System, motion: Motion | None, time: float, at: str) -> SteadySystem:
-    """State of a system to linearise about: `at` is "rest", its equilibrium, or "start", its motion at the start, its
-    bodies bent as in inertia relief.
+    """State of a system to linearise about: its equilibrium if `at` is "rest", or its motion at the start, with bodies
+    bent as in inertia relief, if it is "start".
     """
     choice("at", at, ("rest", "start"))
     drive = Drive(motion, time)
@@ -93,12 +97,12 @@ def linearize_system(
     read = partial(read_signals, system, local.tree, wanted, strained=strained)
     values, (by_y, by_yd, by_ydd) = _outputs(local, read)
     slopes = by_y - by_ydd @ state.follows, by_yd, by_ydd
-    b, direct = _inputs(system, local, state.names, [drivable[each] for each in driven], read)
-    driving = tuple(Signal(each, drivable[each].unit) for each in driven)
+    b, direct = _inputs(system, local, state.names, [drivable[signal] for signal in driven], read)
+    driving = tuple(Signal(signal, drivable[signal].unit) for signal in driven)
     a, b, c, d = state.linear._replace(inputs=b).state_space(*slopes, direct)
     names = state.names
     per = {"": "", "_rate": "/s"}  # of names and units; rotations of a ball are counted from this state
-    states = [Signal(f"{each}{end}", units.get(each, "") and units[each] + per[end]) for end in per for each in names]
+    states = [Signal(f"{q}{end}", units[q] + per[end] if units.get(q) else "") for end in per for q in names]
     return StateSpace(
         a=a,
         b=b,
@@ -106,7 +110,7 @@ def linearize_system(
         d=d,
         states=tuple(states),
         inputs=driving,
-        outputs=tuple(Signal(each, units[each]) for each in wanted),
+        outputs=tuple(Signal(signal, units[signal]) for signal in wanted),
         state=np.concatenate([local.y, local.yd]),
         input=np.zeros(len(driving)),
         output=values,
@@ -140,22 +144,26 @@ def _moves_of(system: System, motion: Motion | None) -> dict[str, Driven]:
 
 
 def default_inputs(system: System, motion: Motion | None) -> list[str]:
-    """Driven coordinates, the components of all forces, and accelerations of the base and of prescribed coordinates."""
-    driven = {f"{name}.{each}" for name, joint in system.joints.items() for each in joint.efforts}
-    drives = [each for each in drives_of(system) if each in driven or each.partition(".")[0] in system.forces]
+    """Names of driven coordinates, components of all forces, and accelerations of the base and of prescribed
+    coordinates.
+    """
+    driven = {f"{name}.{coordinate}" for name, joint in system.joints.items() for coordinate in joint.efforts}
+    drives = [name for name in drives_of(system) if name in driven or name.partition(".")[0] in system.forces]
     return [*drives, *_moves_of(system, motion)]
 
 
 def default_outputs(system: System) -> list[str]:
-    """Coordinates, their rates and the places of points."""
+    """Names of coordinates, their rates and the places of points."""
     others = ("acceleration", "velocity", "attitude", "spin")
-    return [each for each in signals_of(system) if not each.rpartition(".")[2].startswith(others)]
+    return [name for name in signals_of(system) if not name.rpartition(".")[2].startswith(others)]
 
 
 def _inputs(
     system: System, local: Point, names: Sequence[str], chosen: Sequence[Driven], read: Callable[..., Any]
 ) -> tuple[Floats, Floats]:
-    """Generalised forces (n, m) of unit inputs, and their direct feedthrough (k, m) to the outputs of `read`."""
+    """Generalised forces (n, m) of unit inputs, and their direct feedthrough (k, m) to the outputs of `read`, by
+    complex steps.
+    """
     state = local.y + 0j, local.yd + 0j, local.ydd + 0j
     now = tuple(values[None] for values in state)
     forces, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))
@@ -171,7 +179,7 @@ def _inputs(
 
 
 def _moved(inputs: Inputs, by: Driven) -> Inputs:
-    """Inputs with a complex step in one of them: an acceleration of the ground, or an entry of an array."""
+    """Inputs with a complex step in one of them: in an acceleration of the ground, or in an entry of an array."""
     if by.way in ("a", "alpha"):
         faster = getattr(inputs.ground, by.way) + 1j * STEP * np.eye(3)[by.at]
         return replace(inputs, ground=replace(inputs.ground, **{by.way: faster}))

@@ -25,46 +25,50 @@ SLIGHT = 1e-6  # of the loads, by which their stiffness is looked at
 
 
 class Equilibria:
-    """Workspace of a search: steady states of systems, what turns held, by the rate or factor of their drives. A new
-    one begins at coordinates extrapolated from up to three lower values, and so takes fewer corrections.
+    """Workspace of a search: steady states of systems, in which what turns is held, by the rate or factor of their
+    drives.
+
+    A search for a new one begins at coordinates extrapolated from up to three lower values, and so takes fewer
+    corrections.
     """
 
     def __init__(self) -> None:
         self._of: dict[int, tuple[System, dict[float, SteadySystem]]] = {}
 
     def steady(self, system: System, value: float, drive: Drive, *, held: bool = False) -> SteadySystem:
-        """Return the steady state of a system by its drive, whose rate or factor is the value."""
-        known = self._known(system)
-        if value not in known:
-            start = None if is_linear(held_tree(system, drive)) else _continued(known, value)
-            known[value] = steady(system, drive, held=True, start=start)
-        return release(known[value], held=held)
+        """Return the steady state of a system under its drive, whose rate or factor is the value."""
+        states = self._states(system)
+        if value not in states:
+            start = None if is_linear(held_tree(system, drive)) else _continued(states, value)
+            states[value] = steady(system, drive, held=True, start=start)
+        return release(states[value], held=held)
 
     def ahead(self, system: System, drives: Mapping[float, Drive]) -> None:
-        """Solve for states at several values at once; those that fail are left to `steady`, one by one."""
-        known = self._known(system)
-        new = {value: drive for value, drive in drives.items() if value not in known}
-        if not new or not known:
+        """Solve for the states at several values at once. Those that fail are left to `steady`, one by one."""
+        states = self._states(system)
+        new = {value: drive for value, drive in drives.items() if value not in states}
+        if not new or not states:
             return
         tree = held_tree(system, next(iter(new.values())))
         if is_linear(tree):
             return  # which takes no search
-        starts = np.array([_continued(known, value) for value in new])
+        starts = np.array([_continued(states, value) for value in new])
         points = rested_together(system, tree, [drive.inputs(system) for drive in new.values()], starts)
         for (value, drive), solved in zip(new.items(), points, strict=True):
             if solved is not None:
                 point, slopes = solved
-                known[value] = SteadySystem(system, drive, point, slopes if point.minimal else None)
+                states[value] = SteadySystem(system, drive, point, slopes if point.minimal else None)
 
-    def _known(self, system: System) -> dict[float, SteadySystem]:
+    def _states(self, system: System) -> dict[float, SteadySystem]:
+        """States of a system by their values; the system is stored, too, so that its id stays its own."""
         return self._of.setdefault(id(system), (system, {}))[1]
 
 
 def _continued(states: Mapping[float, SteadySystem], value: float) -> Floats | None:
-    """Coordinates (n,) extrapolated to a value from states at up to three lower ones; None if there are none."""
+    """Extrapolate coordinates (n,) to a value from the states at up to three lower ones; None if there are none."""
     below: list[float] = []
     for lower in sorted(states, reverse=True):
-        # The nearest one, then those as far apart as it is from the value.
+        # The nearest one, then others at least as far from one another as it is from the value.
         if lower <= value and len(below) < 3 and (not below or below[-1] - lower >= value - below[0]):
             below.append(lower)
     if not below:
@@ -92,7 +96,7 @@ class Path:
 
 
 def refuse_changing(path: Path, system: System, rate: float) -> None:
-    """Refuse a system whose equations change as it turns at a rate, rad/s: it has no frequencies."""
+    """Refuse a system whose equations change as it turns at a rate, rad/s. Such a system has no frequencies."""
     if path(system, rate).changing:
         joint = path.drive.coordinate.rpartition(".")[0]
         fix = (
@@ -104,17 +108,20 @@ def refuse_changing(path: Path, system: System, rate: float) -> None:
 
 
 def share_of_loads(path: Path, system: System) -> float:
-    """The larger of two effects of loads and forces, to first order: stiffness over the system's, displacement over
-    its extent. The path is that of :func:`loaded` drives.
+    """The larger of two effects of loads and forces to first order: their stiffness as a share of the system's, and the
+    displacement as a share of its extent.
+
+    The path is that of :func:`loaded` drives.
     """
     inputs = path.drive.inputs(system)
-    if not any(each is not None and np.any(each) for each in (*inputs.loads, inputs.wrenches)):
+    if not any(load is not None and np.any(load) for load in (*inputs.loads, inputs.wrenches)):
         return 0.0  # which the differences below are not, by rounding
     rest, slight = path(system, 0.0), path(system, SLIGHT)
-    square, modes = symmetric_modes(*(symmetric(each) for each in (rest.linear.stiffness, rest.linear.mass)))
+    square, modes = symmetric_modes(symmetric(rest.linear.stiffness), symmetric(rest.linear.mass))
     elastic = square > RIGID**2 * square[-1]
     shapes = modes[:, elastic] / np.sqrt(square[elastic])  # of unit strain energy
     added = shapes.T @ (slight.linear.stiffness - rest.linear.stiffness) @ shapes / SLIGHT
-    places, moved = (np.stack([frame.p for frame in each.frames]) for each in (rest, slight))
+    places = np.stack([frame.p for frame in rest.frames])
+    moved = np.stack([frame.p for frame in slight.frames]) - places
     size = max(np.abs(places).max(), 1e-300)
-    return float(max(np.linalg.norm(added, 2), np.abs(moved - places).max() / SLIGHT / size))
+    return float(max(np.linalg.norm(added, 2), np.abs(moved).max() / SLIGHT / size))

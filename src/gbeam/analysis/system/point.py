@@ -42,7 +42,7 @@ class Point:
 
     @property
     def local(self) -> Point:
-        """The point with as many coordinates as degrees of freedom."""
+        """The point with as many coordinates as degrees of freedom: rotations in place of Euler parameters."""
         if not any(isinstance(step, Ball) for link in self.tree.links for step in link.steps):
             return self
         tree, prescribed = self.tree, self.inputs.prescribed
@@ -52,37 +52,42 @@ class Point:
         reduced, y, yd, ydd = tree.local(states[0], states[1], states[2])
         free, inputs = reduced.free, self.inputs
         if inputs.efforts is not None:
-            pairs = zip(tree.links, reduced.links, strict=True)
-            sizes = (pair for link, less in pairs for pair in zip(link.sizes, less.sizes, strict=True))
             # Efforts act on the last coordinates of a joint, as many as it has degrees of freedom.
-            kept = np.concatenate([np.arange(size) >= size - fewer for size, fewer in sizes])
-            inputs = replace(inputs, efforts=inputs.efforts[..., kept])
+            kept = list[Any]()
+            for link, reduced_link in zip(tree.links, reduced.links, strict=True):
+                for size, fewer in zip(link.sizes, reduced_link.sizes, strict=True):
+                    kept.append(np.arange(size) >= size - fewer)
+            inputs = replace(inputs, efforts=inputs.efforts[..., np.concatenate(kept)])
         if prescribed is not None:
             inputs = replace(inputs, prescribed=np.stack([y, yd, ydd])[:, np.array(reduced.fixed, dtype=int)])
         return Point(reduced, y[free], yd[free], ydd[free], inputs)
 
     def slopes(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps, without
-        friction: at rest its smooth law is a damper that no joint has.
+        """The residual (n,) and its derivatives K, C and M (n, n) with respect to y, ẏ and ÿ, by complex steps.
+
+        The derivatives are without friction: at rest its smooth law is a damper that no joint has.
         """
         if is_linear(self.tree):
             m, c, k, force = frozen_equations(self.tree, self.inputs)
             return m @ self.ydd + c @ self.yd + k @ self.y - force, k, c, m
         rubs = any(link.holder.friction.any() for link in self.tree.links)
         tree = self.tree.frictionless if rubs else self.tree
-        left, (k, c, m) = expanded(tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
-        return self.tree(self.y, self.yd, self.ydd, self.inputs) if rubs else left[0], k[0], c[0], m[0]
+        residual, (k, c, m) = expanded(tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
+        with_friction = self.tree(self.y, self.yd, self.ydd, self.inputs) if rubs else residual[0]
+        return with_friction, k[0], c[0], m[0]
 
     def standing(self, time: float = 0.0) -> Trajectory:
         """A trajectory of this state alone."""
         return Trajectory(np.array([time]), self.y[None], self.yd[None], self.ydd[None])
 
     def driven(self, *_: Any) -> Inputs:
-        """Inputs with an axis of one time, as of the trajectory of `standing`; arguments are ignored."""
+        """Inputs with an axis of one time, like the trajectory of `standing`. Arguments are ignored, so that it serves
+        as the inputs of a solution.
+        """
         return each_leaf(lambda leaf: leaf[None], self.inputs)
 
     def sticking(self, system: System, *, resting: bool = False) -> tuple[str, ...]:
-        """Warnings of coordinates that friction may hold, which is left out; if `resting`, how far from here."""
+        """Warn of coordinates that friction, which is left out, may hold; if `resting`, how far from this place."""
         state, warnings, local = self.tree.motion(self.y, self.yd, self.ydd, self.inputs), list[str](), None
         for name, joint in system.joints.items():
             k = system.order.index(joint.body)
@@ -98,21 +103,25 @@ class Point:
                 local = local or self.local
                 _, stiffness, _, mass = local.slopes()
                 names = local_names(system.coordinates)
-                force = friction * np.array([names[each] == f"{name}.{joint.values[i]}" for each in local.tree.free])
+                coordinate = f"{name}.{joint.values[i]}"
+                force = friction * np.array([names[index] == coordinate for index in local.tree.free])
                 moved = answered(stiffness, mass, force)
-                held = np.allclose(stiffness @ moved, force, atol=1e-6 * friction)
-                far = f"up to {in_words(kind, abs(float(moved @ force)) / friction)} either way of here, to first order"
-                warnings.append(f"{words}, which may hold it {far if held else 'wherever it is put'}")
+                if np.allclose(stiffness @ moved, force, atol=1e-6 * friction):
+                    reach = in_words(kind, abs(float(moved @ force)) / friction)
+                    far = f"up to {reach} either way of here, to first order"
+                else:
+                    far = "wherever it is put"
+                warnings.append(f"{words}, which may hold it {far}")
         return tuple(warnings)
 
 
 def in_words(kind: str, size: float) -> str:
-    """Size of a displacement, m, or of a rotation, rad, of a joint, as people read it."""
+    """Size of a joint's displacement, m, or rotation, rad, in words with mm or degrees."""
     return f"{1e3 * size:.4g} mm" if kind in SLIDES else f"{np.degrees(size):.4g}°"
 
 
 def refuse_massless(system: System, point: Point, mass: Floats) -> None:
-    """Raise InputError if some motion of the coordinates has no kinetic energy, by M (n, n) at a point."""
+    """Raise InputError if M (n, n) at a point says that some motion of the coordinates has no kinetic energy."""
     if _least_moving(mass)[0] > MASSLESS:
         return
     local = point.local  # whose names are those of degrees of freedom
@@ -127,7 +136,9 @@ def refuse_massless(system: System, point: Point, mass: Floats) -> None:
 
 
 def _least_moving(mass: Floats) -> tuple[float, Floats]:
-    """The smallest singular value of the scaled M over the largest, and the motion (n,) of the coordinates with it."""
+    """Smallest singular value of the scaled M as a share of the largest, and the motion (n,) that belongs to it."""
     scale = rooted(mass)
     _, sizes, rows = np.linalg.svd(mass / np.outer(scale, scale))
-    return (sizes[-1] / sizes[0] if sizes.any() else 0.0, rows[-1]) if sizes.size else (np.inf, scale)
+    if not sizes.size:
+        return np.inf, scale
+    return sizes[-1] / sizes[0] if sizes.any() else 0.0, rows[-1]

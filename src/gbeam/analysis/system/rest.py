@@ -30,21 +30,25 @@ CORRECTIONS, CLOSE = 50, 1e-12  # of joints beside bodies that are held: their n
 
 
 def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
-    """System in equilibrium relative to what turns, whose coordinate is free, under the effort that it needs, unless
-    `held`. The search begins at coordinates `start`, by default those of the joints. Where it ends nowhere, or far from
-    there in a state that is unstable, the system goes from there down its forces, to one that is stable if it can.
+    """System in equilibrium relative to what turns. The coordinate that turns is free under the effort that it needs,
+    unless it is `held`.
+
+    The search begins at coordinates `start`, by default those of the joints. Where it ends nowhere, or in an unstable
+    state far from there, the system moves from the start down its forces, to a stable state if it can.
     """
     state = _branch(system, drive, system.start[0] if start is None else start)
     if state.accelerated and state.changing:
-        names = " and ".join(each.coordinate for each in state.accelerated)
+        names = " and ".join(motion.coordinate for motion in state.accelerated)
         problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
         raise ComputationError("no equilibrium", problem)
     return release(state, held=held)
 
 
 def settled(system: System, drive: Drive) -> SteadySystem:
-    """System in equilibrium as of :func:`steady`, without friction; where it has none, or would not stay there, joints
-    without a spring are held where they begin, if their friction suffices.
+    """System in equilibrium, as of :func:`steady`, without friction.
+
+    Where there is none, or the system would not stay there, joints without a spring are held where they begin, if their
+    friction suffices. The joint whose friction suffices least is freed first.
     """
     state, lost, stuck = None, ComputationError("no equilibrium", ""), _rubbing(system)
     try:
@@ -77,7 +81,7 @@ def settled(system: System, drive: Drive) -> SteadySystem:
 
 
 def _holding(system: System, stuck: Mapping[str, Sequence[str]]) -> System:
-    """The system with rates, by joint, prescribed to be zero, and no efforts along them."""
+    """The system with rates of joints prescribed to be zero, and without efforts along them."""
     joints = dict(system.joints)
     for name, kinds in stuck.items():
         joint: Any = joints[name]
@@ -87,8 +91,10 @@ def _holding(system: System, stuck: Mapping[str, Sequence[str]]) -> System:
 
 
 def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
-    """Rates, by joint, that friction alone may hold: no spring, no prescribed rate and no controller has them."""
-    driven = {each for controller in system.controllers.values() for each in controller.drive}
+    """Rates, by joint, that friction alone may hold, since they have no spring, no prescribed rate and no
+    controller.
+    """
+    driven = {drive for controller in system.controllers.values() for drive in controller.drive}
     rubbing = {}
     for name, joint in system.joints.items():
         sprung = dict(zip(joint.rate_names, joint.holder.stiffness, strict=True))
@@ -110,7 +116,11 @@ def beginning(system: System, drive: Drive) -> SteadySystem:
 
 
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
-    """The equilibrium of :func:`steady`, what turns held."""
+    """The equilibrium of :func:`steady`, while what turns is held.
+
+    Three searches follow one another: Newton's method from the start; where only bodies give way, along the path of
+    growing drives; and, where joints move, down the forces.
+    """
     tree, inputs, state, lost = held_tree(system, drive), drive.inputs(system), None, None
     only_bodies = len(tree.free) == sum(link.body.size for link in tree.links)
     try:
@@ -124,8 +134,8 @@ def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
         off_path = only_bodies and not is_linear(tree)
     else:
         y = state.point.y
-        apart = np.abs(y - start[tree.free]).max(initial=0.0)
-        off_path = apart > PREDICTED * np.abs(y).max(initial=0.0) and not bends_back(tree, state.point.slopes()[1])
+        distance = np.abs(y - start[tree.free]).max(initial=0.0)
+        off_path = distance > PREDICTED * np.abs(y).max(initial=0.0) and not bends_back(tree, state.point.slopes()[1])
     if off_path:
         try:
             state = SteadySystem(system, drive, followed(system, tree, inputs))
@@ -153,14 +163,14 @@ def held_tree(system: System, drive: Drive) -> Tree:
 
 
 def undeformed(system: System) -> SteadySystem:
-    """System at its start, bodies undeformed and all at rest, as nothing need hold it, on ground at rest."""
+    """System at its start with undeformed bodies, all at rest on ground at rest. It need not be in equilibrium."""
     y, still = system.start[0][system.tree.free], np.zeros(len(system.tree.free))
     return SteadySystem(system, Drive(), Point(system.tree, y, still, still, system.inputs(np.zeros(()))))
 
 
 def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) -> SteadySystem:
     """System whose bodies are held at coordinates and rates (n,), by default those of :func:`steady`, and accelerate as
-    their equations say; joints are where the drive and their springs hold them.
+    their equations say. Joints are where the drive and their springs hold them.
     """
     if q is None and qd is None:
         return steady(system, drive)
@@ -172,28 +182,31 @@ def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) ->
         point = Point(tree, system.start[0][tree.free], still, still, inputs)
         state = release(SteadySystem(system, drive, point), held=False)
     point, names = state.point, [system.coordinates[k] for k in state.point.tree.free]
-    bent = np.array([".q" in name for name in names])
+    bent = np.array([".q" in name for name in names])  # coordinates of bodies
     y, yd = np.array(point.y), np.array(point.yd)
     y[bent] = y[bent] if q is None else q
     if q is not None and not drive.coordinate and not bent.all():
+        # Newton's method for the joints alone.
         joints = Point(point.tree, y, yd, point.ydd, point.inputs)
         for _ in range(CORRECTIONS):
-            left, k, *_ = joints.slopes()
-            change = np.zeros_like(left)
-            change[~bent] = np.linalg.lstsq(k[~bent][:, ~bent], -left[~bent], rcond=None)[0]
+            residual, k, *_ = joints.slopes()
+            change = np.zeros_like(residual)
+            change[~bent] = np.linalg.lstsq(k[~bent][:, ~bent], -residual[~bent], rcond=None)[0]
             joints = replace(joints, y=joints.y + change)
             if np.abs(change).max() <= CLOSE:
                 break
         y = joints.y
     yd[bent] = yd[bent] if qd is None else qd
-    left, _, _, m = Point(point.tree, y, yd, np.where(bent, 0.0, point.ydd), point.inputs).slopes()
+    residual, _, _, m = Point(point.tree, y, yd, np.where(bent, 0.0, point.ydd), point.inputs).slopes()
     ydd = np.array(point.ydd)
-    ydd[bent] = np.linalg.solve(m[bent][:, bent], -left[bent])
+    ydd[bent] = np.linalg.solve(m[bent][:, bent], -residual[bent])
     return replace(state, point=replace(point, y=y, yd=yd, ydd=ydd))
 
 
 def transfer(state: SteadySystem, system: System) -> SteadySystem:
-    """Transfer a state to a system with richer bodies, under the same drives; ComputationError if it has none."""
+    """Transfer a state to a system with richer bodies under the same drives. ComputationError if that has no such
+    state.
+    """
     try:
         if state.begins:
             return beginning(system, state.drive)
@@ -207,7 +220,9 @@ def transfer(state: SteadySystem, system: System) -> SteadySystem:
 
 
 def standing(state: SteadySystem, of: System) -> Solution:
-    """Solution, of one time, of another system in the state of one, what turns free as in that system."""
+    """Solution of one time of the system `of` in a state of its own or of a simpler system. What turns is free as in
+    that system.
+    """
     drive, system = state.drive, state.system
     moved = state if of is system else transfer(state, of)
     if drive.coordinate and system.coordinates.index(drive.coordinate) not in system.tree.fixed:

@@ -23,7 +23,9 @@ NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor mat
 
 
 class Richer(NamedTuple):
-    """A system with more shapes, and `of` which system; `shared` are the indices of the latter's free coordinates."""
+    """A system with more shapes than the system `of`. `shared` are the indices of the latter's free coordinates among
+    its own.
+    """
 
     system: System
     shared: IntArray
@@ -42,15 +44,20 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 
 def left_unjudged(system: System) -> str:
-    """Sentence about bodies that are not judged at all, and about meshes that are not judged; may be empty."""
+    """Sentence about bodies that are not judged at all, and about meshes that are not judged; empty if there are
+    none.
+    """
     heavy = [name for name, body in system.bodies.items() if name not in system.flexible and body.mass > 0]
     if len(system.flexible) == 1 and not heavy:  # beside a free hub at most
         return unjudged(*system.flexible.values())
-    judged = judged_bodies(system)
+    judged, sentences = judged_bodies(system), list[str]()
     others = [name for name, body in system.flexible.items() if body.size and name not in judged]
-    sentences = [NOT_ALL.format(", ".join(others))] if others else []
+    if others:
+        sentences.append(NOT_ALL.format(", ".join(others)))
     meshes = [name for name, body in judged.items() if body.source is None and body.coarser is None]
-    return "; ".join(sentences + ([NO_MESH.replace("mesh", f"mesh of {', '.join(meshes)}")] if meshes else []))
+    if meshes:
+        sentences.append(NO_MESH.replace("mesh", f"mesh of {', '.join(meshes)}"))
+    return "; ".join(sentences)
 
 
 def coarser(system: System) -> System | None:
@@ -70,8 +77,10 @@ def richer(
     exact: bool,
     along: Mapping[str, Directions] = MappingProxyType({}),
 ) -> Richer:
-    """System with more shapes in the bodies whose roots move as `bases`, of their own models or the exact one; beams
-    get new shapes `along` some of x, y and z, by default along all.
+    """System with more shapes in the bodies whose roots move as `bases`. The bodies have their own models or the exact
+    one.
+
+    Beams get new shapes `along` some of x, y and z, by default along all.
     """
     beams, original = dict[str, Structure](), dict[str, IntArray]()
     for name, base in bases.items():
@@ -80,6 +89,7 @@ def richer(
         rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind, directions=directions)
         beams[name] = replace(rich, history=body.history, load_values=body.load_values)
     other = replace(system, bodies={**system.bodies, **beams})
+    # Names of the bodies' coordinates in the richer system, where their numbers have changed.
     renamed = {
         f"{name}.q{k + 1}": f"{name}.q{new + 1}" for name, index in original.items() for k, new in enumerate(index)
     }
@@ -89,20 +99,21 @@ def richer(
 
 
 def linear_about_rest(system: System, bodies: Iterable[str]) -> System:
-    """The system whose `bodies` have the equations that are linear about their undeformed shapes."""
+    """The system in which some `bodies` have equations that are linear about their undeformed shapes."""
     linear = {name: replace(system.flexible[name], linear=True) for name in bodies}
     return replace(system, bodies={**system.bodies, **linear})
 
 
 def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
-    """Slender and thick models of the judged beams, by name: exact ones, or linear about `straight` beams; bodies and
-    forces may act on their stations.
+    """Slender and thick models of the judged beams, by name: exact ones, or linear ones about `straight` beams.
+
+    Bodies and forces may act on the beams' stations.
     """
     tree, theories = system.tree, dict[str, Theory]()
     loaded = [(link.parent, link.on) for link in tree.links] + [(force.body, force.on) for force in tree.forces]
     for name, body in judged_beams(system).items():
         number, stations = system.order.index(name), [*stations_of(body).values()]
-        hung = {stations[on] for of, on in loaded if of == number and on < len(stations)}
+        hung = {stations[on] for owner, on in loaded if owner == number and on < len(stations)}
         theory = theory_of(body, tuple(sorted(hung)))
         theories[name] = theory if straight else theory.exact
     return theories

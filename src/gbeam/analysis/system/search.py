@@ -42,29 +42,39 @@ CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller,
 
 
 def _farthest(system: System, tree: Tree, values: Any) -> str:
-    """Name of the free coordinate with the largest value (n,); of an Euler parameter, the rotation of its joint."""
+    """Name of the free coordinate with the largest value (n,). For an Euler parameter it names the rotation of the
+    joint.
+    """
     name = system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
     return name if local_names([name]) == [name] else f"the rotation of {name.rpartition('.')[0]}"
 
 
-def _alike(point: Point, left: Floats, k: Floats, mass: Floats, turn: Flags) -> bool:
-    """True if turning one hinge by a radian changes no residual; `turn` flags it, `k` and `mass` are its columns."""
+def _turns_evenly(point: Point, residual: Floats, k: Floats, mass: Floats, turn: Flags) -> bool:
+    """True if turning one hinge by a radian changes no residual. `turn` flags the hinge, `k` and `mass` are its
+    columns.
+    """
     elsewhere = point.tree(point.y + turn, point.yd, point.ydd, point.inputs)
-    changed = max(np.abs(k).max(), np.abs(elsewhere - left).max())
-    return bool(changed <= SAME * (np.abs(mass).max() + np.abs(left).max()))
+    changed = max(np.abs(k).max(), np.abs(elsewhere - residual).max())
+    return bool(changed <= SAME * (np.abs(mass).max() + np.abs(residual).max()))
 
 
-def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> Flags:
-    """Flags (n,) of the coordinates that nothing holds, by the residual `left` and K, C, M: slides from the ground, and
-    balls and hinges behind them if the equations stay the same as all beyond turns with them.
+def adrift(point: Point, residual: Floats, slope: Sequence[Floats]) -> Flags:
+    """Flags (n,) of the coordinates that nothing holds, from the residual (n,) and K, C and M.
+
+    They are slides from the ground, and balls and hinges behind them if the equations stay the same as all that hangs
+    on these turns with them.
     """
     tree, (k, c, m) = point.tree, slope
     slides = np.asarray(tree.sliding & loose(k, c))
-    turning = [turn for turn in tree.turning if turn.sum() > 1 or _alike(point, left, k[:, turn], m[:, turn], turn)]
+    turning = list[Flags]()
+    for turn in tree.turning:
+        is_ball = turn.sum() > 1
+        if is_ball or _turns_evenly(point, residual, k[:, turn], m[:, turn], turn):
+            turning.append(turn)
     if not turning:
         return slides
     candidates = np.any([slides, *turning], axis=0)
-    local = replace(point, ydd=point.ydd + pulled(left, m, candidates)).local
+    local = replace(point, ydd=point.ydd + pulled(residual, m, candidates)).local
     _, k, c, m = local.slopes()
     turns = local.tree.turning
     candidates = np.any([local.tree.sliding & loose(k, c), *turns], axis=0)
@@ -73,28 +83,33 @@ def adrift(point: Point, left: Floats, slope: Sequence[Floats]) -> Flags:
 
 
 def _newton(
-    point: Point, left_over: Floats, *, relaxing: bool = False, shrinking: bool = False
+    point: Point, remaining: Floats, *, relaxing: bool = False, shrinking: bool = False
 ) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
-    """Solve residual = `left_over` (n,) by Newton's method: the point, K, C, M, last correction, True if converged. If
-    `relaxing` each correction goes down the forces, as the tree itself would, and so ends where the stiffness holds. If
-    `shrinking`, corrections that do not shrink, which may lead far away, are a failure.
+    """Solve residual = `remaining` (n,) by Newton's method; return the point, K, C and M, the last correction, and True
+    if it converged.
+
+    If `relaxing`, each correction goes down the forces, as the tree itself would, and so ends where the stiffness
+    holds. If `shrinking`, corrections that do not shrink, which may lead far away, are a failure.
     """
     before, tree, accelerated = 0.0, point.tree, point.tree.sliding
     if accelerated.any() or tree.turning:
-        left, *slope = point.slopes()
-        accelerated = adrift(point, left, slope)
-        point = replace(point, ydd=point.ydd + pulled(left - left_over, slope[-1], accelerated))
+        residual, *slope = point.slopes()
+        accelerated = adrift(point, residual, slope)
+        point = replace(point, ydd=point.ydd + pulled(residual - remaining, slope[-1], accelerated))
     for _ in range(RELAXING if relaxing else ITERATIONS):
-        left, k, c, m = point.slopes()
-        if not np.isfinite(left).all():
-            return point, (k, c, m), left, False
-        change = relaxation(left, k, m, accelerated) if relaxing else balanced(left - left_over, k, m, accelerated)[0]
+        residual, k, c, m = point.slopes()
+        if not np.isfinite(residual).all():
+            return point, (k, c, m), residual, False
+        if relaxing:
+            change = relaxation(residual, k, m, accelerated)
+        else:
+            change, _ = balanced(residual - remaining, k, m, accelerated)
         size = float(np.abs(change).max(initial=0.0))
         # Steps of a radian at most: a beam far from its equilibrium turns by as much.
         point = replace(point, y=point.y + change / max(1.0, size))
         # With other accelerations than those of the forces a body that turns with all that pushes it would change them.
-        left = tree(point.y, point.yd, point.ydd, point.inputs) if accelerated.any() else left
-        point = replace(point, ydd=point.ydd + pulled(left - left_over, m, accelerated))
+        residual = tree(point.y, point.yd, point.ydd, point.inputs) if accelerated.any() else residual
+        point = replace(point, ydd=point.ydd + pulled(residual - remaining, m, accelerated))
         # The next correction is smaller by what this one is smaller than the last one, at least.
         limit = CLOSE * (1.0 + np.abs(point.y).max(initial=0.0))
         if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= limit:
@@ -109,7 +124,9 @@ def rested_together(
     system: System, tree: Tree, drives: Sequence[Inputs], starts: Floats
 ) -> list[tuple[Point, tuple[Floats, ...]] | None]:
     """States of rest of a system's tree under several inputs, each with its K, C and M, from starts (t, n) of all
-    coordinates; None for each that Newton's method does not find near its start.
+    coordinates.
+
+    One that Newton's method does not find near its start is None.
     """
     inputs, sliding, sloped = together(drives), tree.sliding, tree.frictionless
     y, begun = starts[:, tree.free], starts[:, tree.free]
@@ -122,24 +139,24 @@ def rested_together(
                 if not count:
                     k, c, m = slopes(sloped, y, still, ydd, inputs)
                     which = sliding & np.array([loose(*pair) for pair in zip(k, c, strict=True)])
-                left = tree(y, still, ydd, inputs)
-                ydd = ydd + [pulled(*state) for state in zip(left, m, which, strict=True)]
-            left, (k, c, m) = tree(y, still, ydd, inputs), slopes(sloped, y, still, ydd, inputs)
+                residual = tree(y, still, ydd, inputs)
+                ydd = ydd + [pulled(*state) for state in zip(residual, m, which, strict=True)]
+            residual, (k, c, m) = tree(y, still, ydd, inputs), slopes(sloped, y, still, ydd, inputs)
             settled = converged  # where the derivatives are those of a state that has converged
             if (settled | lost).all():
                 break
-            lost = lost | ~np.isfinite(np.concatenate([left[:, None], k], axis=1)).all(axis=(1, 2))
+            lost = lost | ~np.isfinite(np.concatenate([residual[:, None], k], axis=1)).all(axis=(1, 2))
             change = np.zeros_like(y)
             for i in np.flatnonzero(~lost).tolist():
-                change[i], _ = balanced(left[i], k[i], m[i], which[i])
+                change[i], _ = balanced(residual[i], k[i], m[i], which[i])
             size = np.abs(change).max(axis=1, initial=0.0)
             shrunk = np.where(np.isfinite(before) & (before > 0), np.minimum(size / before, 1.0), 1.0)
             limit = CLOSE * (1.0 + np.abs(y).max(axis=1, initial=0.0))
             y, before = np.where(lost[:, None], begun, y + change), size
             converged = ~lost & (np.minimum(size, 1.0) * shrunk <= limit)
-    near = settled & ~lost & (np.abs(y - begun).max(axis=1, initial=0.0) <= NEAR)
+    nearby = settled & ~lost & (np.abs(y - begun).max(axis=1, initial=0.0) <= NEAR)
     points: list[tuple[Point, tuple[Floats, ...]] | None] = [None] * len(y)
-    for i in np.flatnonzero(near).tolist():
+    for i in np.flatnonzero(nearby).tolist():
         slope = k[i], c[i], m[i]
         if not bends_back(tree, k[i]):
             continue
@@ -153,9 +170,9 @@ def rested_together(
 def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = None, *, nearby: bool = False) -> Point:
     """State of a tree in relative equilibrium: rates are zero, and only coordinates that nothing holds are accelerated.
 
-    Linear equations are solved at once. If there are several states, the nearest one to coordinates `start`, by default
-    the joints' start with bodies undeformed. Where Newton's method fails from there, the residual at the start is taken
-    away in shares, or not at all if the state has to be `nearby`. ComputationError if there is no equilibrium.
+    Linear equations are solved at once. Of several states the one nearest to coordinates `start` is found, by default
+    the joints' start with undeformed bodies. Where Newton's method fails from there, the residual at the start is taken
+    away in shares; a state that has to be `nearby` is not searched so. ComputationError if there is no equilibrium.
     """
     still = np.zeros(len(tree.free))
     if is_linear(tree):
@@ -181,16 +198,14 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
 
 def _rested_at_once(point: Point) -> Point:
     """State of rest of linear equations; ComputationError where their stiffness is singular."""
-    left, k, _, _ = point.slopes()
+    residual, k, _, _ = point.slopes()
     try:
-        y: Any = np.linalg.solve(k, -left)
+        y: Any = np.linalg.solve(k, -residual)
     except np.linalg.LinAlgError:
-        y = np.nan * left
+        y = np.nan * residual
     if not np.isfinite(y).all():
-        problem = (
-            f"no relative equilibrium: the stiffness is singular, or the base's motion not finite; {_turns(point)}"
-        )
-        raise ComputationError("not converged", problem)
+        cause = "the stiffness is singular, or the base's motion not finite"
+        raise ComputationError("not converged", f"no relative equilibrium: {cause}; {_turns(point)}")
     return replace(point, y=y)
 
 
@@ -200,32 +215,33 @@ def _turns(point: Point) -> str:
 
 
 def bends_back(tree: Tree, stiffness: Floats) -> bool:
-    """True if the stiffness K (n, n) holds the bodies that deform, alone."""
+    """True if the stiffness K (n, n) holds the bodies that deform while joints are held."""
     deforms = [np.full(size, k == len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
     kept = np.concatenate(deforms)[tree.free]
     return positive_definite(stiffness[kept][:, kept])
 
 
 def _eased(inputs: Inputs, share: float) -> Inputs:
-    """Inputs of which a share acts: of accelerations and forces, and of rates its root."""
+    """Inputs of which only a share acts: accelerations and forces times the share, rates times its root."""
     ground, root = inputs.ground, np.sqrt(share)
     slower = replace(ground, a=share * ground.a, w=root * ground.w, alpha=share * ground.alpha)
     forces = {name: getattr(inputs, name) for name in ("efforts", "wrenches")}
-    acting = {name: None if each is None else share * each for name, each in forces.items()}
-    loads = tuple(None if each is None else share * each for each in inputs.loads)
+    acting = {name: None if force is None else share * force for name, force in forces.items()}
+    loads = tuple(None if load is None else share * load for load in inputs.loads)
     moving = inputs.prescribed
     moving = None if moving is None else moving * np.array([[1.0], [root], [share]])
     return replace(inputs, ground=slower, prescribed=moving, loads=loads, **acting)
 
 
 def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
-    """State of rest at the end of a path on which the drives grow from nothing, in strides that are shortened where one
-    fails, or where the bodies' stiffness is lost in a long one that ends far from its prediction; ComputationError with
-    the share that was reached where the path ends.
+    """State of rest at the end of a path on which the drives grow from nothing.
+
+    Strides are shortened where one fails, or where the bodies' stiffness is lost in a long one that ends far from its
+    prediction. Where the path ends, a ComputationError says which share of the drives was reached.
     """
     still, y = np.zeros(len(tree.free)), system.start[0][tree.free]
-    left, k, _, m = Point(tree, y, still, still, _eased(inputs, 0.0)).slopes()
-    pull = left - tree(y, still, still, inputs)
+    residual, k, _, m = Point(tree, y, still, still, _eased(inputs, 0.0)).slopes()
+    pull = residual - tree(y, still, still, inputs)
     # dy/dshare, along which a stride starts
     course = answered(k, m, pull) if np.isfinite(pull).all() else still
     holds, reached, stride = True, 0.0, 1.0
@@ -235,8 +251,8 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
         point = Point(tree, ahead, still, still, _eased(inputs, share))
         moved, slope, _, converged = _newton(point, still, shrinking=True)
         held = converged and bends_back(tree, slope[0])
-        near = converged and np.abs(moved.y - ahead).max() < NEAREST * np.abs(moved.y).max()
-        if held or (converged and (not holds or stride < LOCATED or near)):
+        as_predicted = converged and np.abs(moved.y - ahead).max() < NEAREST * np.abs(moved.y).max()
+        if held or (converged and (not holds or stride < LOCATED or as_predicted)):
             course = (moved.y - y) / (share - reached)
             y, holds, reached, stride = moved.y, held, share, 2 * stride
             continue
@@ -249,8 +265,8 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
 
 
 def relaxed(system: System, tree: Tree, inputs: Inputs, start: Floats) -> Point:
-    """State of rest, as of `rested`, to which a tree goes from coordinates `start` down its forces; ComputationError
-    where it goes on.
+    """State of rest, as of `rested`, to which a tree moves from coordinates `start` down its forces. ComputationError
+    if it comes to none.
     """
     still = np.zeros(len(tree.free))
     point, slope, _, converged = _newton(Point(tree, start[tree.free], still, still, inputs), still, relaxing=True)
@@ -260,23 +276,25 @@ def relaxed(system: System, tree: Tree, inputs: Inputs, start: Floats) -> Point:
 
 
 def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
-    """The point with accelerations that are rounding set to zero; ComputationError where forces would accelerate other
-    coordinates, InputError where some motion has no mass. `slope` is K, C and M.
+    """Check a point of rest, with K, C and M, and set accelerations to zero that are rounding.
+
+    ComputationError where forces would accelerate coordinates besides those that nothing holds, InputError where some
+    motion has no mass.
     """
     tree, (k, c, m) = point.tree, slope
     if len(tree.free) == sum(link.body.size for link in tree.links) and bends_back(tree, k):
         return point  # the stiffness holds all, whatever its mass
     refuse_massless(system, point, m)
-    slides, left = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
+    slides, residual = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
     turns = any(np.abs(point.ydd[turn]).max() > NONE for turn in tree.turning)
-    accelerated = adrift(point, left, slope) if turns else slides
-    (left,), (k,) = carried(m, slides, left), carried(m, accelerated, k)
+    accelerated = adrift(point, residual, slope) if turns else slides
+    (residual,), (k,) = carried(m, slides, residual), carried(m, accelerated, k)
     k[:, accelerated] = 0.0
     # Only forces that no stiffness balances are judged: the rounding of a stiff body's forces is more than gravity.
     directions = unheld(k, m)
     yields = np.linalg.solve(m, directions) @ directions.T
     rounding = np.abs(yields) @ np.abs(k).sum(axis=1)
-    if np.abs(yields @ left).max(initial=0.0) > NONE * max(1.0, 1e-6 * rounding.max(initial=0.0)):
+    if np.abs(yields @ residual).max(initial=0.0) > NONE * max(1.0, 1e-6 * rounding.max(initial=0.0)):
         raise ComputationError("no equilibrium", _unheld(system, point.local))
     # Of a ball all three or none: an acceleration about one axis is no rounding of another's.
     faster = np.abs(point.ydd) > NONE
@@ -293,37 +311,37 @@ def _refuse_rubbing(system: System, local: Point) -> None:
     for index in np.flatnonzero(local.ydd).tolist():
         name = local_names(system.coordinates)[local.tree.free[index]]
         if _friction(system, name):
-            faster = np.where(np.arange(len(local.ydd)) == index, 0.0, local.ydd)
-            left = local.tree(local.y, local.yd, faster, local.inputs)
-            raise ComputationError("no equilibrium", _pushed(system, name, left[index]))
+            without = np.where(np.arange(len(local.ydd)) == index, 0.0, local.ydd)
+            residual = local.tree(local.y, local.yd, without, local.inputs)
+            raise ComputationError("no equilibrium", _pushed(system, name, residual[index]))
 
 
 def _unheld(system: System, local: Point) -> str:
     """Say which coordinate is accelerated, and by which force or moment."""
-    left, k, c, m = local.slopes()
-    left, k = carried(m, local.tree.sliding & loose(k, c), left, k)
-    left = left - k @ answered(k, m, left)
-    # Of the coordinates that are accelerated together, the one on which the force left over acts.
-    row = int(np.abs(left / np.sqrt(np.diag(m))).argmax())
+    residual, k, c, m = local.slopes()
+    force, k = carried(m, local.tree.sliding & loose(k, c), residual, k)
+    force = force - k @ answered(k, m, force)  # without what stiffness balances
+    # Of the coordinates that are accelerated together, the one on which the most force acts for its mass.
+    row = int(np.abs(force / np.sqrt(np.diag(m))).argmax())
     name = local_names(system.coordinates)[local.tree.free[row]]
     joint, _, kind = name.rpartition(".")
-    size = f"{abs(left[row]):.4g} {unit_of_effort(kind)}"
+    size = f"{abs(force[row]):.4g} {unit_of_effort(kind)}"
     if joint in system.joints and kind in ("rx", "ry", "rz") and system.joints[joint].kind == "free":
         about = f"{kind[1]} of {system.joints[joint].body}.root"
         fix = "push in line with the mass centre, balance the moment, or hold it"
         return f"{joint} is turned ever faster by {size} about {about} through the mass centre: {fix}"
-    return _pushed(system, name, left[row])
+    return _pushed(system, name, force[row])
 
 
 def _friction(system: System, name: str) -> float:
-    """Friction, N or N m, along a local coordinate by its name; 0 where there is none."""
+    """Friction, N or N m, along a local coordinate with this name; 0 where there is none."""
     owner, _, kind = name.rpartition(".")
     joint = system.joints.get(owner)
     return 0.0 if joint is None else joint.frictions.get(joint.rate_names[joint.values.index(kind)], 0.0)
 
 
 def _pushed(system: System, name: str, force: float) -> str:
-    """Say by which force, N or N m, a local coordinate is accelerated, and what friction holds of it."""
+    """Say by which force, N or N m, a local coordinate is accelerated, and how much of it friction holds."""
     unit, friction = unit_of_effort(name.rpartition(".")[2]), _friction(system, name)
     size, fix = f"{abs(force):.4g} {unit}", "hold it, or take away what pushes it"
     if not friction:

@@ -43,8 +43,8 @@ InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A system, its trajectory `of` (coordinates, rates and accelerations at times), and its inputs at these times,
-    which are known for every system with the same joints.
+    """A system, its trajectory `of` (coordinates, rates and accelerations at times), and its inputs at these times. The
+    inputs are known for every system with the same joints.
     """
 
     system: System
@@ -52,7 +52,9 @@ class Solution:
     inputs: InputsOf
 
     def posed(self, bodies: Iterable[str], system: System | None = None) -> Posed:
-        """Equations of this system, or of another, at the solution's times, with a function that reads `bodies`."""
+        """Equations of this or of another system at the solution's times, with a function that reads quantities of
+        `bodies`.
+        """
         system = self.system if system is None else system
         return Posed(
             system.tree,
@@ -67,13 +69,13 @@ class Solution:
         return Solution(self.system, self.of.at(times), lambda system, part: self.inputs(system, times[part]))
 
     def within(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
-        """The solution put into the equations of another system, where its unknowns have the same names or the indices
+        """The solution put into the equations of another system. Its unknowns have the same names there, or the indices
         `shared`.
         """
         return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.of, shared)
 
     def states(self, bodies: Iterable[str]) -> tuple[Floats, dict[str, Carried]]:
-        """Places (t, p, 3) m of all points, and states of the bodies named."""
+        """Places (t, p, 3) m of all points, and the states of some bodies by name."""
         tree, of = self.system.tree, self.of
         places, along = list[Floats](), {name: list[Carried]() for name in bodies}
         for times in pieces(len(of.time), tree.size):
@@ -87,9 +89,10 @@ class Solution:
         return np.concatenate(places), {name: Carried.joined(parts) for name, parts in along.items()}
 
     def read(self, bodies: Iterable[str]) -> Reading:
-        """Places (t, p, 3) m of all points and, of each body named, deflections (t, p, 3) m, force and moment (t, 3) at
-        the root and the largest normal and von Mises stress over the sections (t,); of a solid the stress (t, c) of
-        `recovery.felt`.
+        """Places (t, p, 3) m of all points, and quantities of some bodies.
+
+        For each body these are deflections (t, p, 3) m, force and moment (t, 3) at the root, and the largest normal and
+        von Mises stress over the sections (t,); for a solid the stress (t, c) of `recovery.felt`.
         """
         places, states = self.states(bodies)
         out: dict[Quantity, Floats] = {PLACE: places}
@@ -99,8 +102,10 @@ class Solution:
         return out
 
     def turning(self) -> Floats:
-        """Places (t, 3 k, 3) m from the root, in the ground's axes, of three points on the axes of each of the k rigid
-        bodies without points off the root, at its radius of gyration: they move as it turns.
+        """Places (t, 3 k, 3) m, relative to the root in the ground's axes, of three points on each of k rigid bodies,
+        which move as the body turns.
+
+        These are the bodies without points off the root. The points lie on the body's axes at its radius of gyration.
         """
         tree, of, radii = self.system.tree, self.of, dict[int, float]()
         for k, name in enumerate(self.system.order):
@@ -117,7 +122,7 @@ class Solution:
         return np.concatenate(places) if places else np.zeros((len(of.time), 0, 3))
 
     def bases(self, bodies: Iterable[str]) -> dict[str, Base]:
-        """Motions (t, 3) of the roots of the bodies, by name, at a selection of the times."""
+        """Motions (t, 3) of the roots of some bodies by name, at a selection of the times."""
         times = matrix_times(len(self.of.time))
         at = self.of.at(times)
         state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, times))
@@ -125,8 +130,8 @@ class Solution:
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
     def along(self, bodies: Iterable[str]) -> dict[str, Directions]:
-        """Flags of x, y and z by the names of bodies: True if a body has shapes along the axis, or would move new ones.
-        Bodies on which others hang, or forces act, may move along all.
+        """Flags of x, y and z by the names of bodies: true if a body has shapes along the axis, or would move in new
+        ones. Bodies on which others hang, or forces act, may move along all.
         """
         tree, count, acted = self.system.tree, len(self.of.time), self.system.laden
         every, wanted = dict[str, Directions](), list[tuple[int, str]]()
@@ -159,8 +164,8 @@ class Solution:
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Warnings of bodies made of matrices, which lack stiffness by loads: how large it would be in this motion; and
-        of those that bend too far for a stiffness of first order.
+        """Warnings of bodies made of matrices, which lack stiffness by loads, with its size in this motion; and of
+        those that bend too far for a stiffness of first order.
         """
         flexible = self.system.flexible
         lacking = [name for name, body in flexible.items() if body.unstiffened]
@@ -171,7 +176,7 @@ class Solution:
 
 
 def reading_of(name: str, body: Structure, q: Floats, loads: Loads) -> Reading:
-    """Quantities of one body, as :meth:`Solution.read` reads them, by its coordinates (t, n) and its loads."""
+    """Quantities of one body, as :meth:`Solution.read` reads them, from its coordinates (t, n) and its loads."""
     sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
     return {
         (name, DEFLECTION): deflections(body, q),
@@ -183,8 +188,8 @@ def reading_of(name: str, body: Structure, q: Floats, loads: Loads) -> Reading:
 
 
 def first_order_sizes(body: Structure, q: Floats, accelerations: Floats) -> tuple[Floats, Floats, Floats]:
-    """Sizes (t,), to first order, of the displacement of a body's end by coordinates (t, n), and of the force and the
-    moment at its root by accelerations of the coordinates (t, n).
+    """Sizes (t,), to first order, of the displacement of a body's end by coordinates (t, n), and of the force and
+    moment at its root by accelerations (t, n) of the coordinates.
     """
     c = body.coefficients
     vectors = q @ body.station_places.first[-1].T, accelerations @ c.f_a.T, accelerations @ c.f_al.T
@@ -193,13 +198,13 @@ def first_order_sizes(body: Structure, q: Floats, accelerations: Floats) -> tupl
 
 
 def elastic_accelerations(body: Structure, q: Floats) -> Floats:
-    """Accelerations (t, n) whose inertia balances the elastic forces by coordinates (t, n)."""
+    """Accelerations (t, n) whose inertia balances the elastic forces of coordinates (t, n)."""
     return np.asarray(np.linalg.solve(body.coefficients.mass, body.coefficients.stiffness @ q.T).T)
 
 
 def departure_sizes(system: System, bodies: Iterable[str], by: Correction) -> Floats:
-    """Sizes (t, k) of a small departure: of all coordinates and their accelerations, and of `bodies` the deflections,
-    the root loads by inertia and by elastic forces, and the elastic energy.
+    """Sizes (t, k) of a small departure: of all coordinates and their accelerations and, for some `bodies`, of the
+    deflections, the root loads by inertia and by elastic forces, and the elastic energy.
     """
     names, sizes = system.unknown_coordinates, list[Floats]([*np.abs(by.value).T, *np.abs(by.acceleration).T])
     for name in bodies:
@@ -211,7 +216,9 @@ def departure_sizes(system: System, bodies: Iterable[str], by: Correction) -> Fl
 
 
 def _moved_along(body: Structure, root: Frame, q: Floats, qd: Floats, qdd: Floats, loads: Floats | None) -> Directions:
-    """Flags of x, y and z: True if a beam whose root moves so has shapes along the axis, or would move new ones."""
+    """Flags of x, y and z: true if a beam whose root moves as given has shapes along the axis, or would move in new
+    ones.
+    """
     rich, index = enrichment(body, Base(root.a, root.w, root.alpha)).model(body.kind)
     c, lifted = rich.coefficients, np.zeros((3, len(q), rich.size))
     lifted[:, :, index] = q, qd, qdd

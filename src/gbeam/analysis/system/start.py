@@ -23,8 +23,8 @@ from gbeam.numerics.series import STEP
 
 
 class Begun(NamedTuple):
-    """Coordinates and accelerations (n,) of a start, and the index of the coordinate that goes on and on where there is
-    none, else −1.
+    """Coordinates and accelerations (n,) of a start. Where there is no start, `adrift` is the index of the coordinate
+    that moves on without limit, else −1.
     """
 
     q: Array
@@ -33,9 +33,10 @@ class Begun(NamedTuple):
 
 
 def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags, accelerated: Flags) -> Begun:
-    """Start near q, qd (n,) at which the forces on coordinates that are `bent`, which rest there, are in balance, and
-    those on `accelerated` ones are answered by their accelerations; the others are held. NaN where JAX traces it and
-    there is none.
+    """Solve for a start near q, qd (n,).
+
+    Coordinates that are `bent` rest there with their forces in balance; those that are `accelerated` have the
+    accelerations that their forces make; the others are held. NaN where JAX traces the residual and there is no start.
     """
     held, traced = ~(bent | accelerated), holds_jax(residual, q, qd, inputs)
     begun: Array = np.zeros(len(bent))
@@ -45,22 +46,23 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
         q, qd, begun = map(jnp.asarray, (q, qd, begun))  # beside inputs that are traced, NumPy would read them
 
     def forces(z: Array) -> Array:
-        """Forces left over (..., n); z (..., n) are displacements and accelerations."""
-        left = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
-        return namespace(left).where(held, z, left)
+        """Residual (..., n) where z (..., n) are displacements and accelerations. That of a held coordinate is z."""
+        remaining = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
+        return namespace(remaining).where(held, z, remaining)
 
-    def left(z: Array, share: Any, first: Array) -> Array:
+    def eased(z: Array, share: Any, first: Array) -> Array:
+        """Residual of which only a share of that at the start has to vanish."""
         return forces(z) - (1.0 - share) * first
 
     if traced:
         from gbeam.mechanics.equations.compiled import root
 
-        z = root(partial(left, first=forces(begun)), begun)
+        z = root(partial(eased, first=forces(begun)), begun)
         return Begun(q + bent * z, accelerated * z)
     z, reached, stride = begun, 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
-        wanted = forces if share == 1.0 else partial(left, share=share, first=forces(begun))
+        wanted = forces if share == 1.0 else partial(eased, share=share, first=forces(begun))
         moved, change, converged = _root_near(wanted, z, bent)
         if converged:
             z, reached, stride = moved, share, 2 * stride
@@ -72,11 +74,13 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
 
 
 @np.errstate(all="ignore")  # corrections may leave all numbers
-def _root_near(left: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
-    """Root of a function near z (n,) by Newton's method, the last correction where `bent`, and True if it converged."""
+def _root_near(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
+    """Find the root of a function near z (n,) by Newton's method; return it, the last correction of what is `bent`, and
+    True if it converged.
+    """
     change = z
     for _ in range(ITERATIONS):
-        values = left(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
+        values = function(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
         change = solved(values.imag.T / STEP, -values[0].real)
         z, change = z + change, np.where(bent, change, 0.0)
         if np.abs(change).max(initial=0.0) <= CLOSE * (1e-3 + np.abs(z[bent]).max(initial=0.0)):
@@ -85,11 +89,11 @@ def _root_near(left: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]
 
 
 def started(system: System, motion: Motion | None, time: float, initial: Initial) -> Point:
-    """State at the start of the joints, with the accelerations that its forces make. ComputationError where no shape of
-    the bodies is as `initial` says: see :class:`gbeam.Initial`.
+    """State in which joints begin, with the accelerations that its forces make. ComputationError where no shape of the
+    bodies is as `initial` says: see :class:`gbeam.Initial`.
     """
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
-    y, yd = (each[tree.free] for each in system.start)
+    y, yd = system.start[0][tree.free], system.start[1][tree.free]
     undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
     refuse_massless(system, undeformed, masses(tree, y[None], yd[None], undeformed.driven())[0])
     begun, bent, accelerated = _begun(system, inputs, initial)
@@ -104,15 +108,19 @@ def started(system: System, motion: Motion | None, time: float, initial: Initial
 
 
 def started_traced(system: System, motion: Motion | None, time: float, initial: Initial) -> tuple[Array, Array]:
-    """Coordinates and rates (n,) as `started` has them, of a system that JAX traces; NaN where no shape is at rest."""
+    """Coordinates and rates (n,) as `started` has them, for a system that JAX traces; NaN where no shape is at rest."""
     y = _begun(system, system.inputs(np.asarray(time), motion), initial)[0].q
     return y, _moving(system, y, system.start[1][system.tree.free], initial)
 
 
 def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Flags, Flags]:
-    """Coordinates and accelerations of a start, and flags (n,) of the coordinates that were bent and accelerated."""
+    """Coordinates and accelerations of a start, and flags (n,) of the coordinates that were bent and of those that were
+    accelerated.
+
+    Bodies with displaced points take their shapes from these; what is left to bend or accelerate is solved for.
+    """
     tree, moved = system.tree, on_bodies(system.flexible, initial.displaced)
-    y, yd = (each[tree.free] for each in system.start)
+    y, yd = system.start[0][tree.free], system.start[1][tree.free]
     bent, accelerated = unknown_at_start(system, initial.state)
     if initial.acceleration is not None:  # joints are held, and what floats deforms, too
         bodies = [_of_body(system, name).any(axis=0) for name in system.flexible]
@@ -130,12 +138,14 @@ def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Fla
 
 
 def _of_body(system: System, name: str) -> Floats:
-    """Entries of one (m, n) at the free coordinates that deform a body."""
+    """Selection matrix (m, n) of the m coordinates of a body among the free ones."""
     return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.free).astype(float)
 
 
 def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
-    """Rates (n,) of coordinates y, of which the joints' begin with `yd`."""
+    """Rates (n,) at coordinates y: of joints `yd`, and of bodies those by which their points have the initial
+    velocities.
+    """
     for name, components in on_bodies(system.flexible, initial.moving).items():
         if components:
             onto = _of_body(system, name)
@@ -144,7 +154,7 @@ def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
 
 
 def _accelerated(inputs: Inputs, acceleration: Floats) -> Inputs:
-    """Inputs of a ground with an acceleration alone, and joints that rest."""
+    """Inputs of a ground that only has an acceleration, and of joints that rest."""
     ground, still = inputs.ground, 0 * inputs.ground.w
     moving = inputs.prescribed
     return replace(

@@ -46,7 +46,9 @@ TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
 
 
 def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, float]:
-    """Name of the second-order body that moves most over its size at coordinates (k, n), and that ratio."""
+    """Name of the second-order body that moves most, in proportion to its size, at coordinates (k, n), and this
+    proportion.
+    """
     bent = {"a body": 0.0}
     for name, body in system.flexible.items():
         if body.kind not in BY_STRAINS:
@@ -83,7 +85,9 @@ class SteadySystem(Steady):
 
     @property
     def zero(self) -> float:  # type: ignore[override]
-        """Share of the largest eigenvalue below which one is of a motion that nothing holds; bodies hold themselves."""
+        """Share of the largest eigenvalue below which one counts as zero, as of a motion that nothing holds. It is zero
+        where only bodies move, which hold themselves.
+        """
         size = sum(link.body.size for link in self.point.tree.links)
         return 0.0 if len(self.point.tree.free) == size else RIGID
 
@@ -93,7 +97,7 @@ class SteadySystem(Steady):
         if self.drive.motion is None and self.drive.base is None:
             return None
         ground = self.local.inputs.ground
-        return Base(*(np.asarray(each, dtype=float) for each in (ground.a, ground.w, ground.alpha)))
+        return Base(*(np.asarray(vector, dtype=float) for vector in (ground.a, ground.w, ground.alpha)))
 
     def base_of(self, body: str) -> Base:
         """Motion of the root of a body, (3,)."""
@@ -103,18 +107,19 @@ class SteadySystem(Steady):
 
     @property
     def solution(self) -> Solution:
-        """The state, as a solution of one time, what turns free as in the system."""
+        """The state as a solution of one time, in which what turns is free as in the system."""
         point = release(self, held=False).point
         return Solution(self.system, point.standing(), point.driven)
 
     def bent(self, bodies: Mapping[str, Structure]) -> float:
-        """Largest displacement of a station of some of the bodies from its place at rest, over the body's length."""
+        """Largest displacement of a station of some bodies from its place at rest, as a share of the body's length."""
         q = {name: self.local.y[deforming(self.names, name)] for name in bodies}
         moved = (np.abs(body.displacement(q[name])).max() / body.length for name, body in bodies.items())
         return float(max(moved, default=0.0))
 
     @property
     def bend(self) -> float:
+        """Largest bend of a body, by the state or by the stiffness that its loads add, as a share of the length."""
         solution = self.solution
         bases = solution.bases(self.system.flexible)
         elastic = (elastic_bend(body, bases[name]) for name, body in self.system.flexible.items() if body.size)
@@ -122,8 +127,10 @@ class SteadySystem(Steady):
 
     @cached_property
     def stable(self) -> bool:
-        """True if it would stay there: see :func:`stability_margin`. Angular accelerations bring a skew stiffness, half
-        the rate of the gyroscopic coupling, which feeds no energy and is left out.
+        """True if the system would stay there: see :func:`stability_margin`.
+
+        Angular accelerations bring a skew stiffness, half the rate of the gyroscopic coupling, which feeds no energy
+        and is left out.
         """
         m, c, k, _ = self.linear
         if not len(m):
@@ -145,34 +152,36 @@ class SteadySystem(Steady):
 
     @property
     def _held_spin(self) -> tuple[str, ...]:
-        """Warning of joints that turn freely at the start and rest in this state."""
+        """Warn of joints that turn freely at the start and rest in this state."""
         tree, names = self.local.tree, self.names
         rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.free]
         if self.point.yd.any() or not rates.any():
             return ()
+        # A joint goes on turning if no stiffness acts on it, but for that of what is adrift.
         k, _, m = self.local.slopes()[1:]
         (stiffness,) = carried(m, self.adrift, k)
         stiffness[:, self.adrift] = 0.0
         size = np.abs(stiffness).max(axis=0)
         unsprung = size <= STILL * size.max() if stiffness.any() else np.ones(len(m), dtype=bool)
-        goes_on = (name.rpartition(".") for name, on in zip(names, unsprung & (rates != 0), strict=True) if on)
-        turning = dict.fromkeys(joint for joint, _, kind in goes_on if kind not in SLIDES)
+        goes_on = unsprung & (rates != 0)
+        coordinates = (name.rpartition(".") for name, free in zip(names, goes_on, strict=True) if free)
+        turning = dict.fromkeys(joint for joint, _, kind in coordinates if kind not in SLIDES)
         words = f'{" and ".join(turning)} did not turn, as at the start: gb.linearize(at="start") is about that motion'
         return (f"as if {words}",) if turning else ()
 
     @property
     def _spun_up(self) -> tuple[str, ...]:
-        """Warnings of joints with an angular acceleration: the moment that turns them, and the time to turn by 1°."""
+        """Warn of joints with an angular acceleration: of the moment that turns them, and the time to turn by 1°."""
         if self.point.yd.any():
             return ()
         warnings, tree, names = [], self.local.tree, self.names
-        turns = [each for each in tree.turning if self.local.ydd[each].any() and self.adrift[each].all()]
+        turns = [turn for turn in tree.turning if self.local.ydd[turn].any() and self.adrift[turn].all()]
         mass = self.local.slopes()[3] if turns else np.zeros((0, 0))
         for turn in turns:
             alpha, slides = self.local.ydd[turn], tree.sliding & self.adrift
             moment = carried(mass, slides, mass)[0][turn][:, turn] @ alpha
             size, rate = np.linalg.norm(moment), np.linalg.norm(alpha)
-            axis = ", ".join(f"{each + 0.0:.3g}" for each in np.round(moment / size, 3))
+            axis = ", ".join(f"{component + 0.0:.3g}" for component in np.round(moment / size, 3))
             joint = names[int(np.flatnonzero(turn)[0])].rpartition(".")[0]
             where = f"({axis}) of {self.system.joints[joint].body}.root" if len(moment) == 3 else "its axis"
             warnings.append(
@@ -194,14 +203,15 @@ class SteadySystem(Steady):
 
     @cached_property
     def linear(self) -> Linear:
-        """M, C and K of small departures; a ComputationError where a body's model has no positive mass."""
+        """M, C and K of small departures. ComputationError where a body's model has no positive mass."""
         k, c, m = self.known or self.local.slopes()[1:]
         if not positive_definite(m):
             raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
         if self.point.minimal:  # of others mass is looked at where they rest
             refuse_massless(self.system, self.point, m)
         for name, body in self.system.flexible.items():
-            if (bending := body.coefficients.bending) is not None:
+            bending = body.coefficients.bending
+            if bending is not None:
                 columns = deforming(self.names, name)
                 q, k = self.local.y[columns], np.array(k)
                 k[np.ix_(columns, columns)] += bending.stiffness(q) - bending.slope(q)
@@ -212,8 +222,8 @@ class SteadySystem(Steady):
         """Flags of the local coordinates that nothing holds, so that forces accelerate them."""
         # Rotations stand for the last three of four Euler parameters.
         kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.free]
-        left, *slope = self.point.slopes()
-        return adrift(self.point, left, slope)[kept]
+        residual, *slope = self.point.slopes()
+        return adrift(self.point, residual, slope)[kept]
 
     @cached_property
     def follows(self) -> Floats:
@@ -247,16 +257,18 @@ class SteadySystem(Steady):
 
     @property
     def names(self) -> list[str]:
-        """Names of the local coordinates: those of the system, Euler parameters but for the first one as rotations."""
+        """Names of the local coordinates. They are those of the system, with rotations in place of the last three Euler
+        parameters of a ball.
+        """
         local = local_names(self.system.coordinates)
         return [local[k] for k in self.local.tree.free]
 
     @property
     def accelerated(self) -> tuple[Accelerated, ...]:
-        """Coordinates that are accelerated evenly; none where others are accelerated too."""
+        """Coordinates that are accelerated evenly; none if other coordinates are accelerated, too."""
         ydd, slides = self.local.ydd, self.local.tree.sliding
         if ydd[~slides].any() and (self.point.yd.any() or ydd[~(slides | self.adrift)].any()):
-            return ()
+            return ()  # held coordinates are accelerated, or the system moves
         columns = zip(self.names, ydd.tolist(), slides, strict=True)
         return tuple(
             Accelerated(name, size) if slide else Accelerated(name, angular_acceleration=size)
@@ -271,8 +283,8 @@ class SteadySystem(Steady):
 
     @cached_property
     def slopes_of_frames(self) -> tuple[Floats, Floats]:
-        """Derivatives of the places of all points and of their rotations, ground's axes, with respect to the
-        coordinates, (p, 3, n) each, by a complex step.
+        """Derivatives (p, 3, n) of the places and of the rotations of all points, in the ground's axes, with respect to
+        the coordinates, by a complex step.
         """
         n = len(self.local.y)
         moved = self.local.y + 1j * STEP * np.eye(n)
@@ -284,7 +296,9 @@ class SteadySystem(Steady):
 
     @property
     def whirl(self) -> Whirl | None:
-        """Its points, of rigid bodies the roots, as they turn in the ground frame; None where nothing turns."""
+        """Places of its points, of rigid bodies of the roots alone, as they turn in the ground frame; None where
+        nothing turns.
+        """
         ground, prescribed = self.local.inputs.ground, self.local.inputs.prescribed
         driven = self.drive.rate if self.drive.coordinate else None
         rates = np.append(0.0 if prescribed is None else prescribed[1], driven or 0.0)
@@ -303,13 +317,13 @@ class SteadySystem(Steady):
         return self.slopes_of_frames[0]
 
     def shares(self, modes: Complex) -> Floats:
-        """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), without that of the steady state."""
+        """Shares (k, bodies) of the bodies in the kinetic energy of modes (n, k), on ground at rest."""
         tree, inputs = self.local.tree, self.local.inputs
         still = Frame(*(np.eye(3) if k == 0 else np.zeros(3) for k in range(6)))
         prescribed = inputs.prescribed
-        at_rest = replace(
-            inputs, ground=still, prescribed=None if prescribed is None else prescribed * [[1.0], [0.0], [0.0]]
-        )
+        if prescribed is not None:
+            prescribed = prescribed * [[1.0], [0.0], [0.0]]  # without rates and accelerations
+        at_rest = replace(inputs, ground=still, prescribed=prescribed)
         energies = np.zeros((modes.shape[1], len(tree.links)))
         for rates in (modes.real.T, modes.imag.T):
             state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, at_rest)
@@ -318,15 +332,18 @@ class SteadySystem(Steady):
         return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
 
     def directions(self, modes: Complex) -> tuple[str, ...]:
-        """Names such as "arm x": of each mode (n, k) the body with most kinetic energy, and the axis of its root along
-        which one of its points moves most; "arm rx", about which it turns most, where none of its points moves.
+        """Words such as "arm x" for each mode (n, k): the body with most kinetic energy, and the axis of its root along
+        which one of its points moves most.
+
+        Where none of its points moves, it is the axis about which one turns most, as in "arm rx".
         """
         of_point = [body for body, name in enumerate(self.system.order) for _ in self.system.points_of(name)]
         roots = self.local.tree.motion(self.local.y, self.local.yd, self.local.ydd, self.local.inputs).roots
-        moved, turning = (np.einsum("pan,nk->kpa", each, modes) for each in self.slopes_of_frames)
+        moved, turning = (np.einsum("pan,nk->kpa", slopes, modes) for slopes in self.slopes_of_frames)
         names = []
-        for body, *of_mode in zip(self.shares(modes).argmax(axis=1), moved, turning, strict=True):
-            along, about = (turned_back(roots[body].R, each[np.equal(of_point, body)]) for each in of_mode)
+        for body, of_places, of_turns in zip(self.shares(modes).argmax(axis=1), moved, turning, strict=True):
+            points = np.equal(of_point, body)
+            along, about = turned_back(roots[body].R, of_places[points]), turned_back(roots[body].R, of_turns[points])
             turns = np.abs(along).max() <= STILL * np.abs(about).max()
             axis = "xyz"[np.abs(about if turns else along).max(axis=0).argmax()]
             names.append(f"{self.system.order[body]} {'r' if turns else ''}{axis}")
@@ -334,17 +351,17 @@ class SteadySystem(Steady):
 
     @property
     def changing(self) -> bool:
-        """True if the residual, K, C or M are others after a turn: the state is not the same at all angles."""
+        """True if the state is not the same at all angles: the residual, K, C or M are others after a turn."""
         prescribed = self.local.inputs.prescribed
         if not self.drive.rate and (prescribed is None or not prescribed[1].any()):
             return False
-        square, modes = symmetric_modes(*(symmetric(each) for each in (self.linear.stiffness, self.linear.mass)))
+        square, modes = symmetric_modes(symmetric(self.linear.stiffness), symmetric(self.linear.mass))
         rate = np.sqrt(np.abs(square))
         rate = np.maximum(rate, 1e-6 * rate.max(initial=0.0) or 1.0)
-        left, *before = self._turned(0.0).local.slopes()
+        residual, *before = self._turned(0.0).local.slopes()
         for turn in TURNS:
-            left_after, *after = self._turned(turn).local.slopes()
-            moved = np.append(*balanced(left_after - left, before[0], before[2], self.adrift))
+            residual_after, *after = self._turned(turn).local.slopes()
+            moved = np.append(*balanced(residual_after - residual, before[0], before[2], self.adrift))
             # K, C and M in modes of unit mass, over their frequencies.
             pairs = zip(before, after, (1.0, 0.5, 0.0), strict=True)
             changes = [modes.T @ (b - a) @ modes / np.outer(rate, rate) ** power for a, b, power in pairs]
@@ -353,7 +370,7 @@ class SteadySystem(Steady):
         return False
 
     def _turned(self, turn: float) -> Point:
-        """The point with all that turns ahead by an angle, rad, and the other coordinates as they are."""
+        """The point with everything that turns ahead by an angle, rad, while the other coordinates stay as they are."""
         tree, inputs = self.point.tree, replace(self.drive, turn=turn).inputs(self.system)
         y, prescribed = np.array(self.point.y), inputs.prescribed
         if self.drive.coordinate:
@@ -366,7 +383,7 @@ class SteadySystem(Steady):
 
 
 def open_loops(system: System) -> tuple[str, ...]:
-    """Warning of controllers, which act over time only."""
+    """Warning of controllers, which act over time only and not in a steady state."""
     if not system.controllers:
         return ()
     names = ", ".join(system.controllers)
@@ -374,8 +391,8 @@ def open_loops(system: System) -> tuple[str, ...]:
 
 
 def release(state: SteadySystem, *, held: bool) -> SteadySystem:
-    """Free the coordinate that turns; nothing changes if it is `held` or prescribed. The constant effort by which it
-    goes on has no part in small departures.
+    """Free the coordinate that turns, unless it is `held` or prescribed. The constant effort by which it goes on has no
+    part in small departures.
     """
     fixed, tree = state.point, state.system.tree
     if held or fixed.tree is tree:
@@ -386,5 +403,5 @@ def release(state: SteadySystem, *, held: bool) -> SteadySystem:
     whole = [fixed.tree.whole(unknown, prescribed) for unknown, prescribed in pairs]
     others = inputs.prescribed[:, :-1]
     inputs = replace(inputs, prescribed=others if others.size else None)
-    y, yd, ydd = (each[tree.free] for each in whole)
+    y, yd, ydd = (state_of_all[tree.free] for state_of_all in whole)
     return SteadySystem(state.system, state.drive, Point(tree, y, yd, ydd, inputs))
