@@ -48,9 +48,7 @@ def sufficient(
 
 
 def of_lowest(frequency: Floats, errors: FrequencyErrors | None) -> FrequencyErrors | None:
-    """Errors of the `LOWEST` of frequencies (k,) Hz, and of unseen ones below the highest of these; None without
-    any.
-    """
+    """Errors of the `LOWEST` frequencies of (k,) Hz, and of unseen ones below the highest of these; None if none."""
     if errors is None or not len(frequency):
         return None
     lowest = np.argsort(frequency)[:LOWEST]

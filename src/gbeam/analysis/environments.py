@@ -64,9 +64,7 @@ def study(case: Case, progress: Progress = None) -> Any:
 
 
 def studied(case: Case, progress: Progress = None) -> tuple[Case, Study]:
-    """Raise the numbers of shapes of a case as far as its responses need, where they are automatic; return the case and
-    its study.
-    """
+    """Raise automatic numbers of shapes as far as a case's responses need; return the case and its study."""
     settings = case.over_time
     if not settings.estimate:
         fix = "give it, or leave response.estimate out"

@@ -38,9 +38,7 @@ SHAPES_FINE = 1e-5
 
 
 def counterpart(model: Model, kind: ModelKind) -> Model:
-    """The model of another kind with as many shapes. A kind by strains, as the reference is, has at least the numbers
-    `CONVERGED`.
-    """
+    """The model of another kind with as many shapes; of a kind by strains with at least the numbers `CONVERGED`."""
     axial, y, z = model.counts[:3]
     if KINDS[kind].strains:
         strains, rotations = CONVERGED
@@ -215,9 +213,7 @@ def _tip_of(response: Response, point: str | None) -> _Tip:
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:
-    """Largest displacement of the tip by the last shapes of all families at coordinates (t, n), as a share of the
-    largest displacement.
-    """
+    """Largest displacement of the tip by the last shapes of all families at q (t, n), as a share of the largest."""
     ends = np.cumsum(structure.counts) - 1
     last = [int(end) for end, count in zip(ends, structure.counts, strict=True) if count > 1]
     tip = structure.displacement(q)[:, -1]
@@ -294,9 +290,7 @@ def _row(
 
 
 def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
-    """Phase, rad, by which `ours` is ahead of `theirs` (t,), at the dominant frequency of `theirs`. NaN if either is
-    constant.
-    """
+    """Phase, rad, by which `ours` leads `theirs` (t,) at the dominant frequency of `theirs`; NaN if one is constant."""
     if len(time) < 8 or np.ptp(theirs) == 0 or np.ptp(ours) == 0:
         return float("nan")
 

@@ -170,9 +170,7 @@ def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:
 
 
 def _carrier(motion: Any) -> dict[str, Any]:
-    """Radius and orientation of the hub or arm that carries a beam, and the place of its root on an arm. Empty without
-    a hub.
-    """
+    """Radius and orientation of the hub or arm that carries a beam, and its root's place on an arm; or nothing."""
     if motion is None or motion.kind != "hub":
         return {}
     place = np.asarray(motion.mount.place)

@@ -79,9 +79,7 @@ class Derivatives:
         return (alone & self.fresh) | (self.single and (self.slope == self.reached).all())
 
     def extend(self, added: int) -> None:
-        """Append steps with the derivatives of the last one. Where all have those of one stage, they serve the new
-        ones, too.
-        """
+        """Append steps with the derivatives of the last one, or of the stage whose derivatives serve all."""
         count = len(self.age)
         by_step = self.slope is not None and len(self.slope) == count > 1
         if not count and self.even:
@@ -170,8 +168,8 @@ class Derivatives:
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
     def forces(self, states: Array) -> Array:
-        """Sizes (t, s n) of the forces that cancel at the stages, |K| |q| + |C| |q̇| + |M| |q̈|, by K, C and M where
-        the window began.
+        """Sizes (t, s n) of forces that cancel at the stages, |K| |q| + |C| |q̇| + |M| |q̈|, by the window's first K,
+        C, M.
         """
         sizes: Array = np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)
         return sizes.sum(axis=0).T.reshape(len(self.age), -1)
@@ -199,9 +197,7 @@ class Derivatives:
         return interpolated(stages.times[chosen], values, stages.times[begin : begin + count])
 
     def _maps_of(self, kept: slice) -> Any:
-        """Maps of a slice of the steps. None if one map serves all steps, or if controllers are in the loop: such maps
-        are computed again.
-        """
+        """Maps of a slice of the steps; None if one serves all, or with controllers: these are computed again."""
         if self.maps is None or self.sampling is not None:
             return None
         maps = tuple(by_step[kept] for by_step in self.maps)

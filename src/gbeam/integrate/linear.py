@@ -134,9 +134,7 @@ def _unit(m: int, n: int) -> Array:
 
 
 def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, group: Array) -> tuple[Array, Array]:
-    """Affine maps of a group's part of z to its accelerations at the stages, (t, s, n, m n + 1), and to its next z, (t,
-    m, n, m n + 1).
-    """
+    """Affine maps of a group's z to its stages' accelerations, (t, s, n, m n + 1), and next z, (t, m, n, m n + 1)."""
     (*_, stages, m), n = t.w_q.shape, len(group)
     if n < len(mass):
         pair = np.ix_(group, group)
@@ -167,9 +165,7 @@ def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends:
 
 
 def recurrence(xp: Any, maps: Array, z: Array) -> Array:
-    """Apply affine maps (t, m n, m n + 1) one after another to z (m n,); return the states before each and after the
-    last, (t + 1, m n).
-    """
+    """Apply affine maps (t, m n, m n + 1) in turn to z (m n,); return all states, (t + 1, m n), with the first."""
     if xp is np:
         states = np.ones((len(maps) + 1, z.size + 1))
         states[0, :-1] = z

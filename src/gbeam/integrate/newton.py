@@ -169,9 +169,7 @@ def _remaining_error(last: Array, before: Array) -> Array:
 
 
 def _guess(t: Tableau, carry: Carry) -> Array:
-    """First guess of a step's accelerations (s, n), extrapolated linearly from the last two steps or the last two
-    stages.
-    """
+    """First guess of a step's accelerations (s, n), extrapolated linearly from the last two steps or two stages."""
     x = carry.x
     if len(x) == 1:
         return 2 * x - carry.before

@@ -90,9 +90,7 @@ class Sampling:
     failure: tuple[int, ComputationError] | None = None
 
     def __init__(self, controllers: Controllers, residual: Any, drive: Any, steps: Steps) -> None:
-        """Plan the samples: at the beginning of which steps they are taken, and in which step their commands begin to
-        act.
-        """
+        """Plan the samples: at which steps' beginnings they are taken, and from which on their commands act."""
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
         self.held = np.zeros((len(steps), max((part.stop for part in controllers.drives), default=0)))
         start, begun = steps.begin[0], steps.begin + NEAR * steps.length
@@ -156,9 +154,7 @@ class Sampling:
         self.controllers.refuse_memory(c, *sample, (asked, after))
 
     def stopped(self, step: int) -> None:
-        """Forget a failure unless it happened at the step where the run ended. An earlier iterate may have caused
-        another.
-        """
+        """Forget a failure unless it is of the step where the run ended: an earlier iterate may have caused it."""
         if self.failure is not None and self.failure[0] != step:
             self.failure = None
 
@@ -171,8 +167,8 @@ class Sampling:
         return self._by_command(self.residual, q, qd, qdd, inputs)
 
     def _by_command(self, function: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) with respect to the commands, by
-        complex steps.
+        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) by the commands, by complex
+        steps.
         """
         count = self.held.shape[1]
         units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
@@ -216,9 +212,7 @@ class Held:
     """The commands that act in the steps of a window, `u` (t, m), corrected with its states."""
 
     def __init__(self, sampling: Sampling, first: int, count: int) -> None:
-        """Take over the commands that act in the steps of a window so far, and list the samples that are due in each
-        step.
-        """
+        """Take over the commands that act in a window's steps so far, and list the samples due in each step."""
         self.sampling, self.first = sampling, first
         sampling.hold(first + count)
         self.u = sampling.held[first : first + count].copy()
@@ -272,7 +266,7 @@ class Held:
         about the last iterate.
         """
         step = self.first + k
-        for c, i, s in self.due[k]:
+        for c, i, s in self.due[k]:  # controller, number in the window, number in the run
             by_state, by_command = self.slope[c]
             value = self.values[c][i] + by_state[i].dot(moved)
             if k and by_command is not None:

@@ -242,6 +242,7 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     """Histories of linear runs, and flags (b,) of those that converged: all."""
     scheme, stages = runs[0].scheme, stage_count(runs[0].scheme)
     count = max(len(run.steps) for run in runs)
+    # The features that some term has, and the terms' indices among these; runs of one shape have the same.
     needed = np.unique(np.concatenate(runs[0].parts)).astype(int)
     parts = tuple(tuple(np.searchsorted(needed, part).tolist()) for part in runs[0].parts)
     features = np.stack([_filled(run.features[:, needed], 1 + count * stages) for run in runs], axis=-1)
@@ -249,7 +250,8 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     terms = _stacked([run.alive for run in runs], axis=-1)
     equations: list[Any] = [run.equations for run in runs]
     mass, q, qd = _stacked([(e.mass, run.q, run.qd) for e, run in zip(equations, runs, strict=True)], axis=-1)
-    of_mass, damping = _stacked(
+    # Terms that fit steps to the runs' modes.
+    mass_terms, damping = _stacked(
         [added(e, scheme, run.steps.longest) for e, run in zip(equations, runs, strict=True)], -1
     )
     inverse = np.moveaxis(np.linalg.inv(np.moveaxis(mass, -1, 0)), 0, -1)
@@ -261,7 +263,7 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     for begin in range(0, count, STEPS):
         # The last piece is filled, so that one program serves every duration.
         chosen, taken = np.minimum(np.arange(begin, begin + STEPS), count - 1), min(STEPS, count - begin)
-        arguments = mass + of_mass, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], taken
+        arguments = mass + mass_terms, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], taken
         z, piece = taken_together(*arguments, parts=parts, ends=scheme.ends)
         for whole, part in zip(histories, piece, strict=True):
             whole[:, begin + 1 : begin + 1 + taken] = np.asarray(part)[:, :taken]

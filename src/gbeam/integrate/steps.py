@@ -35,9 +35,7 @@ class Corners:
 
     @staticmethod
     def of(times: Any, drive: Drive, start: float, end: float) -> Corners:
-        """Corners at those `times` (s) that lie in [start, end). One is a jump where the drive differs on its two
-        sides.
-        """
+        """Corners at those `times` (s) in [start, end). One is a jump if the drive differs on its two sides."""
         time = np.unique(np.asarray(times, dtype=np.float64))
         time = time[(time >= start) & (time < end)]
         if not len(time):

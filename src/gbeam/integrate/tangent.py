@@ -71,9 +71,7 @@ def _part(run: Trajectory, steps: slice) -> Trajectory:
 
 
 def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Floats, qd: Floats) -> Floats:
-    """δq̈ (k, n, p) that satisfy the linearised equations with δq, δq̇, `q` and `qd`, about the run's states of indices
-    `at`.
-    """
+    """δq̈ (k, n, p) by the linearised equations for δq, δq̇, `q` and `qd`, about the run's states of indices `at`."""
     mass, c, k, f = system(time, run.q[at], run.qd[at])
     return np.asarray(np.linalg.solve(mass, f - c @ qd - k @ q), dtype=np.float64)
 

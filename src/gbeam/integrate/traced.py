@@ -105,9 +105,7 @@ class TracedLoop:
         return shapes
 
     def recorded(self, sampling: Sampling, inputs: Any) -> list[Samples]:
-        """Samples of each controller as arrays, with NaN for those that were not taken. `inputs` have the first
-        states.
-        """
+        """Samples of each controller as arrays, NaN if not taken. `inputs` have the laws' first states."""
         recorded = []
         for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
             arrays = Samples(*(np.full(field.shape, np.nan) for field in shapes))
@@ -156,6 +154,7 @@ class TracedLoop:
         driven, by_driven = (jax.tree.map(lambda leaf: leaf[at], tree) for tree in (driven, by_driven))
 
         def measured(residual: Any, driven: Any) -> Array:
+            """Measurements (s, k) as a function of what JAX traces; the states of the run are constants."""
             inputs, controllers = self.controllers.driven(driven, before), self.controllers.of(exact(residual))
             qdd = accelerations(residual, q, qd, inputs) if controllers.accelerates(c) else 0 * q
             return controllers.measured(c, q, qd, qdd, inputs)
@@ -164,6 +163,7 @@ class TracedLoop:
         shapes = (*values.shape, 2 * q.shape[1]), (*values.shape, before.shape[1])
 
         def host(*arguments: Any) -> Any:
+            """Derivatives by states and by commands, which NumPy computes outside of JAX's programs."""
             q, qd, before, residual, driven = jax.tree.map(np.asarray, arguments)
             controllers = self.controllers.of(exact(residual))
             sampling = Sampling(controllers, residual, None, self.steps)
@@ -181,6 +181,7 @@ class TracedLoop:
         """
 
         def commands_and_state(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
+            """Commands as asked and as limited, and the next state of the law, (2 m + x,)."""
             return jnp.concatenate(law.function(parameters, references, t, y, state))
 
         sampled, axes = (values.measured, values.state, law.times), (None, 0, 0, 0, 0)
@@ -262,7 +263,8 @@ def traced(
             return each_leaf(lambda leaf: leaf[index], driven)
 
         untraced, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
-        if laws := loop.laws_of(inputs):
+        laws = loop.laws_of(inputs)
+        if laws:
             untraced = replace(untraced, controllers=loop.controllers.of(exact(residual), laws))
         samples = sampling_of(untraced, steps)
         with np.errstate(all="ignore"):  # of what is no number

@@ -110,9 +110,7 @@ class Window:
         self._keep(slice(count))
 
     def shrink(self) -> bool:
-        """Begin again with a quarter of the steps, at last with a single one. Return False if a single step has
-        failed.
-        """
+        """Begin again with a quarter of the steps, at last with one. Return False if a single step has failed."""
         if len(self) == self.limit == 1:
             return False
         self.growth = self.limit = max(min(len(self), self.limit) // 4, 1)

@@ -63,9 +63,7 @@ def meshed(path: Path, size: float) -> FileMesh:
 
 
 def _mesh_into(path: str, size: float, out: str) -> dict[str, Any]:
-    """Mesh the solids of a file into another one, `out`; return the parts of that mesh, and the places of its groups in
-    words.
-    """
+    """Mesh the solids of a file into another one, `out`; return its parts, and the places of its groups in words."""
     try:
         import gmsh
     except ModuleNotFoundError:

@@ -38,9 +38,7 @@ def with_cards(
             raise refused(name, f"names node {unknown[0]}, which is not there", "export it too")
 
     def link(name: str, numbers: tuple[int, ...]) -> None:
-        """Make a rigid link of nodes of the file, by their numbers. If all their points are clamped, the base owns
-        them.
-        """
+        """Make a rigid link of nodes by their numbers in the file, or let the base own them if all are clamped."""
         refuse_unknown(name, numbers)
         chosen = np.unique(np.concatenate([solid_of[number] for number in numbers]))
         if len(chosen) and clamped[chosen].all():

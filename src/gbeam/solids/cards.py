@@ -71,9 +71,7 @@ class Cards:
 
     @classmethod
     def of(cls, nodes: Any, parts: Mapping[str, Any]) -> Cards:
-        """Make the statements of what :meth:`parts` returned. Empty parts are those of a mesh of another kind of
-        file.
-        """
+        """Make the statements of what :meth:`parts` returned; there are none for a mesh of another kind of file."""
         if not parts:
             return cls(nodes)
         mean: dict[str, tuple[int, Mapping[int, float]]] = {
@@ -94,9 +92,7 @@ def carrying(mesh: TextMesh) -> dict[str, int]:
 
 
 def read_cards(path: str, mesh: TextMesh) -> Cards:
-    """Read the statements of a file besides its mesh. Files of other programs than Nastran, Abaqus and CalculiX have
-    none.
-    """
+    """Read the statements of a file besides its mesh, which files of Nastran, Abaqus and CalculiX have."""
     ending = ending_of(path)
     reader = _Nastran if ending in NASTRAN else _Abaqus if ending in ABAQUS else _Reader
     cards = reader(mesh)
@@ -309,9 +305,7 @@ class _Abaqus(_Reader):
 
 
 def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
-    """Weights of the nodes of a surface. Nodes that are listed have the weight 1, those of faces of elements their
-    shares of the area.
-    """
+    """Weights of a surface's nodes: 1 for those that are listed, for those of elements' faces shares of the area."""
     surfaces = [statement for statement in mesh.statements if statement.word == "SURFACE"]
     named = [surface for surface in surfaces if surface.options.get("NAME", "").upper() == name.upper()]
     if not named:

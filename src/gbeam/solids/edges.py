@@ -26,9 +26,7 @@ def without_limit(mesh: Mesh) -> Flags:
 
 
 def _edges_of_held(mesh: Mesh) -> Flags:
-    """Flags (k,) of nodes at the edge of what a clamp or a rigid link holds: they are on an outer face that is held in
-    part.
-    """
+    """Flags (k,) of nodes at the edge of a clamp or rigid link: those on an outer face that is held in part."""
     flags = np.zeros(len(mesh.points), dtype=bool)
     rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
     for nodes in (np.flatnonzero(mesh.clamped), *rigid):
@@ -59,7 +57,7 @@ def _re_entrant(mesh: Mesh) -> Flags:
 
 
 def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> tuple[Indices, Floats, Floats]:
-    """Edges of the face of a number of some elements.
+    """Edges of one face, by its number, of some elements.
 
     Returns the nodes (m, 3) at their ends, ascending, and in their middle, or at an end once more; the outward normals
     at both ends, (m, 2, 3); and the middle of the face, (m, 3).

@@ -57,9 +57,7 @@ class Part(NamedTuple):
         return (along @ u[self.nodes].reshape(e, k, 3 * m)).reshape(e, q, 3, 3, m)
 
     def stress(self, u: Floats, slopes: Floats | None = None) -> Floats:
-        """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, whose slopes may be passed if they are
-        known.
-        """
+        """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, whose `slopes` may be known."""
         if self.assumed is not None:
             e, q, _, k, _ = self.assumed.shape
             strained = self.assumed.reshape(e, q * 6, 3 * k) @ u[self.nodes].reshape(e, 3 * k, u.shape[-1])
@@ -173,6 +171,7 @@ def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats,
         slopes, moved = part.slopes(shapes), part.slopes(static)
         of_shapes = part.stress(shapes, slopes).reshape(len(weights), 6, -1)[:, TENSOR] * weights
         of_static = part.stress(static, moved).reshape(len(weights), 6, -1)[:, TENSOR] * weights
+        # Arrays of points, axes, components and shapes, flat in all but one of these.
         tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
         across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
         # Load by load in one piece each: products of small matrices that lie apart take four times as long.

@@ -79,9 +79,7 @@ class FileMesh:
 
 
 def read_mesh(source: str | os.PathLike[str] | Any, *, cards: bool = False) -> Any:
-    """Read the mesh in a file, and with `cards` its masses, links and springs. A mesh of meshio is returned as it
-    is.
-    """
+    """Read the mesh in a file, and with `cards` its masses, links and springs; return a mesh of meshio as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return source
     path = os.fspath(source)

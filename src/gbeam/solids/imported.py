@@ -302,8 +302,8 @@ class ImportedModel(Value):
         return np.concatenate([np.zeros((self.mass.shape[0], 0)), *columns], axis=1)
 
     def _outputs(self, nodes: list[int], shapes: Floats) -> tuple[Floats, Floats]:
-        """Displacements and rotations (s, 3, n) of nodes per coordinate, in shapes (u, n). Rotations that the matrices
-        lack are NaN.
+        """Displacements and rotations (s, 3, n) of nodes per coordinate of shapes (u, n); NaN for rotations not
+        given.
         """
         moved = np.full((len(nodes), 6, shapes.shape[1]), np.nan)
         for i, node in enumerate(nodes):

@@ -126,15 +126,11 @@ class Linked:
         self._map = self._map + on_unknowns(rows, moved, points)
 
     def _about(self, arms: Floats) -> Floats:
-        """Displacements (p, 3, 3) of tied points by unit rotations of their links about these links' axes, in
-        columns.
-        """
+        """Displacements (p, 3, 3) of tied points by unit rotations about their links' axes, in columns."""
         return np.einsum("pai,pb,abc->pci", self._axes[self._of], arms, CROSS, optimize=True)
 
     def widened(self, matrix: Any, unknowns: int) -> Any:
-        """Append empty rows and columns to a matrix of the nodes for the other points, as many as `unknowns` for
-        each.
-        """
+        """Append empty rows and columns to a matrix of the nodes, `unknowns` for each of the other points."""
         from scipy.sparse import block_diag, csr_array
 
         added = unknowns * (len(self.points) - self.count)
@@ -212,6 +208,7 @@ class Linked:
             return halves
         static_moved, moved = self._map @ static, self._map @ shapes
         inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) @ reduced.stiffness
+        # Forces that the links take up: of the loads' answers, and of the shapes.
         pulling = self._moments(held @ static_moved - loads[self._rows])
         holding = self._moments(held @ moved - inertia[self._rows])
         holding += np.swapaxes(holding, 1, 2)

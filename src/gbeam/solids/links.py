@@ -148,18 +148,14 @@ class Links(Value):
 
     @property
     def joined(self) -> list[Indices]:
-        """Groups of nodes that hang together: those of every rigid link, and one node of each link that a spring
-        joins.
-        """
+        """Groups of nodes that hang together: those of each rigid link, and one of each link that a spring joins."""
         groups = [nodes for name, nodes in self.nodes.items() if name not in self.weights]
         for between, *_ in self.springs.values():
             groups.append(np.array([self.nodes[name][0] for name in between if len(self.nodes[name])]))
         return [nodes for nodes in groups if len(nodes) > 1]
 
     def moving(self, name: str) -> Any:
-        """Flags (6,) of the directions in which a link moves. A link of a single node turns only where a spring or a
-        body resists.
-        """
+        """Flags (6,) of a link's free directions. One of a single node turns only where a spring or body resists."""
         if len(self.nodes[name]) > 1:
             return np.ones(6, dtype=bool)
         held = [stiffness[3:] > 0 for between, stiffness, _ in self.springs.values() if name in between]

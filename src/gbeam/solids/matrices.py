@@ -24,8 +24,8 @@ NEAR = 0.01  # of a given mass, or of the size of the structure
 
 
 def sparse_matrix(where: str, matrix: Any, size: int | None = None) -> Any:
-    """Convert a matrix to a sparse one. InputError unless it is square, of `size`, finite, symmetric, and 0 or more on
-    the diagonal.
+    """Convert a matrix to a sparse one. It must be square, of `size`, finite, symmetric, and have no negative
+    diagonal.
     """
     from scipy.sparse import csr_array
 
@@ -86,9 +86,7 @@ def rigid_motions(fields: Floats) -> Floats:
 
 
 def rigid_body(mass: Any, rigid: Floats) -> Floats:
-    """Mass, first moments and second moments xx, yy, zz, xy, yz, zx about the root, (10,), of a mass matrix with rigid
-    motions (u, 6).
-    """
+    """Mass, first and second moments xx, yy, zz, xy, yz, zx about the root, (10,), by M and rigid motions (u, 6)."""
     body = rigid.T @ (mass @ rigid)
     total = float(np.trace(body[:3, :3])) / 3
     if not total > 0:

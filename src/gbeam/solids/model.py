@@ -194,9 +194,7 @@ def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:
 
 
 def hardly_coarser(coarser: Mesh, finer: Mesh) -> tuple[str, ...]:
-    """Warn if the elements of a coarser mesh are hardly larger than those of the finer one, in all directions on
-    average.
-    """
+    """Warn if a coarser mesh's elements are hardly larger than the finer one's, on average in each direction."""
 
     def size(mesh: Mesh) -> Floats:
         boxes = [np.ptp(mesh.points[block.nodes], axis=1) for block in mesh.blocks]

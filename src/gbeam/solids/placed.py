@@ -40,9 +40,7 @@ class Placed:
 
     @classmethod
     def of(cls, mesh: Any, size: float, thickness: Any, *, origin: Numbers, turn: Numbers, scale: Numbers) -> Placed:
-        """Place a mesh whose unit of length has a `size`, m: scale it, move its origin to the root, and turn it by a
-        rotation vector.
-        """
+        """Place a mesh with a unit of a `size`, m: scale it, move its origin, and turn it by a rotation vector."""
         from scipy.spatial.transform import Rotation
 
         places = np.asarray(mesh.points, dtype=float)
@@ -104,9 +102,7 @@ class Placed:
         return int(points[on_side.argmax()])
 
     def blocks(self, materials: Any) -> tuple[Block, ...]:
-        """Blocks of elements of each kind and material. Materials are one, or given by groups; their axes are turned
-        with the mesh.
-        """
+        """Blocks of elements of each kind and material, one for all or by groups, with axes turned like the mesh."""
         owner = assigned(self.mesh, "materials", materials, (part.block for part in self.elements))
         without = sum(int((owner[part.block][part.which] < 0).sum()) for part in self.elements)
         if without:

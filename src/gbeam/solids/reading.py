@@ -93,9 +93,7 @@ def read_solid(
 
 
 def _spread(placed: Placed, stations: Mapping[str, int], point_masses: Mapping[str, float]) -> Floats:
-    """Masses (k,) on the points, kg: each mass is named by its station, or by a group over whose points it is spread
-    evenly.
-    """
+    """Masses (k,) on the points, kg, from those by a station's name, or of a group over which each is spread evenly."""
     weights = np.zeros(len(placed.points))
     for name, mass in point_masses.items():
         where = f"point_masses.{name}"

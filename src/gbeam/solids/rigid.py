@@ -233,9 +233,7 @@ class RigidSpecimen(Value):
 
     @property
     def structure(self) -> Structure:
-        """The specimen as a structure without coordinates. Its tip is the farthest corner unless a point has this
-        name.
-        """
+        """The specimen as a structure without coordinates. Its tip is the farthest corner unless it is named."""
         corners, centre, inertia = map(np.asarray, (self.corners, self.centre, self.inertia))
         second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
         products = (second[i, j] for i, j in PAIRS)
@@ -344,8 +342,6 @@ class RigidSpecimen(Value):
 
 
 def _second_moments(bolts: Floats) -> Floats:
-    """Second moments Σ (r² − r r) (3, 3) of points (b, 3) about their centroid, m²: the moment per rotation of bolts of
-    unit stiffness.
-    """
+    """Second moments Σ (r² − r r) (3, 3) of points (b, 3) about their centroid, m²: moment per turn of equal bolts."""
     arms = bolts - bolts.mean(axis=0)
     return np.asarray((arms**2).sum() * np.eye(3) - arms.T @ arms)

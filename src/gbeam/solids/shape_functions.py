@@ -97,9 +97,7 @@ def _element(kind: str) -> Any:
 
 @cache
 def shape_functions(kind: str, degree: int) -> tuple[Floats, Floats, Floats, Floats]:
-    """Points (q, 3), weights (q,), shape functions (q, k) and their derivatives (q, k, 3) at the quadrature rule of a
-    degree.
-    """
+    """Points (q, 3), weights (q,), shape functions (q, k) and derivatives (q, k, 3) at a rule of some degree."""
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefLine, RefTri
 
@@ -158,9 +156,7 @@ def tangents(kind: str, points: Floats, nodes: Indices, at: Floats) -> Floats:
 
 
 def shared_area(kind: str, places: Floats) -> Floats:
-    """Shares (k,) of its nodes in the area of a triangle or quadrilateral with nodes at places (k, 3): integrals of the
-    shape functions.
-    """
+    """Shares (k,) of the nodes, at places (k, 3), in an element's area: the integrals of the shape functions."""
     from skfem.quadrature import get_quadrature
 
     at, weights = get_quadrature(_element(kind)().refdom, KINDS[kind].mass)

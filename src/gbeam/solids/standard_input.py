@@ -108,9 +108,7 @@ def read_sid(
 
 
 def _slope(block: Mapping[str, Floats], count: int) -> Floats:
-    """Change of a polynomial with the coordinates, (rows, n, columns); zero where the file has the constant part
-    alone.
-    """
+    """Change of a polynomial with the coordinates, (rows, n, columns); zero if the file has a constant part alone."""
     slope = block["m1"]
     return slope if slope.shape[1] == count else np.zeros((slope.shape[0], count, slope.shape[2]))
 
@@ -169,9 +167,7 @@ def _by_pairs(columns: Floats, order: Any) -> Floats:
 
 
 def _moments(terms: Coefficients) -> Floats:
-    """Moments Σ m r_b ∂r_a/∂q (3, 3, n). The centrifugal loads give their symmetric part, Euler's force the
-    antisymmetric one.
-    """
+    """Moments Σ m r_b ∂r_a/∂q (3, 3, n), symmetric parts from centrifugal loads, antisymmetric from Euler's force."""
     half = np.einsum("aai->i", terms.f_ww) / 2
     even = -terms.f_ww + np.eye(3)[..., None] * half
     return even + np.einsum("cab,ci->abi", EPSILON, terms.f_al) / 2

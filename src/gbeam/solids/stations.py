@@ -53,9 +53,7 @@ class Stations:
         return Places(r0, first, second), turns
 
     def _mean(self, fields: Floats) -> Floats:
-        """Mean displacements and rotations (i, 2, 3, m) of the interfaces, from displacements (k, 3, m) of all
-        nodes.
-        """
+        """Mean displacements and rotations (i, 2, 3, m) of the interfaces, from those (k, 3, m) of all nodes."""
         columns = fields.shape[-1]
         return (self.forces.T @ fields.reshape(-1, columns)).reshape(len(self.centres), 2, 3, columns)
 

@@ -172,8 +172,8 @@ class NodalStress(Value):
         return skin, left[:, :kept] * sizes[:kept]
 
     def elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
-        """Yield the pairs (e, k) at the nodes of the elements of some blocks, with the stresses (e, k, 6, n) there per
-        unit coordinate.
+        """Yield pairs (e, k) at the nodes of some blocks' elements, and unit coordinates' stresses there, (e, k, 6,
+        n).
         """
         names, count = _materials(self.mesh), len(self.mesh.points)
         for part in chunks(self.mesh.points, blocks, "stress"):
@@ -295,9 +295,7 @@ def _area(corners: Floats) -> float:
 
 
 def deviatoric(table: Floats) -> Floats:
-    """Linear combinations (5, ..., n) of stresses xx, yy, zz, yz, xz, xy (..., 6, n) whose norm is the von Mises
-    stress.
-    """
+    """Combinations (5, ..., n) of stresses xx, yy, zz, yz, xz, xy (..., 6, n) whose norm is the von Mises stress."""
     xx, yy, zz, yz, xz, xy = np.moveaxis(table, -2, 0)
     return np.stack([xx - (yy + zz) / 2, *(np.sqrt(3) * shear for shear in ((yy - zz) / 2, yz, xz, xy))])
 

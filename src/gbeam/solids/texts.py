@@ -197,9 +197,7 @@ def alike(sets: Mapping[str, list[int]], name: str) -> str:
 
 
 def members(rows: list[list[str]], sets: Mapping[str, list[int]], generated: bool = False) -> Iterator[int]:
-    """Yield the numbers in the lines of a set of Abaqus. A line may name other sets, or give the first and last of a
-    range if `generated`.
-    """
+    """Yield the numbers in a set's lines, which may name other sets or, if `generated`, give first and last numbers."""
     for row in rows:
         if generated:
             first, last, *step = map(int, filter(None, row))
@@ -258,7 +256,8 @@ def _nastran_held(word: str, row: list[str]) -> Iterator[tuple[str, Iterable[int
         yield from ((ways, [int(node)]) for node, ways in (row[1:3], row[4:6]) if node)
         return
     ways, *nodes = filter(None, row[1:])
-    if "THRU" in (words := [cell.upper() for cell in nodes]):
+    words = [cell.upper() for cell in nodes]
+    if "THRU" in words:
         yield ways, range(int(nodes[0]), int(nodes[words.index("THRU") + 1]) + 1)
     else:
         yield ways, map(int, nodes)
@@ -286,7 +285,8 @@ def _read_gmsh(mesh: TextMesh, text: str, _: str) -> bool:
         inside = text.partition(f"${name}\n")[2].partition(f"$End{name}")[0]
         return [line.split() for line in inside.splitlines() if line.strip()]
 
-    if not (form := re.search(r"^\$MeshFormat\s+(2(?:\.[0-2])?|4(?:\.1)?) 0 ", text, re.M)):
+    form = re.search(r"^\$MeshFormat\s+(2(?:\.[0-2])?|4(?:\.1)?) 0 ", text, re.M)
+    if not form:
         return False
     nodes, elements = section("Nodes")[1:], section("Elements")[1:]
     names = {(int(row[0]), row[1]): " ".join(row[2:]).strip('"') for row in section("PhysicalNames")[1:]}
@@ -335,9 +335,7 @@ def _blocks(rows: list[list[str]], times: int) -> Iterator[tuple[list[str], list
 
 
 def _physical(rows: list[list[str]]) -> dict[tuple[int, str], list[str]]:
-    """Physical groups of points, curves, surfaces and volumes, by their dimensions and numbers in the section of
-    entities.
-    """
+    """Physical groups of points, curves, surfaces and volumes, by dimensions and numbers in the list of entities."""
     dims = [dim for dim, count in enumerate(rows[0] if rows else []) for _ in range(int(count))]
     groups = dict[tuple[int, str], list[str]]()
     for dim, row in zip(dims, rows[1:], strict=True):

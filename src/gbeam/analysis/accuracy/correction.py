@@ -120,17 +120,13 @@ class Departures:
 
     @property
     def inert(self) -> bool:
-        """True if every motion has kinetic energy. Where the mass is of second order in what bends, some motions may
-        have none.
-        """
+        """True if every motion has kinetic energy. One of second order in what bends may leave some without."""
         free = self.unheld
         return positive_definite(self.m[:, free][..., free])
 
     @cached_property
     def vibration(self) -> Vibration:
-        """Modes of the mean K and M, or of the first K if the mean one is unstable. Joints with Euler parameters are
-        held.
-        """
+        """Modes of the mean K and M, or of the first K if unstable. Joints with Euler parameters are held."""
         mass, square, modes = self.m.mean(axis=0), np.zeros(len(self.elastic)), np.eye(len(self.elastic))
         free = self.unheld
         inside = np.ix_(free, free)
@@ -258,17 +254,15 @@ class Within(NamedTuple):
         return residual
 
     def of_new(self, residual: Floats) -> Floats:
-        """Part of a residual (..., n) in the new coordinates, which too few shapes leave. The part in the shared ones
-        is the model's.
+        """Part of a residual (..., n) in the new coordinates, left by too few shapes; that in the others is the
+        model's.
         """
         new = residual.copy()
         new[..., self.shared] = 0.0
         return new
 
     def departures(self, equations: Posed | None = None) -> Departures:
-        """Linear equations of small departures from the solution, by the `richer` or by other equations in the same
-        unknowns.
-        """
+        """Linear equations of small departures from the solution, by the `richer` or by other `equations`."""
         richer = equations or self.richer
         chosen = matrix_times(len(self.of.time))
         at = self.of.at(chosen)

@@ -66,16 +66,12 @@ def reference_model(errors: ErrorEstimate) -> str:
 
 
 def error_warning(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
-    """Warn that a quantity of a steady state is wrong by a `size` in words, with the largest cause and advice against
-    it.
-    """
+    """Warn that a quantity of a steady state is wrong by a `size` in words, with its largest cause and advice."""
     return f"{what} is wrong by an estimated {size}: {causes_in_words(causes(errors, theory)[:1])}"
 
 
 def causes_in_words(causes: list[Cause], of: str = "") -> str:
-    """Causes with advice against each, and the body `of` which most of the error is. Several causes have their
-    sizes.
-    """
+    """Causes with advice against each, and the body `of` which most of the error is. Several have their sizes."""
     if len(causes) == 1:
         ((_, cause, cure),) = causes
         return f"{cause}{of}; {cure}"
@@ -186,9 +182,7 @@ class Judgement(NamedTuple):
         return away / size if size else 0.0
 
     def error(self, key: Quantity) -> ErrorEstimate:
-        """Error of a quantity by its causes. All are unknown if its size is NaN, as for the stress of a body by
-        matrices.
-        """
+        """Error of a quantity by its causes, all unknown if its size is NaN, as for stress in bodies by matrices."""
         if math.isnan(self.sizes[key]):
             return ErrorEstimate()
         nothing, size = key in self.nothing, self.sizes[key]

@@ -42,9 +42,7 @@ class Commands:
         self.free = np.asarray(directions[int((sizes > 0).sum()) :].T)
 
     def _aims(self, basis: Floats) -> tuple[Floats, Floats]:
-        """Linear conditions of the goal on the coefficients: rows (c, n), and the values (c,) that they have to
-        give.
-        """
+        """Linear conditions of the goal on the coefficients: rows (c, n), and the values (c,) of their products."""
         t, goal = self.time, self.goal
         if not self.plant.free:
             if goal.to_rate:  # by the coefficients at the ends
@@ -78,8 +76,8 @@ class Commands:
 
 @dataclass(frozen=True)
 class Vibration:
-    """Modes of a plant at rest: eigenvalues λ (k,), and gains (k,). A drive u leaves the tip the amplitude gain · |∫
-    exp(−λt) u dt|.
+    """Modes at rest: eigenvalues λ (k,), and gains (k,) of the tip's amplitude by a drive u, gain · |∫ exp(−λt) u
+    dt|.
     """
 
     eigenvalue: Complex
@@ -101,9 +99,7 @@ class Vibration:
         return Vibration(values[chosen][order], 2 * size[chosen][order])
 
     def rows(self, time: Floats, drive: Floats, ratio: float = 1.0) -> Complex:
-        """Complex amplitudes (k, ...), m, that drives (t, ...) leave in each mode, with its eigenvalue times
-        `ratio`.
-        """
+        """Complex amplitudes (k, ...), m, that drives (t, ...) leave in modes with eigenvalues times `ratio`."""
         # With the decay until the end in the exponent: that of a fast mode would overflow.
         weights = np.exp(ratio * (self.eigenvalue.real[:, None] * time[-1] - np.outer(self.eigenvalue, time)))
         flat = drive.reshape(len(time), -1)
@@ -111,9 +107,7 @@ class Vibration:
         return (self.gain[:, None] * values).reshape(len(weights), *drive.shape[1:])
 
     def amplitude(self, time: Floats, drive: Floats, ratio: Floats) -> Floats:
-        """Amplitudes (r,), m, of all modes together that a drive (t,) leaves if all eigenvalues are multiplied by each
-        of the ratios (r,).
-        """
+        """Amplitudes (r,), m, of all modes together that a drive (t,) leaves with eigenvalues times each ratio (r,)."""
         return np.array([float(np.linalg.norm(self.rows(time, drive, float(value)))) for value in ratio])
 
 
@@ -136,9 +130,7 @@ def reference_drives(commands: Commands, vibration: Vibration) -> dict[str, Floa
 
 
 def _smooth(time: Floats, goal: Goal) -> Floats:
-    """Drive (t,), not scaled, under which the rate or the angle, whichever the goal is, is the smooth step of 2009
-    (43).
-    """
+    """Drive (t,), not scaled, that makes the rate or angle, whichever the goal is, the smooth step of 2009 (43)."""
     phase = 2 * np.pi * time / goal.duration
     wave = 1 - np.cos(phase) if goal.to_rate else np.sin(phase)
     return np.where((time >= 0) & (time <= goal.duration), wave, 0.0)

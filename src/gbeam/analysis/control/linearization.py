@@ -184,9 +184,7 @@ def _linearized(
     *,
     at_rest: bool,
 ) -> StateSpace:
-    """State-space model of one body in a state of its system. If it is `at_rest`, the model has the errors of its
-    poles.
-    """
+    """State-space model of one body in a state of its system, with the errors of its poles if it is `at_rest`."""
     structure, point, linear = subject.structure, state.point, state.linear
     motion: Any = subject.motion
     n, measured = len(point.y), outputs_of(structure, state, gauges)

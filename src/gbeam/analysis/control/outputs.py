@@ -127,9 +127,7 @@ class Outputs:
         return np.concatenate([moved[:, -1], a[:, -1], -moment[:, 0], *strains, named, y[:, :i], yd[:, :i]], axis=-1)
 
     def inputs(self, u: Array) -> Inputs:
-        """Inputs of the tree from vectors u (..., m): the torque on a free hub or the motion of the base, then the
-        loads.
-        """
+        """Inputs of the tree from vectors u (..., m): torque on a free hub or motion of the base, then loads."""
         drives, ground = self.drives, self.drives.ground
         if self.first:
             driven, loads = np.split(u, [1], axis=-1)
@@ -168,9 +166,7 @@ class Outputs:
 
 
 def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
-    """Names and units of the coordinates and rates (y, ẏ). `first` is 1 where the angle of a free hub is the first
-    one.
-    """
+    """Names and units of coordinates and rates (y, ẏ). `first` is 1 where a free hub's angle comes first."""
     units = ("1", "rad", "rad", "rad", "1", "1") if structure.kind in BY_STRAINS else ("m",) * 6
     names = [("hub_angle", "rad")] if first else []
     for group, unit, count in zip(FAMILIES, units, structure.counts, strict=True):
@@ -185,9 +181,7 @@ def coordinate_signals(structure: Structure, first: int) -> tuple[Signal, ...]:
 
 
 def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
-    """Names and units of the inputs: the torque or the motion of the base, then the components of each load on the
-    beam.
-    """
+    """Names and units of the inputs: the torque or the base's motion, then the components of each load."""
     if motion.free:
         signals = [Signal("torque", "N m")]
     else:
@@ -276,9 +270,7 @@ def _nearest(structure: Structure, positions: Floats) -> Any:
 
 
 def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats, Floats]:
-    """Positions (g,), m, of numbered gauges on a beam, and their strains (g, 6) per unit force and moment of the
-    section there.
-    """
+    """Positions (g,), m, of numbered gauges on a beam, and strains (g, 6) per unit force and moment there."""
     assert structure.source is not None
     beam, unit = structure.source.beam, np.eye(6)[:, None]
     for i, gauge in gauges.items():

@@ -62,8 +62,8 @@ DRIVES = {
 
 
 class Ran(NamedTuple):
-    """Displacement (t, 3) m of the point under a command, residual vibration, m, step, s, and the driven coordinate and
-    its rate, (t,) each.
+    """Displacement (t, 3) m of the point under a command, residual vibration, m, step, s, driven coordinate and
+    rate.
     """
 
     time: Floats
@@ -245,9 +245,7 @@ class Plant:
         return Ran(run.time, tip, run.outcome, run.message, residual, run.step, driven)
 
     def _tip(self, system: System, time: Floats, q: Floats, settings: ResponseSettings) -> tuple[Floats, float]:
-        """Displacement (t, 3) m of the point, or its place if its body is rigid, from all coordinates (t, n); and its
-        residual vibration, m.
-        """
+        """Displacement (t, 3) m, or place if rigid, of the point by all coordinates (t, n); residual vibration, m."""
         tip = self._deflection(q)
         if tip is None:
             y, k = q[:, system.tree.free], system.points.index(self.point)

@@ -301,9 +301,7 @@ def _within(progress: Progress, words: str) -> Progress:
 
 
 def _departures(run: Ran, duration: float) -> Floats:
-    """Departures (m,) of the point from its mean after the command. They are scaled so that their norm is an amplitude,
-    m.
-    """
+    """Departures (m,) of the point from its mean after the command, scaled so that their norm is an amplitude, m."""
     tip = run.tip[run.time >= duration]
     return ((tip - tip.mean(axis=0)) * np.sqrt(2 / len(tip))).ravel()
 

@@ -201,9 +201,7 @@ def _widened(time: Floats, run: slice) -> slice:
 
 
 def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
-    """The reason in words. For a corner they name the limits that are used up around it, those for the longest time
-    first.
-    """
+    """The reason in words: for a corner the limits used up around it, those for the longest time first."""
     if reason != _CORNER:
         return reason
     return ", ".join(used_up(shares, around)[:_NAMED]) or _CORNER
@@ -219,9 +217,7 @@ def _peak(
     reason: str,
     shares: Mapping[str, Floats],
 ) -> LoadPeak:
-    """Compare the flight's peak at sample `top`, to which the samples `basin` belong, with the machine's largest load
-    near it.
-    """
+    """Compare the flight's peak at sample `top`, in the samples `basin`, with the machine's largest load near it."""
     size, machine_size = flight.size[basin], machine.size[basin]
     peak = top - basin.start
     (around,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)

@@ -34,15 +34,20 @@ from gbeam.results.sensors import Sensor
 
 
 def peak_pairs(flight: Quantities, machine: Quantities, during: slice, tip: int) -> dict[str, PeakPair]:
-    """Largest sizes over the flight's times in each run, by name; `tip` is the number of the point "tip". NaN stands
-    for a size that a run lacks.
+    """Largest sizes over the flight's times in each run, by name. "tip" is the point of number `tip`.
+
+    NaN stands for a size that a run does not have.
     """
     in_flight, on_machine = flight.peaks(_until(flight, machine, during), tip), machine.peaks(during, tip)
-    return {name: PeakPair(a, on_machine[name][0], t, on_machine[name][1]) for name, (a, t) in in_flight.items()}
+    pairs = dict[str, PeakPair]()
+    for name, (size, time) in in_flight.items():
+        machine_size, machine_time = on_machine[name]
+        pairs[name] = PeakPair(size, machine_size, time, machine_time)
+    return pairs
 
 
 def _until(flight: Quantities, machine: Quantities, during: slice) -> Flags:
-    """The flight's times up to the last that is compared."""
+    """Flags of the flight's times up to the last one that is compared."""
     last = machine.response.time[during][-1]
     return flight.response.time <= last + _ROUNDING * abs(last)
 
@@ -51,7 +56,8 @@ def _stresses_at(at: str, flight: Quantities, machine: Quantities, during: slice
     """Largest stress at a named point over the flight's times in each run; NaN if either has none there."""
     peaks = list[Peak]()
     for run, part in ((flight, _until(flight, machine, during)), (machine, during)):
-        if (stress := run.stress_at("stress_at", at)) is None:
+        stress = run.stress_at("stress_at", at)
+        if stress is None:
             return PeakPair(place_flight=at, place_machine=at)
         peaks.append(largest(run.response.time[part], stress[part, None]))
     (in_flight, time_flight), (on_machine, time_machine) = peaks

@@ -84,9 +84,7 @@ def _worst(solid: SolidStress, of: str) -> dict[str, Cyclic]:
 
 
 def stress_cycles(time: Floats, stress: Floats) -> StressCycles:
-    """Rainflow cycles of a stress (t,) Pa at times (t,) s, the largest ranges first. Its extremes are found between
-    samples.
-    """
+    """Rainflow cycles of a stress (t,) Pa at times (t,) s, the largest ranges first, with extremes between samples."""
     import rainflow
 
     rows = [row[:3] for row in rainflow.extract_cycles(turning_points(time, stress).tolist())]

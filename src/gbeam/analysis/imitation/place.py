@@ -72,9 +72,7 @@ def verify(
     answers: Answers,
     progress: Progress = None,
 ) -> tuple[Verification, ...]:
-    """Simulate the flight and machines, by the names of their control points, and compare each with the flight. Both
-    cover the span.
-    """
+    """Simulate the flight and machines, by the names of their control points, and compare each with the flight."""
     settings = replace(settings, estimate=False)  # a verification states no errors
     mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 

@@ -170,9 +170,7 @@ def turns_of(turn: Turn, ways: Ways) -> tuple[Turn, ...]:
 
 
 def turn_to_axis(direction: Floats) -> Turn:
-    """Shortest turn, a rotation vector in rad, that brings a direction (3,) of the specimen along x, the direction of
-    axis 3.
-    """
+    """Shortest turn, a rotation vector in rad, that brings a direction (3,) of the specimen along x, as axis 3 is."""
     axis = np.cross(direction, [1.0, 0.0, 0.0])
     size = float(np.linalg.norm(axis))
     x, y, z = (axis / size * math.atan2(size, direction[0])).tolist() if size else (0.0, 0.0, 0.0)
@@ -212,9 +210,7 @@ class Histories:
 
     @property
     def error(self) -> float:
-        """Largest size of the answer to the load's error alone, which no control point changes, as a share of the
-        flight's peak.
-        """
+        """Largest answer to the load's error alone, which no control point changes, as a share of flight's peak."""
         return float(np.linalg.norm(self.at_control_point, axis=-1).max(initial=0.0)) / self.scale
 
 
@@ -263,17 +259,13 @@ class Answers:
                 raise InputError("measure", problem, f"choose of {', '.join(felt)}")
 
     def _across(self, answer: Answer) -> Answer:
-        """The answer of a straight beam without its component along x, in which it is stiff; other answers as they
-        are.
-        """
+        """The answer of a straight beam without its component along x, in which it is stiff; others as they are."""
         return answer.onto(np.diag([0.0, 1.0, 1.0])) if self.specimen.straight else answer
 
     def histories(
         self, flight: Flight, centrifuge: Centrifuge
     ) -> tuple[dict[str, Histories], tuple[float, float, float]]:
-        """Histories by measure, but for those that are zero in flight, and the largest accelerations of the axes,
-        rad/s².
-        """
+        """Histories by measure, but for those that are zero in flight, and the axes' largest accelerations, rad/s²."""
         axes, at_c = centrifuge.axes(self.time), centrifuge.at_control_point(self.time)
         # Times that the first machine leaves out count for none; at others, not to follow is an error.
         self.left_out = centrifuge.not_followed(self.time) if self.left_out is None else self.left_out
@@ -307,9 +299,7 @@ class Answers:
         return {name: measure for name, measure in measures.items() if measure.scale > 0}, largest
 
     def _vibration(self, covered: Flags) -> Callable[[Floats], Floats]:
-        """Function that returns the vibration (t, 1) m of the foremost mode about its trend, from the force (t,) on
-        it.
-        """
+        """Function from the force (t,) on the foremost mode to its vibration (t, 1) m about its trend."""
         assert self.mode is not None
         frequency, damping = float(self.mode.frequency), float(self.mode.damping)
 
@@ -320,9 +310,7 @@ class Answers:
         return vibration
 
     def _loads(self, covered: Flags, error: Floats, growing: Floats, columns: Floats) -> Histories:
-        """Histories of the load at all ends of the specimen. They are thinned out in time so that they fit in
-        memory.
-        """
+        """Histories of the load at all ends of the specimen, thinned out in time so that they fit in memory."""
         ends = np.array([*self.specimen.ends.values()])
         some = np.flatnonzero(covered)[:: max(1, math.ceil(3 * len(ends) * len(error) / MOST))]
         in_flight = self.load[some, None] + ends @ self.growth[some].swapaxes(1, 2)

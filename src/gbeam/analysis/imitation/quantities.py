@@ -154,9 +154,7 @@ class Quantities:
 
     @property
     def yield_strength(self) -> float | None:
-        """Yield strength of the bodies with sections, Pa. None where it differs between them, or other bodies have
-        stress, too.
-        """
+        """Yield strength of the bodies with sections, Pa; None where it differs, or others have stress, too."""
         strengths = {loads.yield_strength for loads in map(sections_of, self.response.bodies.values()) if loads}
         return strengths.pop() if len(strengths) == 1 and not solids_of(self.response) else None
 
@@ -218,9 +216,7 @@ def largest(time: Floats, values: Floats) -> Peak:
 
 
 def _within(time: Floats, extremes: Extremes, k: Any = ()) -> Peak | None:
-    """A peak over all of a run, the `k`-th of several. None if it is not known, or lies outside the part with times
-    (t,), s.
-    """
+    """A peak over all of a run, the `k`-th of several; None if unknown, or outside the part with times (t,), s."""
     value, when = float(extremes.value[k]), float(extremes.time[k])
     return (value, when) if np.isfinite(value) and time[0] <= when <= time[-1] else None
 

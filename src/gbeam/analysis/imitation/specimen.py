@@ -74,9 +74,7 @@ class Modes:
         return Modes(self.frequency[k], self.damping[k], force, self.shape[..., k])
 
     def foremost(self, point: int, a: Floats, growth: Floats) -> Modes:
-        """Return the mode that displaces a point most, statically, under loads (t, 3), (t, 3, 3). Among equal ones it
-        is the slowest.
-        """
+        """Return the slowest of the modes that displace a point most, statically, under loads (t, 3), (t, 3, 3)."""
         force = np.abs(self.force.at(a, growth)).max(axis=0)
         moved = np.linalg.norm(self.shape[point], axis=0) * force / self.frequency**2
         return self.one(int(np.argmax(moved >= (1 - ALIKE) * moved.max())))
@@ -128,22 +126,23 @@ class Specimen:
 
 
 def _judged(system: System) -> list[str]:
-    """Names of the points whose displacement is judged: the tip of the only body, else all."""
-    tips = [
-        f"{name}.{max(points := stations_of(body), key=points.__getitem__)}" for name, body in system.flexible.items()
-    ]
-    return tips if len(system.bodies) == len(tips) == 1 else [*system.points]
+    """Names of the points whose displacement is judged: the tip of the only body, else all points."""
+    if len(system.bodies) == len(system.flexible) == 1:
+        ((name, body),) = system.flexible.items()
+        points = stations_of(body)
+        return [f"{name}.{max(points, key=points.__getitem__)}"]
+    return [*system.points]
 
 
 def _modes(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, moved: Floats) -> Modes:
-    """Modes by M, C and K (n, n), forces on coordinates, and displacements (p, 3, n) of points by coordinates."""
+    """Modes from M, C and K (n, n), and from forces and displacements (p, 3, n) of points per coordinate."""
     frequency, modes = rest_modes(mass, stiffness)
     ratio = np.einsum("nk,nm,mk->k", modes, damping, modes) / (2 * frequency)
     return Modes(frequency, ratio, forces.onto(modes), moved @ modes)
 
 
 def _refuse_moved(system: System, times: Floats) -> None:
-    """Raise InputError if controllers or prescribed rates move a system: it has no place of rest."""
+    """Raise InputError if controllers or prescribed rates move a system, which then has no place of rest."""
     if system.controllers:
         fix = "give the joints springs in their place, and compare runs with them by `gbeam sweep`"
         raise InputError("controllers", "hold joints, and a place is judged by what rests", fix)

@@ -78,9 +78,7 @@ def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
 
 
 def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count: int, depth: int) -> list[_Speed]:
-    """Modes at speeds between two, by halving, so close that the first `count` modes are recognised from each speed to
-    the next.
-    """
+    """Modes at speeds between two, by halving until the first `count` are recognised from each to the next."""
     _, alike = _paired(low, high)
     if depth == 0 or np.nanmin(alike[:count], initial=1.0) > CONFIDENT:
         return []
@@ -286,9 +284,7 @@ def campbell(
 
 
 def _stretches(rates: Sequence[float], growth_at: Callable[[float], float]) -> tuple[Unstable, ...]:
-    """Stretches of speed in which something grows or there is no equilibrium, among ascending speeds, rad/s. Their ends
-    are found by halving.
-    """
+    """Stretches of ascending speeds, rad/s, where something grows or there is no equilibrium, with ends by halving."""
 
     def end(low: float, high: float) -> float:
         """Speed between two at which stability begins or ends."""
@@ -328,9 +324,7 @@ def _framed(speeds: Sequence[_Speed], index: Sequence[np.ndarray]) -> dict[str, 
 
 
 def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
-    """Errors of the followed modes at one speed, by their indices `track` there. They are NaN for modes that no longer
-    oscillate.
-    """
+    """Errors of the followed modes at one speed, by their indices `track`; NaN if they no longer oscillate."""
     oscillating = track >= 0
     chosen = track[oscillating]
     value = 2j * np.pi * speed.frequency[chosen]
@@ -350,9 +344,7 @@ def _crossings(
     track: int,
     order: int,
 ) -> list[tuple[Crossing, Complex, float]]:
-    """Crossings of a followed mode with an engine order. Each has the mode (n,) and the slope of its frequency
-    there.
-    """
+    """Crossings of a followed mode with an engine order, each with the mode (n,) and its frequency's slope there."""
     from scipy.optimize import brentq
 
     gap = frequency - order * rates / (2 * np.pi)
@@ -397,9 +389,7 @@ def crossing_errors(
     first = gaps(speed)
 
     def root(which: int) -> float:
-        """Speed of the crossing in one of these models: a Newton step with the judged model's slope and, if that is
-        long, a secant step.
-        """
+        """Speed of the crossing in a model: a Newton step with the judged slope and, if long, a secant step."""
         newton = speed - first[which] / (slope - order)
         if not 0 < newton < math.inf or abs(newton / speed - 1) < LIMIT:
             return newton if newton > 0 else math.inf

@@ -78,9 +78,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
 
 
 def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
-    """Coefficients of the equations of small departures from coordinates `q` (n,), and the elastic forces (n,)
-    there.
-    """
+    """Coefficients of small departures from coordinates `q` (n,), and the elastic forces (n,) there."""
     if np.any(q):
         return structure.about(q)
     return structure.coefficients, np.zeros(structure.size)

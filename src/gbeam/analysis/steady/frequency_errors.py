@@ -60,8 +60,8 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
 
 
 class ByTheory(NamedTuple):
-    """Errors (k,) by the theory of slender beams, causes of the largest in words, and frequencies, Hz, that the theory
-    does not show.
+    """Errors (k,) by the theory of slender beams, causes of the largest in words, and frequencies, Hz, that it
+    lacks.
     """
 
     shares: Floats
@@ -77,9 +77,7 @@ class More(NamedTuple):
 
 
 class Richer:
-    """Richer models than that of a steady state, which judge it: the same with more shapes, the exact one, thick beams,
-    and coarser meshes.
-    """
+    """Richer models that judge a steady state's: with more shapes, the exact one, thick beams, and coarser meshes."""
 
     def __init__(self, state: SteadySystem) -> None:
         """Make the richer models. `one_model` is true where no body has another model than its own."""
@@ -151,10 +149,10 @@ class Richer:
         return same, exact, reference(self.rough), growth
 
     def by_theories(self, of: System, state: Any = None) -> tuple[list[System], dict[str, Floats]]:
-        """The system with slender beams, with thick ones, and with thick ones and plate action.
+        """The system with slender beams, with thick ones, and with thick ones and plate action; and the stiffness (n,
+        n) of plate action by beam.
 
-        Besides, the stiffness (n, n) of plate action by beam. It is that of beams bent as in a state, by default
-        hardly.
+        Plate action depends on the bend, which is that of a state or, by default, negligible.
         """
         variants, plates = [], dict[str, Floats]()
         for name, theory in self.theories.items():
@@ -260,8 +258,6 @@ def _with_more(state: SteadySystem, *, exact: bool) -> More:
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:
-    """Circular frequencies (k,) of the oscillating modes, in ascending order, and the modes (k, n) in coordinates of
-    bodies.
-    """
+    """Circular frequencies (k,) of the oscillating modes, ascending, and the modes (k, n) in bodies' coordinates."""
     moving = state.vibrations(gyroscopic=gyroscopic)
     return moving.frequency, moving.modes[state.first :].T

@@ -44,9 +44,7 @@ class Other(NamedTuple):
 
 
 class JudgedLoops:
-    """The loops of a system about a state, and the same laws around richer systems. One loop may be `cut` at a
-    drive.
-    """
+    """The loops of a system about a state, one perhaps `cut` at a drive, and the same laws around richer systems."""
 
     def __init__(self, state: SteadySystem, loops: Loops, cut: str | None = None) -> None:
         """Put the laws around each richer model. If one has no such state, the errors are not known."""
@@ -108,9 +106,7 @@ class JudgedLoops:
         return replace(computed, margins=tuple(margins), warnings=tuple(warnings), errors=note, **poles)
 
     def _errors(self, read: Callable[[str], Floats]) -> dict[str, Floats]:
-        """Relative errors by cause of the values that `read` gives for the name of a loop. They are NaN where they are
-        not known.
-        """
+        """Relative errors by cause of the values that `read` gives for a loop's name; NaN where they are unknown."""
         computed = read(OWN)
         if not self.known:
             return {MORE: np.full_like(computed, np.nan)}
@@ -150,9 +146,7 @@ class JudgedLoops:
 
 
 def _modes(a: Floats) -> tuple[Complex, Complex, Complex]:
-    """Eigenvalues (n,) of a matrix, its right eigenvectors (n, n) in columns, and the left ones dual to them in
-    rows.
-    """
+    """Eigenvalues (n,) of a matrix, right eigenvectors (n, n) in columns, and the dual left ones in rows."""
     value, right = np.linalg.eig(a)
     return value + 0j, right + 0j, np.linalg.pinv(right) + 0j
 

@@ -56,8 +56,8 @@ def _in_turn(path: Path, of: System, values: Sequence[float]) -> Iterator[float]
 
 
 def _doubts(path: Path, subject: Subject, value: float) -> tuple[str, ...]:
-    """Doubts about one body, or about a system: about its bodies, its open loops, and friction that holds it just below
-    a value.
+    """Doubts about one body, or about a system: its bodies, open loops, and friction that holds it just below a
+    value.
     """
     if subject.body:
         return input_warnings(subject.structure)
@@ -184,9 +184,7 @@ def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
 
 
 def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
-    """Causes of the beam theory's error in words, by the mode with the least stiffness; "" if there is no
-    equilibrium.
-    """
+    """Causes of the beam theory's error in words, by the mode with the least stiffness; "" without equilibrium."""
     try:
         slender, thick = (transfer(point, model) for model in models[:2])
     except ComputationError:

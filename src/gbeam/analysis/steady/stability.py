@@ -43,9 +43,7 @@ NOTHING = 1e-12  # of the beam's stiffness: loads that add less are none
 
 
 def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
-    """Return `motion` if it is a hub; else raise InputError, with the words of the question and of what to ask
-    `instead`.
-    """
+    """Return `motion` if it is a hub; else raise InputError that says what needs one, and what to ask `instead`."""
     if isinstance(motion, Hub):
         return motion
     raise InputError(

@@ -208,9 +208,7 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
 
 
 def _stability(state: SteadySystem) -> tuple[bool | None, tuple[str, ...], dict[str, Any]]:
-    """Stability of a steady state, None where it is not known; a warning if it is lost; and the reason why it is not
-    known.
-    """
+    """Stability of a steady state, or None if unknown; a warning if it is lost; and why it is unknown."""
     try:
         growing = state.moving.growing
     except ComputationError as error:

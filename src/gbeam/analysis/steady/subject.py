@@ -84,9 +84,7 @@ class Subject:
             self.structure.require_coordinates()
 
     def columns(self, state: Steady) -> list[int]:
-        """Indices of the coordinates of a steady state that deform the body that is alone, or of all coordinates of a
-        system.
-        """
+        """Indices of a steady state's coordinates that deform the body that is alone; of a system all of them."""
         return deforming(state.names, self.body) if self.body else [*range(len(state.names))]
 
     def directions(self, state: Any, modes: Complex | Floats) -> tuple[str, ...]:
@@ -129,9 +127,7 @@ class Subject:
 
     @property
     def resolved(self) -> int:
-        """Number of the lowest modes that belong to the bodies. The others are made of static shapes among their
-        coordinates.
-        """
+        """Number of the lowest modes that belong to the bodies, and not to static shapes among their coordinates."""
         shapes = sum(body.size - body.resolved for body in self.system.flexible.values())
         return len(local_names(self.system.coordinates)) - shapes
 
@@ -165,9 +161,7 @@ def directions_of(structure: Structure, q: Floats, modes: Complex | Floats) -> t
 
 
 def edges_of(structure: Structure, q: Floats, modes: Complex | Floats) -> Complex | Floats | None:
-    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k); None for a model without
-    twist.
-    """
+    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k); None without twist."""
     twist = structure.twist_slopes(q)
     if twist is None or structure.source is None:
         return None

@@ -257,9 +257,7 @@ def _bounded(judged: Mapping[str, Structure], known: _Known) -> Errors | None:
 
 
 def _missed(rings: Ringing, known: _Known, errors: Errors, fastest: float) -> float:
-    """Frequency, rad/s, of the fastest mode below `fastest` whose ringing may exceed the stated errors; 0 if there is
-    none.
-    """
+    """Frequency, rad/s, of the fastest mode below `fastest` whose ringing may exceed the stated errors; else 0."""
     visible = np.zeros(len(rings.rate), dtype=bool)
     for quantity, amplitude in rings.sizes.items():
         error = errors.displacement if quantity[1] == DEFLECTION else errors.loads

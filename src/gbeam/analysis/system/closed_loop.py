@@ -91,9 +91,7 @@ Over = Callable[[Fraction], tuple[Floats, Floats]]
 
 
 def over_parts(plant: StateSpace, period: float) -> Over:
-    """Function that returns the matrices Φ and Γ of a plant over a fraction of a period, s: x₊ = Φ x + Γ u with u
-    held.
-    """
+    """Function that returns Φ and Γ of a plant over a fraction of a period, s: x₊ = Φ x + Γ u with u held."""
     n, count = plant.b.shape
     block = np.zeros((n + count, n + count))
     block[:n, :n], block[:n, n:] = plant.a, plant.b
@@ -241,9 +239,7 @@ class Loops:
         strained: Mapping[str, Strained] = MappingProxyType({}),
         name: str = "",
     ) -> Loops:
-        """Make the loops of a system about a state, with further `inputs` and `outputs`; InputError as of
-        `channels_of`.
-        """
+        """Make the loops of a system about a state, with further `inputs` and `outputs`."""
         controllers = state.system.controllers
         free = default_inputs(state.system, state.drive.motion) if inputs is None else inputs
         wanted = [*default_outputs(state.system), *strained] if outputs is None else outputs

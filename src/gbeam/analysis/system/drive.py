@@ -34,9 +34,7 @@ class Drive:
     faster: float = 0.0
 
     def inputs(self, system: System) -> Inputs:
-        """Inputs of a system's tree. A coordinate that turns without being prescribed is appended to the prescribed
-        ones.
-        """
+        """Inputs of a system's tree. A coordinate that turns, but is not prescribed, is appended to those that are."""
         hub_turns = isinstance(self.motion, Hub) and self.rate is not None and not self.coordinate
         inputs, base = system.inputs(np.asarray(float(self.time)), None if hub_turns else self.motion), self.base
         if hub_turns:
@@ -69,9 +67,7 @@ class Drive:
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns: `turning`, or the only prescribed angle, or the only angle. It is "" for a
-    hub.
-    """
+    """Name of the coordinate that turns: `turning`, the only prescribed angle, or the only angle; "" for a hub."""
     angles = [
         f"{name}.{coordinate}"
         for name, joint in system.joints.items()

@@ -121,8 +121,8 @@ class SystemControllers:
 
 
 def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop:
-    """Record of the controllers at times (t,) s: samples, commands asked for, and commands that act. Between samples
-    they are held.
+    """Record of the controllers at times (t,) s: samples, and commands asked for and acting, as held between
+    samples.
     """
     start, slack = sampling.steps.begin[0], NEAR * float(sampling.steps.length.min())
     measured, asked, acting, saturated = [], [], [], []
@@ -157,9 +157,7 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
 
 
 def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
-    """Express a controller's law at the times of its samples (s,) s as a function of its parameters and references for
-    JAX.
-    """
+    """Express a controller's law at its samples' times (s,) s as a function of parameters and references for JAX."""
     from jax.flatten_util import ravel_pytree
 
     from gbeam.integrate.traced import TracedLaw

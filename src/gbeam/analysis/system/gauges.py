@@ -21,18 +21,14 @@ from gbeam.mechanics.tree.system import System
 
 
 class Strained(NamedTuple):
-    """A gauge on a body: strains per unit coordinate (n,) or, with a `section`, per unit force and moment there
-    (6,).
-    """
+    """A gauge on a body: strains per unit coordinate (n,) or, at a `section`, per unit force and moment there (6,)."""
 
     body: str
     share: Floats
     section: int | None = None
 
     def read(self, system: System, state: State, acting: list[list[Acting]], inputs: Inputs) -> Array:
-        """Reading (t,) of the gauge at states (t,) of the system's tree, where wrenches are `acting` on points of
-        bodies.
-        """
+        """Reading (t,) of the gauge at states (t,) of the system's tree, with wrenches `acting` on its points."""
         k, body = system.order.index(self.body), system.flexible[self.body]
         if self.section is None:
             return state.q[k][-1] @ self.share

@@ -144,9 +144,7 @@ def _moves_of(system: System, motion: Motion | None) -> dict[str, Driven]:
 
 
 def default_inputs(system: System, motion: Motion | None) -> list[str]:
-    """Names of driven coordinates, components of all forces, and accelerations of the base and of prescribed
-    coordinates.
-    """
+    """Names of driven coordinates, force components, and accelerations of base and prescribed coordinates."""
     driven = {f"{name}.{coordinate}" for name, joint in system.joints.items() for coordinate in joint.efforts}
     drives = [name for name in drives_of(system) if name in driven or name.partition(".")[0] in system.forces]
     return [*drives, *_moves_of(system, motion)]
@@ -161,9 +159,7 @@ def default_outputs(system: System) -> list[str]:
 def _inputs(
     system: System, local: Point, names: Sequence[str], chosen: Sequence[Driven], read: Callable[..., Any]
 ) -> tuple[Floats, Floats]:
-    """Generalised forces (n, m) of unit inputs, and their direct feedthrough (k, m) to the outputs of `read`, by
-    complex steps.
-    """
+    """Generalised forces (n, m) of unit inputs, and their feedthrough (k, m) to what `read` reads, by complex steps."""
     state = local.y + 0j, local.yd + 0j, local.ydd + 0j
     now = tuple(values[None] for values in state)
     forces, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))

@@ -91,9 +91,7 @@ def _holding(system: System, stuck: Mapping[str, Sequence[str]]) -> System:
 
 
 def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
-    """Rates, by joint, that friction alone may hold, since they have no spring, no prescribed rate and no
-    controller.
-    """
+    """Rates, by joint, that friction alone may hold: without spring, prescribed rate and controller."""
     driven = {drive for controller in system.controllers.values() for drive in controller.drive}
     rubbing = {}
     for name, joint in system.joints.items():
@@ -204,9 +202,7 @@ def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) ->
 
 
 def transfer(state: SteadySystem, system: System) -> SteadySystem:
-    """Transfer a state to a system with richer bodies under the same drives. ComputationError if that has no such
-    state.
-    """
+    """Transfer a state to a system with richer bodies under the same drives; ComputationError if it has none."""
     try:
         if state.begins:
             return beginning(system, state.drive)
@@ -220,9 +216,7 @@ def transfer(state: SteadySystem, system: System) -> SteadySystem:
 
 
 def standing(state: SteadySystem, of: System) -> Solution:
-    """Solution of one time of the system `of` in a state of its own or of a simpler system. What turns is free as in
-    that system.
-    """
+    """Express a steady state as a solution of one time, for its system or a richer one `of`. What turns is free."""
     drive, system = state.drive, state.system
     moved = state if of is system else transfer(state, of)
     if drive.coordinate and system.coordinates.index(drive.coordinate) not in system.tree.fixed:

@@ -23,9 +23,7 @@ NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor mat
 
 
 class Richer(NamedTuple):
-    """A system with more shapes than the system `of`. `shared` are the indices of the latter's free coordinates among
-    its own.
-    """
+    """A system with more shapes than `of`. `shared` are the indices of that one's free coordinates among its own."""
 
     system: System
     shared: IntArray
@@ -44,9 +42,7 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 
 def left_unjudged(system: System) -> str:
-    """Sentence about bodies that are not judged at all, and about meshes that are not judged; empty if there are
-    none.
-    """
+    """Sentence about bodies, and about meshes, that are not judged; empty if there are none."""
     heavy = [name for name, body in system.bodies.items() if name not in system.flexible and body.mass > 0]
     if len(system.flexible) == 1 and not heavy:  # beside a free hub at most
         return unjudged(*system.flexible.values())

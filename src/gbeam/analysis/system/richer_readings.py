@@ -54,9 +54,7 @@ class Starting:
 
 
 class Ringing(NamedTuple):
-    """Bounds (k,) of the ringing of modes that the samples do not resolve: their frequencies, rad/s, and the amplitudes
-    of quantities.
-    """
+    """Bounds (k,) of the ringing of unresolved modes: their frequencies, rad/s, and the amplitudes of quantities."""
 
     rate: Floats
     sizes: Mapping[Quantity, Floats]
@@ -82,9 +80,7 @@ class RicherReadings(NamedTuple):
 
 
 def reader_of_runs(again: Again, count: int) -> Rerun:
-    """Function that runs a system and reads some of its bodies. ComputationError where a run has fewer than `count`
-    times.
-    """
+    """Function that runs a system and reads some bodies; ComputationError if the run has fewer than `count` times."""
 
     def rerun(system: System, bodies: Iterable[str]) -> Reading:
         solution = again(system)
@@ -182,9 +178,7 @@ def depart_to_richer(
 def _coarser_departure(
     solution: Solution, bodies: Iterable[str], starting: Starting | None
 ) -> tuple[Within, Correction] | None:
-    """The solution in the system with coarser meshes of its solids, and its departure there; None if no solid has a
-    coarser mesh.
-    """
+    """The solution in the system with coarser meshes, and its departure there; None if no solid has one."""
     rough = coarser(solution.system)
     if rough is None:
         return None
@@ -194,9 +188,7 @@ def _coarser_departure(
 
 
 def _ringing(system: System, bodies: Iterable[str], within: Within, rate: Floats, amplitude: Floats) -> Ringing:
-    """Bounds of the ringing of deflections and, by the elastic forces, of root loads, from amplitudes (n, k) of
-    modes.
-    """
+    """Bounds of the ringing of deflections and root loads, by elastic forces, from amplitudes (n, k) of modes."""
     sizes = dict[Quantity, Floats]()
     for name in bodies:
         body, columns = system.flexible[name], [k for k, owner in enumerate(within.richer.bodies) if owner == name]

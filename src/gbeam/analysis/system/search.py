@@ -42,17 +42,13 @@ CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller,
 
 
 def _farthest(system: System, tree: Tree, values: Any) -> str:
-    """Name of the free coordinate with the largest value (n,). For an Euler parameter it names the rotation of the
-    joint.
-    """
+    """Name of the free coordinate with the largest value (n,), or of the rotation that an Euler parameter is of."""
     name = system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
     return name if local_names([name]) == [name] else f"the rotation of {name.rpartition('.')[0]}"
 
 
 def _turns_evenly(point: Point, residual: Floats, k: Floats, mass: Floats, turn: Flags) -> bool:
-    """True if turning one hinge by a radian changes no residual. `turn` flags the hinge, `k` and `mass` are its
-    columns.
-    """
+    """True if turning a hinge, flagged by `turn`, changes no residual; `k` and `mass` are its columns."""
     elsewhere = point.tree(point.y + turn, point.yd, point.ydd, point.inputs)
     changed = max(np.abs(k).max(), np.abs(elsewhere - residual).max())
     return bool(changed <= SAME * (np.abs(mass).max() + np.abs(residual).max()))
@@ -265,9 +261,7 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
 
 
 def relaxed(system: System, tree: Tree, inputs: Inputs, start: Floats) -> Point:
-    """State of rest, as of `rested`, to which a tree moves from coordinates `start` down its forces. ComputationError
-    if it comes to none.
-    """
+    """State of rest to which a tree moves from coordinates `start` down its forces; ComputationError if to none."""
     still = np.zeros(len(tree.free))
     point, slope, _, converged = _newton(Point(tree, start[tree.free], still, still, inputs), still, relaxing=True)
     if not converged:

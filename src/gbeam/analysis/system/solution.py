@@ -52,9 +52,7 @@ class Solution:
     inputs: InputsOf
 
     def posed(self, bodies: Iterable[str], system: System | None = None) -> Posed:
-        """Equations of this or of another system at the solution's times, with a function that reads quantities of
-        `bodies`.
-        """
+        """Equations of this or another system at the solution's times, with a function that reads `bodies`."""
         system = self.system if system is None else system
         return Posed(
             system.tree,
@@ -69,9 +67,7 @@ class Solution:
         return Solution(self.system, self.of.at(times), lambda system, part: self.inputs(system, times[part]))
 
     def within(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
-        """The solution put into the equations of another system. Its unknowns have the same names there, or the indices
-        `shared`.
-        """
+        """The solution put into another system's equations, by its unknowns' names or their indices `shared`."""
         return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.of, shared)
 
     def states(self, bodies: Iterable[str]) -> tuple[Floats, dict[str, Carried]]:
@@ -216,9 +212,7 @@ def departure_sizes(system: System, bodies: Iterable[str], by: Correction) -> Fl
 
 
 def _moved_along(body: Structure, root: Frame, q: Floats, qd: Floats, qdd: Floats, loads: Floats | None) -> Directions:
-    """Flags of x, y and z: true if a beam whose root moves as given has shapes along the axis, or would move in new
-    ones.
-    """
+    """Flags of x, y and z: true if a beam with this motion of its root has shapes there, or would move in new ones."""
     rich, index = enrichment(body, Base(root.a, root.w, root.alpha)).model(body.kind)
     c, lifted = rich.coefficients, np.zeros((3, len(q), rich.size))
     lifted[:, :, index] = q, qd, qdd

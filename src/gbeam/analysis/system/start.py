@@ -75,9 +75,7 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
 
 @np.errstate(all="ignore")  # corrections may leave all numbers
 def _root_near(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
-    """Find the root of a function near z (n,) by Newton's method; return it, the last correction of what is `bent`, and
-    True if it converged.
-    """
+    """Root of a function near z (n,) by Newton's method, last correction of what is `bent`, True if converged."""
     change = z
     for _ in range(ITERATIONS):
         values = function(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
@@ -143,9 +141,7 @@ def _of_body(system: System, name: str) -> Floats:
 
 
 def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
-    """Rates (n,) at coordinates y: of joints `yd`, and of bodies those by which their points have the initial
-    velocities.
-    """
+    """Rates (n,) at coordinates y: joints' `yd`, and bodies' by the initial velocities of their points."""
     for name, components in on_bodies(system.flexible, initial.moving).items():
         if components:
             onto = _of_body(system, name)

@@ -46,9 +46,7 @@ TURNS = (0.7, 2.1, 4.4)  # rad, at which the equations are looked at
 
 
 def bent_most(system: System, names: Sequence[str], q: Floats) -> tuple[str, float]:
-    """Name of the second-order body that moves most, in proportion to its size, at coordinates (k, n), and this
-    proportion.
-    """
+    """Name of the second-order body that moves most for its size at coordinates (k, n), and this proportion."""
     bent = {"a body": 0.0}
     for name, body in system.flexible.items():
         if body.kind not in BY_STRAINS:
@@ -227,9 +225,7 @@ class SteadySystem(Steady):
 
     @cached_property
     def follows(self) -> Floats:
-        """Minus the derivatives (n, n) of the accelerations ÿ with respect to y: the axis of an angular acceleration
-        turns with the body.
-        """
+        """Minus the derivatives (n, n) of ÿ with respect to y: an angular acceleration's axis turns with the body."""
         slope = np.zeros((len(self.local.y), len(self.local.y)))
         for turn in self.local.tree.turning if not self.point.yd.any() else ():
             if self.local.ydd[turn].any() and self.adrift[turn].all():
@@ -257,9 +253,7 @@ class SteadySystem(Steady):
 
     @property
     def names(self) -> list[str]:
-        """Names of the local coordinates. They are those of the system, with rotations in place of the last three Euler
-        parameters of a ball.
-        """
+        """Names of the local coordinates: the system's, with rotations in place of balls' Euler parameters."""
         local = local_names(self.system.coordinates)
         return [local[k] for k in self.local.tree.free]
 
@@ -296,9 +290,7 @@ class SteadySystem(Steady):
 
     @property
     def whirl(self) -> Whirl | None:
-        """Places of its points, of rigid bodies of the roots alone, as they turn in the ground frame; None where
-        nothing turns.
-        """
+        """Places of its points, of rigid bodies the roots, as they turn in the ground frame; None if nothing turns."""
         ground, prescribed = self.local.inputs.ground, self.local.inputs.prescribed
         driven = self.drive.rate if self.drive.coordinate else None
         rates = np.append(0.0 if prescribed is None else prescribed[1], driven or 0.0)
