@@ -155,9 +155,18 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
     """
     if BODIES in path and _fits(ends, without_body(path)):
         return True
-    name, last = ".".join(ends), len(path) - 1
+    return _ending(tuple(path)).fullmatch(".".join(ends)) is not None
+
+
+@cache
+def _ending(path: tuple[str, ...]) -> re.Pattern[str]:
+    """Compile the pattern of the ends of a path."""
+    last = len(path) - 1
     words = [re.escape(key) if key != "*" else ".+" if k < last else "[^.]+" for k, key in enumerate(path)]
-    return any(re.fullmatch(r"\.".join(words[first:]), name) for first in range(len(words)))
+    before = ""
+    for word in words[:-1]:
+        before = rf"(?:{before}{word}\.)?"
+    return re.compile(before + words[-1])
 
 
 def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
