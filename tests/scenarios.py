@@ -88,6 +88,8 @@ EVERY_MOTION = (
 # A flight and its centrifuge, computed in a moment: up and down in half the time that it would take, from 2 g on.
 RAMPS = 'spin_up = "1.3 s"\nspin_down = "1.3 s"\n'
 FAST = 'title = "fast"\n' + SPECIMEN + model("FOAM", 0, 1, 1) + FLIGHT + SPIN + RAMPS + response("0.5 s")
+# The same, without the runs by which its errors would be estimated: most tests do not read them.
+UNJUDGED = FAST + "estimate = false\n"
 # A free hub.
 FREE_HUB = 'title = "hub"\n' + APPENDAGE + model("FOAM", 1, 1, 0) + TORQUE + response("4 s", residual_from="2 s")
 # A hub that slews; the linear model loses its equilibrium at 2.91 rad/s.

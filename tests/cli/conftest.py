@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ..calling import gbeam, with_figures
-from ..scenarios import FAST, FREE_HUB
+from ..scenarios import FREE_HUB, UNJUDGED
 
 __all__ = ["gbeam", "with_figures"]
 
@@ -17,7 +17,7 @@ def fast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A flight and a centrifuge."""
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "fast.toml"
-    file.write_text(FAST)
+    file.write_text(UNJUDGED)
     return file
 
 

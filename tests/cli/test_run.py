@@ -25,7 +25,7 @@ Call = Callable[..., Any]
 
 
 def test_json_contract(fast: Path, gbeam: Call) -> None:
-    answer = gbeam("run", fast, "--json")
+    answer = gbeam("run", fast, "--set", "response.estimate=true", "--json")
     assert answer.status == 0 and answer.err == ""
     facts = answer.json
     assert facts["title"] == "fast" and facts["outcome"] == "done" and facts["files"] == []

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ..calling import gbeam, with_figures
-from ..scenarios import FAST
+from ..scenarios import UNJUDGED
 
 __all__ = ["gbeam", "with_figures"]
 
@@ -17,5 +17,5 @@ def fast(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The scenario, in the current folder."""
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "fast.toml"
-    file.write_text(FAST, encoding="utf-8")
+    file.write_text(UNJUDGED, encoding="utf-8")
     return file

@@ -23,7 +23,7 @@ from hypothesis.strategies import DataObject, binary, data, integers, just, one_
 import gbeam as gb
 from gbeam.studies.journal import NAME, Journal
 
-from ..scenarios import FAST
+from ..scenarios import UNJUDGED
 
 Call = Callable[..., Any]
 Whole = tuple[Any, list[bytes]]
@@ -37,7 +37,7 @@ ARGUMENTS = ("--verb", "static", "--motion", "flight", "--over", *OVER, "--measu
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
     """Figures of the sweep in one go, and its store."""
     folder = tmp_path_factory.mktemp("whole")
-    (folder / "fast.toml").write_text(FAST, encoding="utf-8")
+    (folder / "fast.toml").write_text(UNJUDGED, encoding="utf-8")
     figures = gb.sweep(folder / "fast.toml", OVER, MEASURE, **STATIC, store=folder).measures["flight.tip.z"]
     return figures, (folder / NAME).read_bytes().splitlines(keepends=True)
 
