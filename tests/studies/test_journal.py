@@ -28,6 +28,7 @@ from ..scenarios import UNJUDGED
 Call = Callable[..., Any]
 Whole = tuple[Any, list[bytes]]
 OVER = ["motion.flight.acceleration.z.level=2 g:8 g:40"]
+FEW = ["motion.flight.acceleration.z.level=2 g:8 g:3"]
 MEASURE = ["flight.tip.z"]
 STATIC = {"verb": "static", "motion": "flight"}
 ARGUMENTS = ("--verb", "static", "--motion", "flight", "--over", *OVER, "--measure", *MEASURE, "--out", "there")
@@ -101,14 +102,14 @@ def test_a_disk_that_is_full_in_the_middle_of_a_line(fast: Path, gbeam: Call, mo
 
 
 def test_another_sweeps_store_is_refused_by_what_differs(fast: Path) -> None:
-    gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
+    gb.sweep(fast, FEW, MEASURE, **STATIC, store="there")
     with pytest.raises(gb.InputError, match="its measures differs"):
-        gb.sweep(fast, OVER, ["flight.tip.x"], **STATIC, store="there", resume=True)
+        gb.sweep(fast, FEW, ["flight.tip.x"], **STATIC, store="there", resume=True)
     with pytest.raises(gb.InputError, match="its values and cases differ"):
-        gb.sweep(fast, ["motion.flight.acceleration.z.level=2 g:8 g:20"], MEASURE, **STATIC, store="there", resume=True)
+        gb.sweep(fast, ["motion.flight.acceleration.z.level=2 g:8 g:2"], MEASURE, **STATIC, store="there", resume=True)
     Path("there/cases.jsonl").write_text("something else\n", encoding="utf-8")
     with pytest.raises(gb.InputError, match="not the store of a sweep"):
-        gb.sweep(fast, OVER, MEASURE, **STATIC, store="there", resume=True)
+        gb.sweep(fast, FEW, MEASURE, **STATIC, store="there", resume=True)
 
 
 def test_a_store_that_is_being_written_is_refused(fast: Path) -> None:
@@ -122,16 +123,16 @@ def test_a_store_that_is_being_written_is_refused(fast: Path) -> None:
     who = f"process {process.pid} on {platform.node()}"
     assert lock.read_text(encoding="utf-8").strip() == who
     with pytest.raises(gb.InputError, match=f"--out there is in use by {re.escape(who)}; wait"):
-        gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
+        gb.sweep(fast, FEW, MEASURE, **STATIC, store="there")
     lock.write_text("", encoding="utf-8")  # as it is for a moment
     with pytest.raises(gb.InputError, match="in use by another process; wait"):
-        gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
+        gb.sweep(fast, FEW, MEASURE, **STATIC, store="there")
     process.kill()
     process.wait()
     process.stdout.close()
     for left in (f"process {os.getppid()} on {platform.node()}", str(os.getppid()), "", "\0"):  # of a process that runs
         lock.write_text(left, encoding="utf-8")
-        gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
+        gb.sweep(fast, FEW, MEASURE, **STATIC, store="there")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="its locks are others")
@@ -140,7 +141,7 @@ def test_a_file_system_without_locks_will_do(fast: Path, monkeypatch: pytest.Mon
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
 
     monkeypatch.setattr("fcntl.flock", none)
-    gb.sweep(fast, OVER, MEASURE, **STATIC, store="there")
+    gb.sweep(fast, FEW, MEASURE, **STATIC, store="there")
 
 
 def _stored(whole: Whole) -> tuple[Path, list[bytes]]:

@@ -170,7 +170,7 @@ def test_one_component_alone_is_not_prescribed() -> None:
 def test_a_body_whose_points_do_not_move_is_judged_by_its_turning() -> None:
     """A tumbling body on a ball moves no point: its steps were a fifth of a second, its spin off by twice itself."""
     tumbling = on_ball(initial_rate={"wx": 3.0, "wy": 8.0, "wz": 2.0})
-    response = gb.simulate(tumbling, duration=20.0, estimate=False)
+    response = gb.simulate(tumbling, duration=8.0, estimate=False)
     assert response.largest.max() == 0 and 0 < response.errors.displacement.step < 1e-4
     spin = np.stack([response.signal(f"ball.w{axis}") for axis in "xyz"], axis=1)
     moments = spin * INERTIA  # torque-free: energy and the size of the momentum stay
@@ -179,7 +179,7 @@ def test_a_body_whose_points_do_not_move_is_judged_by_its_turning() -> None:
     def euler(_: float, w: np.ndarray) -> np.ndarray:
         return np.cross(INERTIA * w, w) / INERTIA
 
-    exact = solve_ivp(euler, (0, 20), spin[0], method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
+    exact = solve_ivp(euler, (0, 8), spin[0], method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
     np.testing.assert_allclose(spin[-1], exact, atol=1e-3)
 
 
