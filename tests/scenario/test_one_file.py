@@ -104,15 +104,14 @@ def test_a_run_says_the_units_of_its_coordinates(widened: Path) -> None:
 
 
 def test_their_keys_are_in_the_schema_and_their_units_are_asked_for(widened: Path) -> None:
-    page = run(widened, "schema", "--markdown").stdout
-    assert '[bodies.NAME], kind = "dumbbell"' in page and '[joints.NAME], kind = "planar"' in page
-    assert "distance of the masses, along y" in page
     (widened / "wrong.toml").write_text(
         SCENARIO.replace("1 N/mm", "1 N m/rad").replace("300 mm", "3 kg"), encoding="utf-8"
     )
-    refused = run(widened, "check", "wrong.toml")
-    assert refused.returncode == 2
-    assert "bodies.bell.span" in refused.stderr and "joints.table.stiffness.u" in refused.stderr
+    (_, page, _), (status, _, refused) = called(widened, ["schema", "--markdown"], ["check", "wrong.toml"])
+    assert '[bodies.NAME], kind = "dumbbell"' in page and '[joints.NAME], kind = "planar"' in page
+    assert "distance of the masses, along y" in page
+    assert status == 2
+    assert "bodies.bell.span" in refused and "joints.table.stiffness.u" in refused
 
 
 def test_a_parameter_is_declared_in_one_place(widened: Path, tmp_path: Path) -> None:
@@ -123,24 +122,48 @@ def test_a_parameter_is_declared_in_one_place(widened: Path, tmp_path: Path) -> 
     declared = file.read_text(encoding="utf-8").replace(*WIDER).replace("import Length", "import Angle, Length")
     file.write_text(declared, encoding="utf-8")
     (copy / "toy.toml").write_text(SCENARIO.replace('span = "300 mm"', 'span = "300 mm"\ntilt = "5 deg"'), "utf-8")
-    assert run(copy, "modes", "toy.toml").returncode == 0
-    refused = run(copy, "modes", "toy.toml", "--set", "bodies.bell.tilt=5 mm")
-    assert refused.returncode == 2 and '"5 mm" is a length = expected an angle' in " ".join(refused.stderr.split())
-    assert run(copy, "modes", "toy.toml", "--set", "bodies.bell.tilt=6 deg").returncode == 0
-    assert "| `tilt` | angle in rad | `0.0` | turn of the rod about x |" in run(copy, "schema", "--markdown").stdout
-    asked = (
-        "from pathlib import Path; from tomllib import loads; from gbeam.app.form import form; "
-        "print(form(loads(Path('toy.toml').read_text())))"
+    plain, refused, turned, reference, form, words = called(
+        copy,
+        ["modes", "toy.toml"],
+        ["modes", "toy.toml", "--set", "bodies.bell.tilt=5 mm"],
+        ["modes", "toy.toml", "--set", "bodies.bell.tilt=6 deg"],
+        ["schema", "--markdown"],
+        FORM,
+        WORDS,
     )
-    assert "turn of the rod about x" in python(copy, asked)
-    asked = "from gbeam.scenario.bodies.dumbbell import dumbbell; print(dumbbell.__doc__)"
-    assert "tilt : float, rad, optional\n    Turn of the rod about x." in python(copy, asked)
+    assert plain[0] == turned[0] == 0
+    assert refused[0] == 2 and '"5 mm" is a length = expected an angle' in " ".join(refused[2].split())
+    assert "| `tilt` | angle in rad | `0.0` | turn of the rod about x |" in reference[1]
+    assert "turn of the rod about x" in form[1]
+    assert "tilt : float, rad, optional\n    Turn of the rod about x." in words[1]
 
 
-def python(folder: Path, code: str) -> str:
-    """Run a program with the package in a folder, and return its output."""
+FORM = """
+from pathlib import Path
+from tomllib import loads
+from gbeam.app.form import form
+print(form(loads(Path("toy.toml").read_text())))
+"""
+WORDS = """
+from gbeam.scenario.bodies.dumbbell import dumbbell
+print(dumbbell.__doc__)
+"""
+# One process that calls the command line with lists of words, and runs programs, one after the other.
+CALLS = """
+import io, json, sys, contextlib
+from gbeam.cli import main
+answers = []
+for task in json.loads(sys.argv[1]):
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        status = exec(task, {}) if isinstance(task, str) else main(task)
+    answers.append([status, out.getvalue(), err.getvalue()])
+print(json.dumps(answers))
+"""
+
+
+def called(folder: Path, *tasks: list[str] | str) -> list[tuple[int, str, str]]:
+    """Status, output and errors of commands, and of programs, with the package in a folder."""
     path = {"PYTHONPATH": str(folder), "OPENBLAS_NUM_THREADS": "1"}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=path, cwd=folder, capture_output=True, text=True, check=True
-    )
-    return done.stdout
+    command = [sys.executable, "-c", CALLS, json.dumps(tasks)]
+    done = subprocess.run(command, env=path, cwd=folder, capture_output=True, encoding="utf-8", check=True)
+    return [tuple(answer) for answer in json.loads(done.stdout)]
