@@ -29,10 +29,11 @@ def is_linear(tree: Tree) -> bool:
     """
     deforming = [link.body for link in tree.links if link.body.size]
     held = 0 < len(tree.free) == sum(body.size for body in deforming)
+    if not held or not all(_constant(body) for body in deforming):  # which cost less to ask than where points are
+        return False
     acting = [(link.parent, link.on) for link in tree.links if link.parent >= 0]
     acting += [(force.body, force.on) for force in tree.forces]
-    still = all(_rests(tree.links[body].body, on) for body, on in acting)
-    return held and still and all(_constant(body) for body in deforming)
+    return all(_rests(tree.links[body].body, on) for body, on in acting)
 
 
 def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
