@@ -9,6 +9,8 @@ from tests.former.answers import Answers, answers, recorded
 from tests.former.cases import INTEGRATORS, MODELS, MOTIONS, QUESTIONS, SPECIMENS, case
 
 EVERY = 3  # of the seeds, one in so many is tried by every run of the tests, the others by `make thorough`
+# Of these the seeds that repeat others: a specimen on a motion, a model, an integrator, a question and its refusal.
+REPEATED = {*range(0, 24, EVERY), 27, 45, 51, 171, 177, 180, 183, 186, 189, 195}
 EQUAL, ALIKE = 1e-9, 1e-2  # answers, and stated errors
 PEAKS = {"tip_peaks", "root", "stress"}  # between samples: of two neighbours nearly as large either may be looked at
 NEXT = 3e-5  # difference of the two
@@ -47,7 +49,7 @@ def apart(before: Answers, now: Answers) -> list[str]:
 
 
 def often(seed: int) -> bool:
-    return seed % EVERY == 0
+    return seed % EVERY == 0 and seed not in REPEATED
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ References: an elastica in tangent angles by Galerkin's method, computed outside
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,13 +52,24 @@ def sizes(drive: str, history: np.ndarray) -> tuple[float, float]:
     return float(np.abs(history).max()), float(np.ptp(after) / 2)
 
 
-@pytest.mark.parametrize(
-    ("drive", "level", "mt"),
-    [
-        pytest.param(*case, marks=() if case in (("slew", 5.0, 0.1), ("slew", 8.0, 0.5)) else pytest.mark.slow)
-        for case in CASES
-    ],
-)
+# Cases that lie between others of the same drive.
+BETWEEN = [
+    *[("slew", level, 0.1) for level in (2.8, 8.0)],
+    *[("slew", 3.0, mass) for mass in (0.0, 0.1, 0.5)],
+    *[("torque", level, 0.1) for level in (50.0, 200.0)],
+    *[("torque", 100.0, mass) for mass in (0.0, 0.1, 0.5)],
+]
+QUICK = [("slew", 5.0, 0.1), ("slew", 8.0, 0.5)]
+
+
+def marks(case: tuple[str, float, float]) -> Any:
+    """Marks of a case."""
+    if case in BETWEEN:
+        return pytest.mark.thorough
+    return () if case in QUICK else pytest.mark.slow
+
+
+@pytest.mark.parametrize(("drive", "level", "mt"), [pytest.param(*case, marks=marks(case)) for case in CASES])
 def test_foam_is_nearer_to_exact_than_cfoam(drive: str, level: float, mt: float) -> None:
     exact = tip("exact", EXACT, drive, level, mt)
     peak, residual = sizes(drive, exact)
