@@ -22,6 +22,7 @@ from gbeam.analysis.response.step_errors import observed_order
 from gbeam.analysis.response.stepping import answered, refine
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.section_forces import section_forces
+from tests.crossing import crossed
 from validation.accuracy import integrators
 
 from .helpers import strip
@@ -151,8 +152,10 @@ def judge(response: gb.Response, name: str) -> None:
     assert stress <= BOUND * response.errors.stress.step
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    ("name", "integrator"),
+    crossed(lambda name, how: how != "generalized-alpha" or name.startswith("sine"), CASES, INTEGRATORS),
+)
 def test_an_automatic_step_keeps_its_tolerance(name: str, integrator: str) -> None:
     structure, motion, duration, _ = CASES[name]
     how = {"integrator": integrator, "tolerance": 1e-3, "estimate": False}  # that of the steps is known without

@@ -11,6 +11,7 @@ import gbeam as gb
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.rest import steady
 from gbeam.results.facts import json_of
+from tests.crossing import crossed
 
 LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS = 2.0, 0.02, 0.004, 2700.0, 70e9
 EA, EI = MODULUS * WIDTH * THICKNESS, MODULUS * WIDTH * THICKNESS**3 / 12
@@ -69,8 +70,10 @@ def test_a_rod_under_thrust_is_pressed_as_it_is_accelerated(kind: str) -> None:
     assert f"accelerated evenly: {faster}" in str(rest)
 
 
-@pytest.mark.parametrize("kind", ["FOAM", "exact"])
-@pytest.mark.parametrize("load", [0.0, 2.5, 50.0, 100.0])
+@pytest.mark.parametrize(
+    ("kind", "load"),
+    crossed(lambda kind, load: kind == "exact" or load == 100.0, ("FOAM", "exact"), (0.0, 2.5, 50.0, 100.0)),
+)
 def test_frequencies_of_a_rod_under_thrust(kind: str, load: float) -> None:
     moving = gb.modes(rocket(kind, load), errors=False)
     truth = frequencies(load)[:2]

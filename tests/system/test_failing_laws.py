@@ -12,6 +12,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.io.netcdf import read_stored
+from tests.crossing import crossed
 
 SAMPLE, INERTIA, ANGLE = 0.1, 2.0, 0.5
 NAMES = ["axis.angle", "axis.angle_rate"]
@@ -46,23 +47,27 @@ def raising() -> float:
     raise ZeroDivisionError("no gain\nis left")
 
 
-@pytest.mark.parametrize("delay", [0.0, 1.5 * SAMPLE])
+ENDS: list[tuple[Any, str, str]] = [
+    (raising, "law failed", "the law of axis.angle raises ZeroDivisionError: no gain\\nis left"),
+    (lambda: math.nan, "diverged", "gives [nan] at 0.9 s"),
+    (lambda: math.inf, "diverged", "gives [inf] at 0.9 s"),
+    (lambda: [1.0, 2.0], "law failed", "the law of axis.angle gives [1.0, 2.0] at 0.9 s: give 1 finite effort"),
+    (
+        lambda: [1.0, [2.0, 3.0]],
+        "law failed",
+        "the law of axis.angle gives [1.0, [2.0, 3.0]] at 0.9 s: give 1 finite effort",
+    ),
+    (lambda: "full", "law failed", "the law of axis.angle gives 'full' at 0.9 s: give 1 finite effort"),
+]
+
+
+# Each end at once, and one of each outcome late.
 @pytest.mark.parametrize(
-    ("then", "outcome", "words"),
-    [
-        (raising, "law failed", "the law of axis.angle raises ZeroDivisionError: no gain\\nis left"),
-        (lambda: math.nan, "diverged", "gives [nan] at 0.9 s"),
-        (lambda: math.inf, "diverged", "gives [inf] at 0.9 s"),
-        (lambda: [1.0, 2.0], "law failed", "the law of axis.angle gives [1.0, 2.0] at 0.9 s: give 1 finite effort"),
-        (
-            lambda: [1.0, [2.0, 3.0]],
-            "law failed",
-            "the law of axis.angle gives [1.0, [2.0, 3.0]] at 0.9 s: give 1 finite effort",
-        ),
-        (lambda: "full", "law failed", "the law of axis.angle gives 'full' at 0.9 s: give 1 finite effort"),
-    ],
+    ("late", "which"), crossed(lambda late, which: not late or which < 2, (0.0, 1.5), range(len(ENDS)))
 )
-def test_the_run_up_to_a_failing_law_is_kept(then: Any, outcome: str, words: str, delay: float, tmp_path: Path) -> None:
+def test_the_run_up_to_a_failing_law_is_kept(late: float, which: int, tmp_path: Path) -> None:
+    then, outcome, words = ENDS[which]
+    delay = late * SAMPLE
     response = gb.simulate(hinged(until(0.85, then), delay=delay), **OPTIONS)
     assert response.outcome == outcome
     assert response.message.startswith("controllers.pointing") and words in response.message
