@@ -150,7 +150,7 @@ def test_derivatives_of_where_a_loaded_beam_rests(kind: str) -> None:
     agree(tip, {"modulus": E, "force": 1.5, "pull": 2.0})
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["FOAM", pytest.param("CFOAM", marks=pytest.mark.thorough), "exact"])
 def test_derivatives_of_a_run_from_a_displaced_tip(kind: str) -> None:
     """With all that a response has besides."""
     counts = IN_PLANE.get((kind, "tip"), KINDS[kind])
@@ -221,7 +221,10 @@ def by_matrices(at: Values, kind: Any) -> gb.Structure:
     return gb.assemble(beam, kind, y=1, z=1, twist=1)
 
 
-@pytest.mark.parametrize(("kind", "of_slices"), [("FOAM", {}), ("exact", {"lengthwise": 3e-6})])
+@pytest.mark.parametrize(
+    ("kind", "of_slices"),
+    [pytest.param("FOAM", {}, marks=pytest.mark.thorough), ("exact", {"lengthwise": 3e-6})],
+)
 def test_derivatives_with_respect_to_a_sections_matrices(kind: str, of_slices: Values) -> None:
     """They were refused."""
 

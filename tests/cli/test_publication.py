@@ -90,7 +90,7 @@ def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits the size of a file")
-@pytest.mark.parametrize("most", [0, 1000, 20_000])
+@pytest.mark.parametrize("most", [0, pytest.param(1000, marks=pytest.mark.thorough), 20_000])
 def test_a_full_disk_under_a_run(most: int, fast: Path, gbeam: Call) -> None:
     """The numbers are printed, and the exit status says that there are no files; HDF5 ended the process."""
     import resource

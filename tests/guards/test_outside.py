@@ -156,7 +156,8 @@ def test_bytes_that_are_no_text_are_refused_or_written_out(fast: Path) -> None:
 
 
 @LINUX
-@pytest.mark.parametrize("megabytes", [250, 300, 400])  # less, and libraries crash as they are loaded
+# With less, libraries crash as they are loaded.
+@pytest.mark.parametrize("megabytes", [250, pytest.param(300, marks=pytest.mark.thorough), 400])
 def test_too_little_memory_is_no_defect(megabytes: int, fast: Path) -> None:
     ends = []
     sweep = (

@@ -9,7 +9,7 @@ from validation.accuracy.draw import draw
 from validation.accuracy.random_scenarios import judge, ratios
 
 # Slews, hubs with the beam inwards, flights and machines, by linear models; one shape, four, and what lies between.
-SEEDS = (0, 1, 3, 6, 10, 20, 21, 24)
+SEEDS = (0, 1, 3, 20, 24)
 
 
 def test_stated_errors_hold_in_random_scenarios() -> None:
