@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from gbeam.errors import InputError
+from gbeam import InputError
 from gbeam.scenario import Diagnostic, ScenarioError, build, loads, placed
 
 from ..scenarios import EVERY_MOTION

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from gbeam.errors import InputError
-from gbeam.scenario import build, json_schema, load, loads, read_scenario, template
+from gbeam import InputError, read_scenario
+from gbeam.scenario import build, json_schema, load, loads, template
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = sorted(EXAMPLES.glob("*.toml"))

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from gbeam.errors import ComputationError, InputError, naming, placing_within
+from gbeam import ComputationError, InputError
+from gbeam.errors import naming, placing_within
 from gbeam.scenario import Diagnostic, Scenario, ScenarioError, build, load, loads, placed
 
 Errors = Callable[..., tuple[Diagnostic, ...]]

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion import Flight
 from gbeam.report.description import text
 from gbeam.scenario import ScenarioError, build, load
 from gbeam.scenario.build import scenario_of
@@ -109,7 +108,7 @@ def test_offsets_of_the_example_are_those_that_its_program_puts_in() -> None:
     case = gb.read_scenario(CAMPAIGN)
     truth = np.genfromtxt(CAMPAIGN.parent / "data" / "f16_pulls_and_push.csv", delimiter=",", names=True)
     flight = case.motions["push"]
-    assert isinstance(flight, Flight)
+    assert isinstance(flight, gb.Flight)
     times = np.arange(29.0, 43.0, 0.1)
     flown = np.asarray(flight.base(times).a_WO_B) / 9.80665
     np.testing.assert_allclose(flown[:, 2], -np.interp(times - 8.0, truth["time_s"], truth["n_z_g"]), atol=0.25)

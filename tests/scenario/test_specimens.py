@@ -11,7 +11,6 @@ import pytest
 from scipy.io import mmwrite
 
 import gbeam as gb
-from gbeam.errors import InputError
 from gbeam.questions import QUESTIONS
 from gbeam.report.page.document import html_of
 from gbeam.report.page.result import shown
@@ -106,7 +105,7 @@ def test_a_solid_at_rest_needs_neither_motion_nor_duration(folder: Path) -> None
     frequency = QUESTIONS["modes"].answer(case).frequency
     np.testing.assert_allclose(frequency, gb.modes(moved.subject).frequency, rtol=1e-12)
     np.testing.assert_allclose(gb.linearize(case.subject).a, gb.linearize(moved.subject, moved.motions["turn"]).a)
-    with pytest.raises(InputError, match="motion is missing; add what the base does"):
+    with pytest.raises(gb.InputError, match="motion is missing; add what the base does"):
         gb.study(case)
 
 
@@ -219,7 +218,7 @@ def test_what_is_wrong_is_named_with_its_place(folder: Path, before: str, after:
     ],
 )  # fmt: skip
 def test_a_box_that_cannot_be_is_named_with_its_place(folder: Path, text: str, place: str, words: str) -> None:
-    with pytest.raises((ScenarioError, InputError)) as caught:
+    with pytest.raises((ScenarioError, gb.InputError)) as caught:
         case_of(folder, text)
     assert f"{place}: " in str(caught.value) and words in str(caught.value)
 
@@ -228,9 +227,9 @@ def test_a_rigid_box_has_no_modes(folder: Path) -> None:
     from gbeam.questions import QUESTIONS, refuse_rigid
 
     case = case_of(folder, BOX + SPIN)
-    with pytest.raises(InputError, match="is rigid"):
+    with pytest.raises(gb.InputError, match="is rigid"):
         QUESTIONS["modes"].refuse(case)
-    with pytest.raises(InputError, match="is rigid, and linearize is of what deforms"):
+    with pytest.raises(gb.InputError, match="is rigid, and linearize is of what deforms"):
         refuse_rigid(case, "linearize")
     QUESTIONS["run"].refuse(case)
 
