@@ -107,7 +107,9 @@ def across(load: Floats, up: Floats) -> bool:
 
 
 def mounted(load: Any, up: Any) -> tuple[float, float, float]:
-    """Rotation vector, rad, of a specimen's axes in a hub's: `load` points to the hub's axis, `up` along it."""
+    """Rotation vector, rad, from a specimen's axes to a hub's. It turns `load` towards the hub's axis and `up` parallel
+    to it.
+    """
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which few motions need
 
     inward, upward = direction("load", load), direction("up", up)
@@ -116,8 +118,8 @@ def mounted(load: Any, up: Any) -> tuple[float, float, float]:
     upward = upward - (upward @ inward) * inward
     upward /= np.linalg.norm(upward)
     R_HB = np.array([-inward, np.cross(-upward, inward), upward])
-    x, y, z = map(float, Rotation.from_matrix(R_HB).as_rotvec())
-    return x, y, z
+    rx, ry, rz = map(float, Rotation.from_matrix(R_HB).as_rotvec())
+    return rx, ry, rz
 
 
 def extent_of(motion: Any) -> tuple[float, float] | None:
@@ -129,48 +131,52 @@ def extent_of(motion: Any) -> tuple[float, float] | None:
 
 
 def level_of(motion: Any) -> ArmLevel | None:
-    """Level at the control point of a plain arm; None of other motions, and of hubs without a control point."""
+    """Level that a plain arm holds at its control point, with its times and largest onset. None for other motions, and
+    for hubs without a control point.
+    """
     extent = extent_of(motion)
     if extent is None:
         return None
-    marks = np.asarray(motion.rate.breaks)
-    time = np.unique(np.linspace(marks[:-1], marks[1:], SAMPLES))
-    rate, acceleration = (np.asarray(each) for each in motion.rate.derivatives(time))
-    radius, largest = float(motion.radius), float(np.abs(rate).max())
-    held = time[np.abs(rate) >= largest * (1 - 1e-12)]
+    breaks = np.asarray(motion.rate.breaks)
+    time = np.unique(np.linspace(breaks[:-1], breaks[1:], SAMPLES))
+    rate, acceleration = (np.asarray(values) for values in motion.rate.derivatives(time))
+    radius = float(motion.radius)
+    top_rate = float(np.abs(rate).max())
+    level_times = time[np.abs(rate) >= top_rate * (1 - 1e-12)]
     return ArmLevel(
-        level=radius * largest**2,
+        level=radius * top_rate**2,
         radius=radius,
         control_point=np.asarray(motion.control_point),
         load=0.0 - np.round(motion.mount.R_HB[0], 12),
         up=0.0 + np.round(motion.mount.R_HB[2], 12),
-        rate=largest,
-        onset=float((2 * radius * rate * acceleration).max()),
+        rate=top_rate,
+        onset=float((2 * radius * rate * acceleration).max()),  # d/dt of radius · rate²
         tangential=float(np.abs(radius * acceleration).max()),
-        reached=float(held[0]),
-        ends=float(held[-1]),
+        reached=float(level_times[0]),
+        ends=float(level_times[-1]),
     )
 
 
 def imbalance_of(motion: Any, level: ArmLevel | None, time: Floats, force: Floats, moment: Floats) -> Imbalance | None:
-    """Imbalance of what loads a plain arm with forces and moments on its root (t, 3), N and N m, at times (t,), s.
+    """Static and dynamic imbalance of what a plain arm carries, by forces (t, 3), N, and moments (t, 3), N m, on its
+    root.
 
-    By the mean over the second half of the time at the level, in which what deforms and swings comes to rest; None
-    without a level, before it, or where the weight is not along the axis.
+    The loads are averaged over the second half of the time at the level: deformation and swinging have settled by then.
+    None without a level, if the times (t,), s, end before it, or if gravity is not along the arm's axis.
     """
     if level is None or (motion.gravity is not None and np.any(np.asarray(motion.gravity)[:2])):
         return None
-    held = (time >= (level.reached + level.ends) / 2) & (time <= level.ends)
-    if not held.any():
+    settled = (time >= (level.reached + level.ends) / 2) & (time <= level.ends)
+    if not settled.any():
         return None
-    place, R_HB = np.asarray(motion.mount.place), np.asarray(motion.mount.R_HB)
-    on_arm, about_root = R_HB @ force[held].mean(axis=0), R_HB @ moment[held].mean(axis=0)
-    about_axis = about_root + np.cross(place, on_arm)
+    root_place, R_HB = np.asarray(motion.mount.place), np.asarray(motion.mount.R_HB)
+    force_H, moment_root = R_HB @ force[settled].mean(axis=0), R_HB @ moment[settled].mean(axis=0)
+    moment_axis = moment_root + np.cross(root_place, force_H)
     # In the arm's axes: F = Ω² Σ m r, and M = z × (Ω² Σ m z r + g Σ m r), r from the axis.
     weight = 0.0 if motion.gravity is None else -float(motion.gravity[2])
-    static = on_arm * (1, 1, 0) / level.rate**2
-    dynamic = (np.cross(about_axis, (0, 0, 1)) - weight * static) / level.rate**2
-    rounding = ROUNDING * float(np.linalg.norm(on_arm)) / level.rate**2
+    static = force_H * (1, 1, 0) / level.rate**2
+    dynamic = (np.cross(moment_axis, (0, 0, 1)) - weight * static) / level.rate**2
+    rounding = ROUNDING * float(np.linalg.norm(force_H)) / level.rate**2
     static[np.abs(static) < rounding] = 0.0
     dynamic[np.abs(dynamic) < rounding * level.radius] = 0.0
     return Imbalance(static, dynamic, level.radius)

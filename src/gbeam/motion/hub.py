@@ -53,6 +53,7 @@ class Mount:
         radius = as_array(radius)
         xp = namespace(setting_angle)
         c, s = xp.cos(setting_angle), xp.sin(setting_angle)
+        # The specimen is turned by the setting angle about its x axis, and by half a turn about z if it points inward.
         about_x = xp.asarray([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
         about_z = np.diag([1.0, 1.0, 1.0] if pointing == "outward" else [-1.0, -1.0, 1.0])
         R_HB = about_z @ about_x if turn is None else rotation_of(turn)
@@ -73,7 +74,11 @@ class Mount:
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)
 
     def root_acceleration(self, angle: Any, rate: Any, acceleration: Any) -> tuple[Any, Any, Any]:
-        """Acceleration of the root, specific force where gravity acts, by components along the hub's axes, m/s²."""
+        """Components along the hub's axes, m/s², of the root's acceleration, or of its specific force where gravity
+        acts.
+
+        `angle`, rad, `rate` and `acceleration` are the hub's.
+        """
         xp = namespace(angle, rate, acceleration, self.place, self.gravity)
         along, across = self.place[0], self.place[1]
         x, y = -along * rate**2 - across * acceleration, along * acceleration - across * rate**2
@@ -239,10 +244,14 @@ class Hub:
         return self.mount.base(0.0 if self.mount.gravity is None else self.angle(t), rate, acceleration)
 
     def angle(self, t: Any) -> Any:
-        """Angle of a hub with a prescribed rate at times `t` (s, any shape), rad."""
-        whole = self._prescribed().integral(t)
-        if whole is not None:
-            return whole - self._prescribed().integral(0.0)
+        """Angle of a hub with a prescribed rate at times `t` (s, any shape), rad.
+
+        It is the closed integral of the rate where the profile has one; otherwise Gauss's rule goes on from the last
+        stored angle.
+        """
+        integral = self._prescribed().integral(t)
+        if integral is not None:
+            return integral - self._prescribed().integral(0.0)
         times, angles = (self.times, self.angles) if self.mount.gravity is not None else self._angles()
         now = as_array(t)
         xp = namespace(now, times, angles)
@@ -270,11 +279,16 @@ class Hub:
         return self.rate
 
     def _angles(self) -> tuple[Any, Any]:
-        """Times, s, and the hub's angles there, rad, zero at time zero; so close that `_turned` is exact in between."""
+        """Times, s, and the hub's angles there, rad, counted from time zero.
+
+        The intervals are halved until one step of Gauss's rule, :meth:`_turned`, is exact over each. Where JAX traces
+        the rate this cannot be tried, and the intervals are :data:`_STRIDE`.
+        """
         rate = self._prescribed()
-        marks = np.append(np.asarray(rate.breaks), 0.0)
-        traced = is_traced(rate(marks))
-        times = np.unique(np.append(rate.knots(_STRIDE if traced else max(_STRIDE, np.ptp(marks) / _PIECES)), marks))
+        breaks = np.append(np.asarray(rate.breaks), 0.0)
+        traced = is_traced(rate(breaks))
+        spacing = _STRIDE if traced else max(_STRIDE, np.ptp(breaks) / _PIECES)
+        times = np.unique(np.append(rate.knots(spacing), breaks))
         steps = self._turned(times[:-1], times[1:])
         xp = namespace(steps)
         for _ in range(0 if traced else _HALVINGS):

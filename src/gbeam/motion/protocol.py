@@ -65,25 +65,27 @@ SAMPLES = 501
 
 
 def notes_on(motions: Mapping[str, Any]) -> tuple[str, ...]:
-    """Notes on motions by name: hubs, built or as a scenario has them, without gravity, which in orbit is meant;
-    records of flights, to which something was done; and the standards of tests.
+    """Notes on motions by name.
+
+    They say what was done to the records of flights, which hubs leave gravity out (it is meant in orbit, and an
+    oversight on a test arm), and which standard's test a motion is. Hubs may be built or as a scenario has them.
     """
-    records = {name: motion.unscaled.record if isinstance(motion, Flight) else None for name, motion in motions.items()}
-    done = each_once(
-        {
-            name: [] if each is None or not each.words else [f"done to the record: {each.words}"]
-            for name, each in records.items()
-        }
-    )
-    hubs = (
+    conditioning: dict[str, list[str]] = {name: [] for name in motions}
+    tests: dict[str, list[str]] = {}
+    for name, motion in motions.items():
+        if isinstance(motion, Flight):
+            record = motion.unscaled.record
+            if record is not None and record.words:
+                conditioning[name].append(f"done to the record: {record.words}")
+        if isinstance(motion, Hub):
+            tests[name] = [f"test by {motion.standard}"] if motion.standard else []
+    weightless_hubs = (
         f"{f'motion.{name}' if name else 'motion'}: gravity is left out; on a test arm give "
         'gravity = [0, 0, "-1 g"], in hub axes'
         for name, motion in motions.items()
         if motion is not None and motion.kind == "hub" and motion.gravity is None
     )
-    standards = {name: each.standard for name, each in motions.items() if isinstance(each, Hub)}
-    tests = each_once({name: [f"test by {words}"] if words else [] for name, words in standards.items()})
-    return (*done, *hubs, *tests)
+    return (*each_once(conditioning), *weightless_hubs, *each_once(tests))
 
 
 def implausible_motion(motion: Motion, where: str, span: tuple[float, float], base: Any = None) -> tuple[str, ...]:
@@ -92,10 +94,12 @@ def implausible_motion(motion: Motion, where: str, span: tuple[float, float], ba
 
 
 def implausible_values(motion: Any, where: str, span: tuple[float, float], base: Any) -> Iterator[str]:
-    """Warnings of a motion that holds nothing of JAX."""
+    """Warnings about values of a motion that are unlikely in practice, such as its radius, its rate or its
+    acceleration. `motion` holds no JAX arrays; `base`, if given, is its motion at times over `span`.
+    """
     if motion.kind == "centrifuge":
         yield from implausible(f"{where}.arm", "arm", float(motion.geometry.arm))
-        yield from _of_gravity(motion, where)
+        yield from _missing_gravity(motion, where)
         return
     if motion.kind == "hub":
         yield from implausible(f"{where}.radius", "radius", motion.mount.radius)
@@ -104,15 +108,19 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
     if motion.free:
         return
     if isinstance(motion, Flight):
-        yield from _of_flight(motion, where, span)
+        yield from _flight_warnings(motion, where, span)
     base = motion.base(times(motion, span)) if base is None else base
-    rate, load = (float(np.linalg.norm(vectors, axis=-1).max()) for vectors in (base.w_WB_B, base.a_WO_B))
-    odd = tuple(implausible(f"{where}.rate", "rate", rate))
-    yield from odd or implausible(f"{where}.acceleration", "acceleration", load)
+    rate = float(np.linalg.norm(base.w_WB_B, axis=-1).max())
+    acceleration = float(np.linalg.norm(base.a_WO_B, axis=-1).max())
+    rate_warnings = tuple(implausible(f"{where}.rate", "rate", rate))
+    # An implausible rate explains an implausible acceleration: one warning is enough.
+    yield from rate_warnings or implausible(f"{where}.acceleration", "acceleration", acceleration)
 
 
-def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
-    """Oddities of a flight's record, and that only a part of it is flown."""
+def _flight_warnings(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
+    """Warnings about a flight: notes on its record, rates that a level factor does not scale, and parts that are not
+    flown.
+    """
     if flight.record is not None:
         yield from (f"{where}.record: {note}" for note in flight.record.notes)
     if flight.level_factor is not None and flight.rates is not None:
@@ -125,8 +133,8 @@ def _of_flight(flight: Flight, where: str, span: tuple[float, float]) -> Iterato
         yield f"{where}: {part_words(span, whole)} are flown, and the rest is left out"
 
 
-def _of_gravity(machine: Any, where: str) -> Iterator[str]:
-    """Warning that a machine on the earth adds its own gravity to a load of which gravity is a part."""
+def _missing_gravity(machine: Any, where: str) -> Iterator[str]:
+    """Warn of a machine without gravity that tracks a specific force: on the earth, gravity would then act twice."""
     record = machine.flight.record
     if machine.geometry.gravity == 0 and record is not None and record.quantity == "specific-force":
         yield (

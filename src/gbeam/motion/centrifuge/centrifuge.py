@@ -204,9 +204,11 @@ class Centrifuge:
         InputError
             If the load cannot be followed there, or the inverse cannot follow its corners.
         """
-        slack, machine = 1e-9 * (end - start), self
+        machine = self
+        slack = 1e-9 * (end - start)  # rounding of the times
         first, last = (np.inf, -np.inf) if self.course is None else self.course.target.span
-        if not (first - slack <= start and end <= last + slack):
+        is_prepared = first - slack <= start and end <= last + slack
+        if not is_prepared:
             machine = self._changed(course=self._prepared(start, end))
         if ahead and machine.course.solution is None:  # type: ignore[union-attr]
             machine = machine._changed(course=machine._solved)
@@ -223,7 +225,7 @@ class Centrifuge:
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """Arguments of the constructor by their names, with which the machine is made again."""
+        """Arguments of the constructor, by name, that build this machine again."""
         return {
             "flight": self.flight,
             "arm": self.geometry.arm,
@@ -265,13 +267,16 @@ class Centrifuge:
         return self._solved.extent
 
     def beyond(self, start: float, end: float) -> tuple[Any, Any]:
-        """Return the times that the motion goes on before `start` and after `end`, s.
+        """Return how long the machine moves before `start` and after `end`, s: its spin-up and its spin-down.
 
-        Nothing where these lie within the times that it is prepared for: a run of a part of a flight is no more.
+        Each is zero if its end lies inside the flight, as in a run of a part of it.
         """
-        (first, last), (begin, finish) = self.target.span, self.extent
+        first, last = self.target.span
+        begin, finish = self.extent
         slack = 1e-9 * (last - first)
-        return first - begin if start <= first + slack else 0.0, finish - last if end >= last - slack else 0.0
+        before = first - begin if start <= first + slack else 0.0
+        after = finish - last if end >= last - slack else 0.0
+        return before, after
 
     @property
     def target(self) -> Target:
@@ -360,7 +365,9 @@ class Centrifuge:
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 
     def _prepared(self, start: float, end: float) -> Course:
-        """Course over a span of the flight's time, s, in the axes of the module that axis 3 turns."""
+        """Build the course for a span of the flight's time, s. The load is taken in the axes of the module that axis 3
+        turns.
+        """
         load: Profile = self.flight.acceleration
         if any(self.turn):
             load = Turned(load, rotation_of(self.turn))

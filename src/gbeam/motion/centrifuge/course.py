@@ -53,7 +53,7 @@ class Planned(Inverse):
 
 @lru_cache(maxsize=4)  # keyed by values: equal machines of a study wait once
 def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float = 1.0) -> Planned:
-    """Plan the motion of the axes, as splines of finer and finer knots while that lowers the tracking error.
+    """Plan the motion of the axes as splines. Their knots are refined while that lowers the tracking error.
 
     Gentle motion counts `ease` times its usual weight.
 
@@ -106,7 +106,9 @@ LESS = 0.1  # of the ease, with which a plan is sought again to tell what its ea
 
 @lru_cache(maxsize=4)
 def less_eased(plan: Planned, target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float) -> Planned:
-    """Plan again with :data:`LESS` times the ease, from a plan's motion and on its knots."""
+    """Plan again with :data:`LESS` times the weight of gentle motion. The search starts from `plan` and keeps its
+    knots.
+    """
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
     from gbeam.numerics.minimise import minimise
 
@@ -114,31 +116,36 @@ def less_eased(plan: Planned, target: Target, geometry: Geometry, limits: Limits
     grid = Grid(*plan.extent, float(plan.axes.step), _POINTS)
     splines = AxisSplines(grid, standstill=ramps is not None)
     tracking = Tracking(splines, geometry, target, ramps).gentler(LESS * ease)
-    x = splines.unknowns(np.asarray(plan.axes.coefficients))
-    x, _ = minimise(tracking, KeptLimits(splines, geometry, limits, target), x)
-    return Planned(grid.spline(splines.coefficients(x)))
+    unknowns = splines.unknowns(np.asarray(plan.axes.coefficients))
+    unknowns, _ = minimise(tracking, KeptLimits(splines, geometry, limits, target), unknowns)
+    return Planned(grid.spline(splines.coefficients(unknowns)))
 
 
 def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, Ramp] | None) -> Floats:
-    """Rate of axis 1 and angles of axes 2 and 3, (times, 3), of the target's quasi-static motion with its ramps."""
+    """First guess of a plan (times, 3): the rate of axis 1, rad/s, and the angles of axes 2 and 3, rad, without jumps.
+
+    During the flight they are those of the target's quasi-static motion, before and after it those of the ramps.
+    """
     pose = [part.value for part in QuasiStatic(geometry).pose(target.load, np.clip(time, *target.span), 0)]
     for ramp in ramps or ():
-        on_way = (time - ramp.steady) * (ramp.still - ramp.steady) > 0
-        for values, part in zip(pose, ramp.pose(time[on_way], 0), strict=True):
-            values[on_way] = part.value
+        during_ramp = (time - ramp.steady) * (ramp.still - ramp.steady) > 0
+        for values, part in zip(pose, ramp.pose(time[during_ramp], 0), strict=True):
+            values[during_ramp] = part.value
     rate, *angles = pose
     return np.column_stack([rate, *(np.unwrap(angle) for angle in angles)])
 
 
 def _refusal(limits: Limits, ends: Ends, ramps: tuple[Ramp, Ramp] | None) -> InputError:
-    """The error that names the spin-up or spin-down that is too short for the limits, or else the limits."""
+    """The error of a plan that cannot keep the limits. It names the ramp that is too short for them, or else the
+    limits.
+    """
     for name, ramp in zip(("spin_up", "spin_down"), ramps or (), strict=False):
-        duration, lacking = getattr(ends, name), ramp.lengthened(limits).length - ramp.length
+        duration = getattr(ends, name)
+        lacking = ramp.lengthened(limits).length - ramp.length
         if duration is not None and lacking > 0:
+            enough = np.ceil(10 * (duration + lacking)) / 10
             problem = f"is {duration:.3g} s: within the limits of axis 1 that is too short for the arm to reach idle"
-            return InputError(
-                name, problem, f'give "{np.ceil(10 * (duration + lacking)) / 10:g} s" or more, or leave it out'
-            )
+            return InputError(name, problem, f'give "{enough:g} s" or more, or leave it out')
     return InputError("limits", "leave no motion that keeps idle during the flight", "give less idle, or wider limits")
 
 
@@ -199,49 +206,54 @@ class Course:
         return tuple(series.derivatives() for series in self._pose(as_array(t), order))
 
     def _pose(self, t: Any, order: int) -> Pose:
-        """Pose of the axes at times `t`: that of the inverse within the span, of the ramps before and after."""
+        """Pose of the axes at times `t`, s: during the ramps that of the ramps, in between that of the inverse."""
         inverse, load = self.inverse, self.target.load
         if self.ramps is None:
-            return inverse.pose(load, t if inverse.extent is None else namespace(t).clip(t, *inverse.extent), order)
+            if inverse.extent is not None:  # a plan, which stands still beyond its ends
+                t = namespace(t).clip(t, *inverse.extent)
+            return inverse.pose(load, t, order)
         first, last = (ramp.steady for ramp in self.ramps)
-        ramps = list(zip(self.ramps, (t < first, t > last), strict=True))
-        for ramp, on_way in ramps:
-            if not is_jax(on_way) and np.all(on_way):  # what the target costs is spared
+        ramp_times = list(zip(self.ramps, (t < first, t > last), strict=True))
+        for ramp, during_ramp in ramp_times:
+            if not is_jax(during_ramp) and np.all(during_ramp):  # what the target costs is spared
                 return ramp.pose(t, order)
         pose = inverse.pose(load, namespace(t, first, last).clip(t, first, last), order)
-        for ramp, on_way in ramps:
-            if is_jax(on_way) or np.any(on_way):
-                rate, yaw, roll = (where(on_way, a, b) for a, b in zip(ramp.pose(t, order), pose, strict=True))
+        for ramp, during_ramp in ramp_times:
+            if is_jax(during_ramp) or np.any(during_ramp):
+                ramp_pose = ramp.pose(t, order)
+                rate, yaw, roll = (where(during_ramp, a, b) for a, b in zip(ramp_pose, pose, strict=True))
                 pose = rate, yaw, roll
         return pose
 
     def reference(self, t: Any) -> Any:
         """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3).
 
-        Before the flight and after it, that of the flight's edge with its horizontal part reduced to what the arm's
-        rate makes of it.
+        During the ramps it is the load at the flight's first or last time, with its horizontal part reduced to what the
+        arm's rate makes.
         """
-        now = as_array(t)
-        load = self.target.load(now)
+        times = as_array(t)
+        load = self.target.load(times)
         first, last = self.target.span if self.ramps is None else (ramp.steady for ramp in self.ramps)
-        outside = (now < first) | (now > last)
+        outside = (times < first) | (times > last)
         if self.start == "idle" or not (is_jax(outside) or np.any(outside)):
             return load
-        (rate, acceleration), *_ = self.derivatives(now, 1)
+        (rate, acceleration), *_ = self.derivatives(times, 1)
         return namespace(load, rate).where(outside[..., None], self._reduced(load, rate, acceleration), load)
 
     def _reduced(self, load: Any, rate: Any, acceleration: Any) -> Any:
-        """A load whose horizontal part is reduced to what the arm makes at a rate, rad/s, and an acceleration, rad/s²;
-        the part across the beam keeps its direction.
+        """Reduce the horizontal part of a load (..., 3) to what the arm makes at a rate, rad/s, and an acceleration,
+        rad/s².
+
+        The vertical part is gravity, which stays. The part across the beam keeps its direction.
         """
         xp = namespace(load, rate)
-        gravity, across = self.geometry.gravity, xp.sum(load[..., 1:] ** 2, axis=-1)
+        gravity, across_squared = self.geometry.gravity, xp.sum(load[..., 1:] ** 2, axis=-1)
         horizontal = self.geometry.arm * xp.hypot(rate**2, acceleration if self.start == "pre-yawed" else 0.0)
-        p = horizontal / xp.sqrt(across + load[..., 0] ** 2 - gravity**2)
-        bent = across > 0
-        size = xp.sqrt(xp.maximum(across - gravity**2, 0.0) * p**2 + gravity**2)
-        factor = xp.where(bent, size / xp.sqrt(xp.where(bent, across, 1.0)), 0.0)
-        return load * xp.stack([p, factor, factor], axis=-1)
+        horizontal_share = horizontal / xp.sqrt(across_squared + load[..., 0] ** 2 - gravity**2)
+        has_across = across_squared > 0
+        new_across = xp.sqrt(xp.maximum(across_squared - gravity**2, 0.0) * horizontal_share**2 + gravity**2)
+        across_share = xp.where(has_across, new_across / xp.sqrt(xp.where(has_across, across_squared, 1.0)), 0.0)
+        return load * xp.stack([horizontal_share, across_share, across_share], axis=-1)
 
 
 def prepare(
@@ -256,7 +268,9 @@ def prepare(
     clip: bool,
     span: tuple[float, float],
 ) -> Course:
-    """Build the target of a load over a span, s, and, unless they are planned, the axis motions."""
+    """Build the target of a load over a span, s, and solve for the axis motions, unless the method is to plan them
+    later.
+    """
     build = partial(
         build_target, load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm,
         clip=clip,
@@ -269,6 +283,7 @@ def prepare(
         fix = 'choose "flat" or "quasi-static", or prepare the machine of numbers: over(start, end)'
         raise InputError("inverse", f"is {inverse}, solved for numerically, and JAX traces the machine", fix)
     left_out: list[tuple[float, float]] = []
+    # What cannot be followed is left out of the target, until a target is followed everywhere.
     while method.leaves_out is not None and (stretches := method.leaves_out(target, geometry)):
         left_out += stretches
         target = build(leave_out=left_out)

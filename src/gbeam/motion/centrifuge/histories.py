@@ -33,30 +33,33 @@ def times_between(first: float, last: float, spacing: float = _GRID) -> Floats:
 
 
 def imitated(motion: Centrifuge) -> Imitated:
-    """Motions of a centrifuge and its flight from the machine's beginning to its end, at the flight's corners too."""
+    """Motions of a centrifuge and of its flight over the machine's whole run, at times that include the flight's
+    corners.
+    """
     (begin, end), span = (float(time) for time in motion.extent), motion.target.span
     corners = motion.flight.corners((span[1] - span[0]) / _MANY)
-    time = np.union1d(times_between(begin, end, _FINE), [*span, *corners[(corners > span[0]) & (corners < span[1])]])
-    flown = motion.flight.base(np.clip(time, *span))
-    axes = _axes_at(motion, time, flown.a_WO_B)
+    corners = corners[(corners > span[0]) & (corners < span[1])]
+    time = np.union1d(times_between(begin, end, _FINE), [*span, *corners])
+    flight_base = motion.flight.base(np.clip(time, *span))
+    axes = _axes_at(motion, time, flight_base.a_WO_B)
     axes = replace(axes, limits=motion.usage())
-    axes = replace(axes, warnings=(*_followed_worse(motion, time, axes), *_short_ramps(motion)))
-    return Imitated(time, flown, motion.base(time), axes)
+    axes = replace(axes, warnings=(*_tracking_warnings(motion, time, axes), *_short_ramps(motion)))
+    return Imitated(time, flight_base, motion.base(time), axes)
 
 
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
-    """Axes of a centrifuge at given times (s, ascending), with its limits and where it cannot follow, which are those
-    of its whole run whatever the times.
+    """Axes of a centrifuge at the times, s, ascending. The use of its limits and the warnings are those of its whole
+    run.
     """
-    whole = imitated(motion)
-    assert whole.axes is not None
-    flown = motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B
-    axes = _axes_at(motion, time, flown)
-    return replace(axes, imitated=whole, limits=whole.axes.limits, warnings=whole.axes.warnings)
+    whole_run = imitated(motion)
+    assert whole_run.axes is not None
+    flight_load = motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B
+    axes = _axes_at(motion, time, flight_load)
+    return replace(axes, imitated=whole_run, limits=whole_run.axes.limits, warnings=whole_run.axes.warnings)
 
 
-def _axes_at(motion: Centrifuge, time: Floats, flown: Floats) -> AxesResult:
-    """Axes at given times (t,) s, beside the flight's load (t, 3) m/s² there; without limits and warnings."""
+def _axes_at(motion: Centrifuge, time: Floats, flight_load: Floats) -> AxesResult:
+    """Axes at the times (t,), s, beside the flight's load (t, 3), m/s². The limits and warnings are left empty."""
     axes, jerk = motion.axes_and_jerks(time)
     return AxesResult(
         angle=axis_angles(axes, time),
@@ -75,42 +78,49 @@ def _axes_at(motion: Centrifuge, time: Floats, flown: Floats) -> AxesResult:
         jerk=jerk,
         span=motion.target.span,
         start=motion.ends.start,
-        flight=np.asarray(flown),
+        flight=np.asarray(flight_load),
     )
 
 
-_FELT, _MOST = 0.1, 0.5  # of a miss: what less ease takes from it is told from there on, and told first
+# Shares of a tracking error: the plan's ease is told as a cause if less ease saves the first, and told first if it
+# saves the second.
+_FELT, _MOST = 0.1, 0.5
 
 
-def _followed_worse(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
-    """Warn where the load is followed worst, if worse than the inverse aims at, with what makes the miss there."""
-    size = axes.tracking_error
-    share = np.where(axes.not_followed, 0.0, size / np.maximum(np.linalg.norm(axes.reference, axis=1), 1e-12))
-    missed = share > motion.inverse.within
-    if not missed.any():
+def _tracking_warnings(motion: Centrifuge, time: Floats, axes: AxesResult) -> tuple[str, ...]:
+    """Warn where the load is followed worst, if that is worse than the inverse aims at, and name the causes.
+
+    The causes are limits used up there and the ease of the plan, which is tried by planning again with less of it.
+    """
+    error = axes.tracking_error
+    share = np.where(axes.not_followed, 0.0, error / np.maximum(np.linalg.norm(axes.reference, axis=1), 1e-12))
+    too_large = share > motion.inverse.within
+    if not too_large.any():
         return ()
-    worst = int(np.argmax(np.where(missed, size, 0.0)))
+    worst = int(np.argmax(np.where(too_large, error, 0.0)))
     causes: list[str] = []
-    if (harder := motion.less_eased()) is not None:
-        left = float(np.linalg.norm(harder.tracking_error(time[worst])))
-        if held := used_up(axes.limit_shares, _around(time, worst, motion.limits)):
-            causes.append(f"used up there: {', '.join(held)}")
-        if left < (1 - _FELT) * size[worst]:
-            eased = f"the plan's ease, for ease = {harder.ease:g} leaves {in_g(left)} on the same knots"
-            causes.insert(len(causes) if left > _MOST * size[worst] else 0, eased)
+    harder = motion.less_eased()
+    if harder is not None:
+        remaining = float(np.linalg.norm(harder.tracking_error(time[worst])))
+        limits = used_up(axes.limit_shares, _reversal_samples(time, worst, motion.limits))
+        if limits:
+            causes.append(f"used up there: {', '.join(limits)}")
+        if remaining < (1 - _FELT) * error[worst]:
+            ease = f"the plan's ease, for ease = {harder.ease:g} leaves {in_g(remaining)} on the same knots"
+            causes.insert(len(causes) if remaining > _MOST * error[worst] else 0, ease)
     return (
-        f"the machine cannot follow the load at {time[worst]:.3f} s: error {in_g(size[worst])} "
+        f"the machine cannot follow the load at {time[worst]:.3f} s: error {in_g(error[worst])} "
         f"({percent(share[worst])}; the plan aims at {100 * motion.inverse.within:.2g} %); "
         f"{'; '.join(causes) or motion.inverse.unless}",
     )
 
 
-def _around(time: Floats, at: int, limits: Limits) -> slice:
-    """Samples about one of the times (t,), s: as far from it as an axis needs to reverse its acceleration."""
+def _reversal_samples(time: Floats, sample: int, limits: Limits) -> slice:
+    """Samples near one of the times (t,), s: within the time that an axis needs to reverse its acceleration."""
     _, acceleration, jerk = np.asarray(limits.axes)
-    known = np.isfinite(acceleration) & np.isfinite(jerk)
-    reversal = float(np.max(2 * acceleration[known] / jerk[known], initial=0.0))
-    ends = time[at] - reversal, np.nextafter(time[at] + reversal, np.inf)
+    has_limits = np.isfinite(acceleration) & np.isfinite(jerk)
+    reversal = float(np.max(2 * acceleration[has_limits] / jerk[has_limits], initial=0.0))
+    ends = time[sample] - reversal, np.nextafter(time[sample] + reversal, np.inf)
     return slice(*(int(i) for i in np.searchsorted(time, ends)))
 
 
@@ -119,13 +129,14 @@ def _short_ramps(motion: Centrifuge) -> tuple[str, ...]:
     course = motion.course
     if course is None or course.ramps is None:
         return ()
-    words, lead = [], float(course.target.half_width)
+    warnings = []
+    half_width = float(course.target.half_width)  # the target rests only that long before and after the flight
     for name, ramp in zip(("spin-up", "spin-down"), course.ramps, strict=True):
         longer = ramp.lengthened(motion.limits)
         if longer.length > ramp.length:
-            enough = np.ceil(100 * (longer.length + lead)) / 100
+            enough = np.ceil(100 * (longer.length + half_width)) / 100
             key = name.replace("-", "_")
-            words.append(
+            warnings.append(
                 f'the machine exceeds its limits in the {name}: {key} = "{enough:g} s" or more would keep them'
             )
-    return tuple(words)
+    return tuple(warnings)

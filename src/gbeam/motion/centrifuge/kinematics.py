@@ -49,6 +49,7 @@ def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
     """
     xp = namespace(axes.rate1, axes.angle2, axes.angle3, arm)
     sin3, cos3 = xp.sin(axes.angle3), xp.cos(axes.angle3)
+    # The specimen yaws about Z at ω1 + dθ2/dt and rolls about e1 at dθ3/dt.
     yaw, dyaw = axes.rate1 + axes.rate2, axes.acceleration1 + axes.acceleration2
     w_WB_B = xp.stack([axes.rate3 + 0.0 * yaw, yaw * sin3, yaw * cos3], axis=-1)
     alpha_WB_B = xp.stack(
@@ -63,10 +64,13 @@ def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
 
 
 def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
-    """Acceleration of C, or specific force, (..., 3) m/s², base axes, by ω1, dω1/dt, θ2 and θ3; see :func:`forward`."""
+    """Acceleration of C (..., 3), m/s², in base axes, or its specific force with `gravity`; axes as in
+    :func:`forward`.
+    """
     xp = namespace(axes.rate1, axes.angle2, axes.angle3, arm)
     sin2, cos2, sin3, cos3 = xp.sin(axes.angle2), xp.cos(axes.angle2), xp.sin(axes.angle3), xp.cos(axes.angle3)
     radial, tangential = -arm * axes.rate1**2, arm * axes.acceleration1
+    # The arm's radial and tangential accelerations, turned by θ2 into the beam's axes and by θ3 about the beam.
     along = radial * cos2 + tangential * sin2
     across = -radial * sin2 + tangential * cos2
     return xp.stack([along, across * cos3 + gravity * sin3, -across * sin3 + gravity * cos3], axis=-1)

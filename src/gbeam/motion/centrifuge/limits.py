@@ -113,12 +113,16 @@ def usage(
     jerk: Floats,
     limits: Limits,
 ) -> tuple[LimitUse, ...]:
-    """Return the use of each limit by a motion at times (n,) s: rate, acceleration, jerk (n, 3), rad and s."""
+    """Return the use of each limit by a motion at times (n,) s.
+
+    `rate`, `acceleration` and `jerk` (n, 3) are those of the three axes, in rad/s and its derivatives.
+    """
     allowed = np.asarray(limits.axes)
+    quantities = list(zip(QUANTITIES, QUANTITIES.values(), (rate, acceleration, jerk), strict=True))
     uses = [
         _use(f"axis {axis + 1}", name, unit, time, values[:, axis], float(allowed[row, axis]))
         for axis in range(3)
-        for row, ((name, unit), values) in enumerate(zip(QUANTITIES.items(), (rate, acceleration, jerk), strict=True))
+        for row, (name, unit, values) in enumerate(quantities)
     ]
     if limits.inertia > 0:
         power = float(limits.inertia) * rate[:, 0] * acceleration[:, 0]
@@ -210,6 +214,7 @@ class Ends:
     spin_down: float | None = None  # from its last time to standstill, likewise
 
     def __post_init__(self) -> None:
+        """Refuse a spin-up or spin-down of a machine that starts at idle, and read the durations in seconds."""
         choice("start", self.start, STARTS)
         for name in ("spin_up", "spin_down"):
             duration = getattr(self, name)

@@ -42,18 +42,20 @@ _OTHERS = {
 
 
 def refuse_other_kinds(table: Table, names: dict[str, str], kind: str = "a load") -> None:
-    """Refuse a column that by its name is of another kind, a load or a rate, and one that is named twice."""
+    """Refuse a column that is named twice, and one whose name says that it is of another kind: a rate
+    and not a load.
+    """
     used: dict[str, str] = {}
     for axis, name in names.items():
         _, column = table.signed(name)
         if column is None:
             continue
         table.column(axis, column)
-        other = _kind(column)
-        if other not in ("", kind):
-            fitting = [each.name for each in table.columns if _kind(each.name) == kind]
+        other_kind = _kind(column)
+        if other_kind not in ("", kind):
+            fitting = [column.name for column in table.columns if _kind(column.name) == kind]
             fix = f"name a column of {kind[2:]}" + (f", such as {fitting[0]!r}" if fitting else "")
-            problem = f"names {column!r}, by its name {other} and no {kind[2:]}"
+            problem = f"names {column!r}, by its name {other_kind} and no {kind[2:]}"
             raise InputError(f"record.{axis}", problem, f"{fix}; {_TRUST}")
         if column in used:
             fix = 'name each once, and "0" for a component that is zero; or add skip_checks = ["columns"]'
@@ -62,7 +64,7 @@ def refuse_other_kinds(table: Table, names: dict[str, str], kind: str = "a load"
 
 
 def mirrored(table: Table, names: dict[str, str]) -> Iterator[str]:
-    """Warn where the columns' axes, right-handed by their names, become left-handed ones of the beam."""
+    """Warn where columns with right-handed axes, by their names, are read as left-handed axes of the beam."""
     mapping = _mapping(table, names, _AXIS)
     if round(float(np.linalg.det(mapping))) == -1:
         listed = ", ".join(f"{axis} = {name!r}" for axis, name in names.items())
@@ -83,8 +85,8 @@ def upended(table: Table, names: dict[str, str]) -> dict[str, str]:
 def refuse_other_axes(table: Table, names: dict[str, str], turns: dict[str, str]) -> None:
     """Refuse body rates p, q and r about other axes than those of the loads x, y and z, by the columns' names.
 
-    Both are taken from the file's axes to the beam's by one rotation. Loads that are mirrored, such as with a load
-    factor upwards, leave any.
+    One rotation takes both from the file's axes to the beam's. If the loads are mirrored, such as with a load factor
+    upwards, none fits them, and the rates may have any.
     """
     loads, rates = _mapping(table, names, _AXIS), _mapping(table, turns, _AXIS_OF_RATE)
     fitting = [turn for turn in _ROTATIONS if _fits(turn, loads)]
@@ -96,11 +98,13 @@ def refuse_other_axes(table: Table, names: dict[str, str], turns: dict[str, str]
     if not fitting:
         listed = ", ".join(f"{key} = {name!r}" for key, name in turns.items())
         problem = f"mirrors the columns' axes (determinant -1): {listed}"
-    raise InputError(f"record.{key}", problem, "; ".join([_turned(table, turns, rates, fitting), _TRUST]))
+    raise InputError(f"record.{key}", problem, "; ".join([_rate_advice(table, turns, rates, fitting), _TRUST]))
 
 
-def _turned(table: Table, turns: dict[str, str], rates: Floats, fitting: list[Floats]) -> str:
-    """Advice on the columns of p, q and r for the only rotation that fits the loads, else on their signs."""
+def _rate_advice(table: Table, turns: dict[str, str], rates: Floats, fitting: list[Floats]) -> str:
+    """Advice on the columns of p, q and r: those of the only rotation that fits the loads; else to take the loads'
+    signs.
+    """
     columns = {int(np.abs(row).argmax()): table.signed(turns[key])[1] for key, row in zip("pqr", rates, strict=True)}
     axes = [] if len(fitting) != 1 else [int(np.abs(row).argmax()) for row in fitting[0]]
     if not axes or not np.abs(rates).any(axis=1).all() or set(columns) != set(axes):

@@ -149,8 +149,8 @@ def read_flight(
     section: str | None = None,
     **options: Any,
 ) -> FlightRecord:
-    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`, and
-    :meth:`Recording.read` for the options.
+    """Read a record with the body's rates, and say what was done to it. The options are those of
+    :meth:`Recording.read`.
     """
     recording = Recording.read(path, time, x, y, z, unit, **options)
     flight = recording.flight(*span, section)
@@ -266,8 +266,10 @@ class Recording:
         )  # fmt: skip
 
     def part(self, span: Span, section: str | None) -> tuple[slice, tuple[float, float]]:
-        """Return the samples within a span and a section, all of which are numbers, and first and last time, s, of the
-        section or the file that they are of.
+        """Return the samples within a span and a section, and the first and last time, s, of the section or else of the
+        file.
+
+        InputError if one of the samples is no number.
         """
         part, whole = self.times.part(span, self.table.counted), self.times.ends
         if section is not None:
@@ -277,12 +279,12 @@ class Recording:
             part, run = self.sections.part(section, part, self.table.counted)
             whole = self.sections.ends(run)
         if not self.sound[part].all():
-            for each in (self.names, self.turns):
-                self.table.vector(each, len(self.sound), part)  # refuses the first that is none
+            for columns in (self.names, self.turns):
+                self.table.vector(columns, len(self.sound), part)  # refuses the first cell that is no number
         return part, whole
 
     def _samples(self, time: Floats, load: Floats, rows: Indices) -> Samples:
-        """Samples to be judged, with the rows of the file that they are."""
+        """Samples as the checks of :mod:`.soundness` take them; `rows` are their rows in the file."""
 
         def place(i: int) -> str:
             return self.table.place(int(rows[i]))
@@ -370,10 +372,11 @@ class Recording:
 def _as_read(
     table: Table, times: Times, named: Sequence[dict[str, str]], units: Sequence[Unit], values: Sequence[Floats]
 ) -> Channels:
-    """Channels of the columns that are read, by their own names, without the signs of components."""
+    """Channels of the columns that are read, under the file's names: the signs that components add are undone."""
     names, texts, channels = list[str](), list[str](), list[Floats]()
-    for columns, unit, read in zip((each for each in named if each), units, values, strict=True):
-        for name, component in zip(columns.values(), read.T, strict=True):
+    vectors = [columns for columns in named if columns]
+    for columns, unit, array in zip(vectors, units, values, strict=True):
+        for name, component in zip(columns.values(), array.T, strict=True):
             sign, column = table.signed(name)
             if column is not None:
                 names.append(column)
@@ -397,7 +400,7 @@ def _times(
     *,
     trust: bool,
 ) -> Times:
-    """Times of the samples, of the column `name`, or at a rate in place of it."""
+    """Times of the samples: from the column `name`, or, in place of it, from a sample rate, Hz."""
     if name is None or rate is not None:
         if name is not None:
             raise InputError("record.sample_rate", "is given beside time", "give one of them")
@@ -409,38 +412,39 @@ def _times(
         interval = 1 / positive("record.sample_rate", rate, "Hz")
         return Times(interval * np.arange(table.count(columns)), Unit("s", 1.0), key="sample_rate")
     try:
-        numbers, of_day, first = table.times(name)
+        numbers, clock, first = table.times(name)
     except InputError as error:
-        usual = next((each for each in stated.values()), 100.0)
-        known = f", the {next(iter(stated))} of the file" if stated else ""
-        fix = f'{error.fix}; or write sample_rate = "{usual:g} Hz" in place of time{known}'
+        usual = next(iter(stated.values()), 100.0)
+        rate_note = f", the {next(iter(stated))} of the file" if stated else ""
+        fix = f'{error.fix}; or write sample_rate = "{usual:g} Hz" in place of time{rate_note}'
         raise InputError(error.where, error.problem, fix) from None
-    if of_day is not None and unit not in (None, "s"):
+    if clock is not None and unit not in (None, "s"):
         raise InputError("record.time_unit", f"is {unit}, and the times are times of day", "leave it out")
-    if of_day is not None:
-        return Times(numbers, Unit("s", 1.0), of_day)
+    if clock is not None:
+        return Times(numbers, Unit("s", 1.0), clock)
     return Times.of_numbers(numbers, _unit(table, "time_unit", "time", unit, {"time": name}, trust=trust), first)
 
 
 def _despiked(record: Samples, turns: Iterable[str], rates: Floats, *, despike: bool) -> tuple[Floats, list[str]]:
-    """The load and the rates (t, n) of the body, without their spikes if `despike`, and a note on these."""
+    """The load and rates (t, n), in which spikes are replaced if `despike`, and a note on the spikes, if any."""
     values = np.concatenate([record.load, rates], axis=1)
-    odd = np.concatenate([spikes(record.load), spikes(rates, LEAST_TURN)], axis=1)
-    off = np.asarray(odd.any(axis=1))
-    if not off.any():
+    spiked = np.concatenate([spikes(record.load), spikes(rates, LEAST_TURN)], axis=1)
+    spiked_samples = np.asarray(spiked.any(axis=1))
+    if not spiked_samples.any():
         return values, []
-    calm, first = without_spikes(record.time, values, odd), int(np.argmax(off))
-    done, was, now = (
+    calm, first = without_spikes(record.time, values, spiked), int(np.argmax(spiked_samples))
+    outcome, was, now = (
         ("were replaced", "was", "is") if despike else ("are kept; despike = true replaces them", "is", "then")
     )
-    said = [record.said] * len(record.names) + [lambda value: f"{np.degrees(value):.4g} deg/s"] * rates.shape[1]
-    ranges = [
-        f"{key} {was} {say(before.min())} to {say(before.max())}, {now} {say(after.min())} to {say(after.max())}"
-        for key, say, before, after in zip((*record.names, *turns), said, values.T, calm.T, strict=True)
-        if (before != after).any()
-    ]
+    formatters = [record.said] * len(record.names) + [lambda value: f"{np.degrees(value):.4g} deg/s"] * rates.shape[1]
+    ranges = []
+    for key, words, before, after in zip((*record.names, *turns), formatters, values.T, calm.T, strict=True):
+        if (before != after).any():
+            old_range = f"{words(before.min())} to {words(before.max())}"
+            new_range = f"{words(after.min())} to {words(after.max())}"
+            ranges.append(f"{key} {was} {old_range}, {now} {new_range}")
     note = (
-        f"{off.sum()} sample(s) that look like spikes, in {len(true_runs(off))} run(s), the first at "
-        f"{record.time[first]:g} s ({record.place(first)}), {done}: {'; '.join(ranges)}"
+        f"{spiked_samples.sum()} sample(s) that look like spikes, in {len(true_runs(spiked_samples))} run(s), "
+        f"the first at {record.time[first]:g} s ({record.place(first)}), {outcome}: {'; '.join(ranges)}"
     )
     return calm if despike else values, [note]

@@ -52,24 +52,26 @@ class Rest:
 
 
 def mean_of(key: str, load: Floats, rates: Floats, span: str, still: str) -> tuple[Floats, Floats]:
-    """Return the means of a load (t, 3), m/s², and of rates (t, 3) or (t, 0), rad/s, about those that are known.
+    """Return the means of a load (t, 3), m/s², and of rates (t, 3) or (t, 0), rad/s, over a stretch at rest.
 
-    InputError, at a key of the record, unless all are numbers and steady; `still` is the fix.
+    InputError, at a key of the record, unless all are numbers and steady. `span` says where, `still` is the fix.
     """
     if not (np.isfinite(load).all() and np.isfinite(rates).all()):
         raise InputError(f"record.{key}", f"has cells {span} that hold no number", still)
-    in_g, middle = load / STANDARD_GRAVITY, len(load) // 2
+    in_g, half = load / STANDARD_GRAVITY, len(load) // 2
     spread = float(np.linalg.norm(in_g.std(axis=0)))
-    drift = float(np.linalg.norm(in_g[:middle].mean(axis=0) - in_g[middle:].mean(axis=0)))
+    drift = float(np.linalg.norm(in_g[:half].mean(axis=0) - in_g[half:].mean(axis=0)))
     if spread > _SPREAD or drift > _DRIFT:
         moves = f"spreads by {spread:.3g} g about its mean" if spread > _SPREAD else f"drifts by {drift:.3g} g"
         raise InputError(f"record.{key}", f"is no stretch at rest: the load {moves} {span}", still)
-    turning = rates.mean(axis=0)
-    most = max(float(np.linalg.norm(turning)), float(np.linalg.norm(rates.std(axis=0)))) if rates.size else 0.0
-    if most > TURNING:
-        problem = f"is no stretch at rest: the body turns at {math.degrees(most):.3g} deg/s {span}"
+    mean_rates = rates.mean(axis=0)
+    largest_rate = 0.0
+    if rates.size:
+        largest_rate = max(float(np.linalg.norm(mean_rates)), float(np.linalg.norm(rates.std(axis=0))))
+    if largest_rate > TURNING:
+        problem = f"is no stretch at rest: the body turns at {math.degrees(largest_rate):.3g} deg/s {span}"
         raise InputError(f"record.{key}", problem, still)
-    return load.mean(axis=0), turning
+    return load.mean(axis=0), mean_rates
 
 
 @dataclass(frozen=True)
@@ -89,15 +91,17 @@ class Offsets:
         return np.asarray(self.values[k] + share[:, None] * (self.values[k + 1] - self.values[k]))
 
     def carried_on(self, first: float, last: float) -> list[str]:
-        """Warn of offsets that drift, of a part that reaches beyond the stretches by more than lies between them."""
+        """Warn if the offsets' drift is extrapolated by more than the time between the stretches at rest that it comes
+        from.
+        """
         if len(self.times) < 2:
             return []
-        beyond = max(self.times[0] - first, last - self.times[-1])
-        if beyond <= self.times[-1] - self.times[0]:
+        extrapolated = max(self.times[0] - first, last - self.times[-1])
+        if extrapolated <= self.times[-1] - self.times[0]:
             return []
         return [
             f"the offsets' drift, found within {self.times[-1] - self.times[0]:.4g} s, is carried on for "
-            f"{beyond:.4g} s: a stretch at rest at the other end of the record would hold it"
+            f"{extrapolated:.4g} s: a stretch at rest at the other end of the record would hold it"
         ]
 
 

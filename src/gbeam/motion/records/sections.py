@@ -30,7 +30,7 @@ class Sections:
 
     @classmethod
     def of(cls, table: Table, column: str, clock: Floats) -> Sections:
-        """Find the sections of a column; cells that hold nothing are of none. InputError for what numbers none."""
+        """Read the sections of a column, which numbers or names them. Samples with an empty cell belong to none."""
         values = table.cells("sections", column)
         if len(values) != len(clock):
             problem = f"column {column!r} has {len(values)} samples, the time {len(clock)}"
@@ -40,27 +40,28 @@ class Sections:
             problem = f"names {column!r}, which changes {len(edges) - 2} times and numbers no sections"
             raise InputError("record.sections", problem, "name a column that stays the same through each section")
         runs = [slice(i, j) for i, j in pairwise(edges.tolist())]
-        named = [(str(values[run.start]), run) for run in runs if str(values[run.start]) not in ("", "nan")]
-        return cls(column, tuple(name for name, _ in named), tuple(run for _, run in named), clock)
+        sections = [(str(values[run.start]), run) for run in runs if str(values[run.start]) not in ("", "nan")]
+        return cls(column, tuple(name for name, _ in sections), tuple(run for _, run in sections), clock)
 
     def part(self, section: str, within: slice, counted: Callable[[int], str]) -> tuple[slice, slice]:
-        """Return the samples of a section among those of a part of the record, and all of its own; InputError unless it
-        is one stretch.
+        """Return the samples of a section within a part of the record, and all samples of the section.
+
+        InputError if the section is unknown, or lies in several stretches of the part, or in too few samples.
         """
         section = as_word(section)
         if section not in self.names:
             known = list(dict.fromkeys(self.names))
-            more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
-            fix = advise(section, known[:_LISTED], listed=f"column {self.column!r} has") + more
+            rest_words = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
+            fix = advise(section, known[:_LISTED], listed=f"column {self.column!r} has") + rest_words
             raise InputError("record.section", f"is {section}, which no section is", fix)
         runs = [run for name, run in zip(self.names, self.stretches, strict=True) if name == section]
         parts = [(slice(max(run.start, within.start), min(run.stop, within.stop)), run) for run in runs]
         inside = [(part, run) for part, run in parts if part.stop > part.start]
         if len(inside) > 1:
-            told = [f"{start:.6g} to {end:.6g} s" for start, end in (self.ends(part) for part, _ in inside[:_LISTED])]
+            listed = [f"{start:.6g} to {end:.6g} s" for start, end in (self.ends(part) for part, _ in inside[:_LISTED])]
             start, end = self.ends(max((part for part, _ in inside), key=lambda part: part.stop - part.start))
             fix = f'add from = "{start:.12g} s", to = "{end:.12g} s", or those of another'
-            problem = f"is {section}, which stands in {len(inside)} stretches: {', '.join(told)}"
+            problem = f"is {section}, which stands in {len(inside)} stretches: {', '.join(listed)}"
             raise InputError("record.section", problem, fix)
         count = inside[0][0].stop - inside[0][0].start if inside else 0
         if count < FEWEST:

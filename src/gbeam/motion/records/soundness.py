@@ -56,17 +56,17 @@ class Samples:
 
 
 def refuse_unsound(record: Samples, skip: Collection[str], *, is_part: bool) -> None:
-    """Raise InputError if a record, or a part of one, does not look like a flight's; spikes are judged first.
+    """Raise InputError if a record, or a part of one, does not look like a flight's. Spikes are judged first.
 
-    Of a part only the size is judged, and dropouts: level flight may be elsewhere.
+    A part need not hold level flight: only its size and dropouts are judged.
     """
-    odd, calm, size = _calmed(record)
+    spiked, load, size = _calmed(record)
     if "spikes" not in skip and _lasts(record):
-        _check_spikes(record, odd, size)
+        _check_spikes(record, spiked, size)
     if "unit" not in skip:
         _check_size(record, size)
     if not is_part:
-        _refuse_unlevel(record, calm, size, skip)
+        _refuse_unlevel(record, load, size, skip)
     if "dropouts" not in skip:
         _check_dropouts(record)
 
@@ -78,14 +78,16 @@ def refuse_unlevel(whole: Samples, skip: Collection[str]) -> None:
         _refuse_unlevel(whole, calm, size, skip)
 
 
-def _refuse_unlevel(record: Samples, calm: Floats, size: Floats, skip: Collection[str]) -> None:
-    """Judge level flight, by the load without spikes and its size; a fragment of less than 2 s need hold none."""
+def _refuse_unlevel(record: Samples, load: Floats, size: Floats, skip: Collection[str]) -> None:
+    """Judge level flight by the load (t, 3) without spikes and its size (t,). A fragment of less than 2 s need hold
+    none.
+    """
     if not _flies(record):
         return
     if "unit" not in skip:
         _check_level(record, size)
     if "sign" not in skip and record.vehicle == "aircraft":
-        _check_sign(record, calm @ record.axes[2], size)
+        _check_sign(record, load @ record.axes[2], size)
 
 
 def _lasts(record: Samples) -> bool:
@@ -108,19 +110,21 @@ def _trust(check: str, otherwise: str = "if the record is right as it is") -> st
     return f'{otherwise}, add skip_checks = ["{check}"]'
 
 
-def _check_spikes(record: Samples, odd: Flags, size: Floats) -> None:
-    """Refuse a spike that would be the record's peak."""
-    high = np.linalg.norm(record.load, axis=1)
-    i = int(np.argmax(np.where(odd.any(axis=1), high, 0)))
-    rest, largest = size.max(), LARGEST * STANDARD_GRAVITY
-    if not odd[i].any() or not (high[i] > _OUTSTANDING * rest or high[i] > largest >= rest):
+def _check_spikes(record: Samples, spiked: Flags, size: Floats) -> None:
+    """Refuse a spike that would be the record's peak. `spiked` (t, 3) marks spikes, `size` (t,) is the load without
+    them.
+    """
+    raw_size = np.linalg.norm(record.load, axis=1)
+    i = int(np.argmax(np.where(spiked.any(axis=1), raw_size, 0)))
+    calm_size, largest = size.max(), LARGEST * STANDARD_GRAVITY
+    if not spiked[i].any() or not (raw_size[i] > _OUTSTANDING * calm_size or raw_size[i] > largest >= calm_size):
         return
-    axis = int(np.argmax(np.where(odd[i], np.abs(record.load[i]), 0)))
+    axis = int(np.argmax(np.where(spiked[i], np.abs(record.load[i]), 0)))
     name = record.names["xyz"[axis]].lstrip("-")
     raise InputError(
         f"record.{'xyz'[axis]}",
-        f"column {name!r} has {odd.any(axis=1).sum()} sample(s) that look like spikes: the load is "
-        f"{record.said(high[i])} at {record.time[i]:g} s ({record.place(i)}), {record.said(size[i])} beside it",
+        f"column {name!r} has {spiked.any(axis=1).sum()} sample(s) that look like spikes: the load is "
+        f"{record.said(raw_size[i])} at {record.time[i]:g} s ({record.place(i)}), {record.said(size[i])} beside it",
         f"add despike = true, which replaces them; {_trust('spikes')}",
     )
 
@@ -156,33 +160,40 @@ def _vehicles(record: Samples, size: Floats) -> list[str]:
 
 
 def _other_units(record: Samples, size: Floats) -> list[str]:
-    """Advice to write another unit: of those in which the record may be a flight's, those in which it begins level."""
+    """Advice to write another unit, likeliest first.
+
+    Likely units make a flight of the record; among these, those in which it begins level are preferred.
+    """
     judged = _flies(record)
     fitting = []
-    for unit, each in _SIZES.items():
-        in_g = size * each / record.unit.size / STANDARD_GRAVITY
-        sound = _is_flight(record, size, each) if judged else each < record.unit.size
-        if each != record.unit.size and in_g.max() <= LARGEST and sound:
+    for unit, unit_size in _SIZES.items():
+        in_g = size * unit_size / record.unit.size / STANDARD_GRAVITY
+        sound = _is_flight(record, size, unit_size) if judged else unit_size < record.unit.size
+        if unit_size != record.unit.size and in_g.max() <= LARGEST and sound:
             fitting.append((_begins_level(record, in_g), _share(in_g, LEVEL), unit))
-    likely = [each for each in fitting if each[0]] or fitting
-    return [f"if it is in {unit}, {record.unit.instead('unit', unit)}" for *_, unit in sorted(likely, reverse=True)]
+    begins_level = [candidate for candidate in fitting if candidate[0]]
+    likely = sorted(begins_level or fitting, reverse=True)
+    return [f"if it is in {unit}, {record.unit.instead('unit', unit)}" for *_, unit in likely]
 
 
 def _is_flight(record: Samples, size: Floats, unit: float) -> bool:
-    """True if the size (t,) of a load may be that of a flight in a unit of so many m/s²; of a count only the user knows
-    it, of the others one in which the record is level tells another.
+    """Tell if a load of the size (t,) may be a flight's in a unit of `unit` m/s².
+
+    A listed unit is doubted where the record is level in another listed one. The size of a count only the user knows.
     """
     in_g = size * unit / record.unit.size / STANDARD_GRAVITY
     peak, begins = float(in_g.max()), float(np.median(in_g[_beginning(record)]))
-    others = [each for each in _SIZES.values() if unit in _SIZES.values() and not 0.5 < each / unit < 2]
-    level = [other for other in (in_g * each / unit for each in others) if _share(other, LEVEL) > _SOME]
+    other_units = [other for other in _SIZES.values() if unit in _SIZES.values() and not 0.5 < other / unit < 2]
+    loads_in_others = [in_g * other / unit for other in other_units]
+    level_in_others = [load for load in loads_in_others if _share(load, LEVEL) > _SOME]
     if record.vehicle == "rocket":
-        return peak >= _NEVER and not any(_begins_level(record, other) for other in level if begins > _BEGINS_LEVEL[1])
+        begins_high = begins > _BEGINS_LEVEL[1]
+        return peak >= _NEVER and not (begins_high and any(_begins_level(record, load) for load in level_in_others))
     if unit == STANDARD_GRAVITY:
         # Level at 9.8 and nowhere at 1; a rocket that passes 9.8 g has been at less.
-        return begins <= _BEGINS and not (level and _share(in_g, LEVEL) < _HARDLY and peak > _PILOTED)
+        return begins <= _BEGINS and not (level_in_others and _share(in_g, LEVEL) < _HARDLY and peak > _PILOTED)
     # A flight that is level at 0.1 g either pulls more than 1 g to stay in the air, or is in g.
-    return peak >= _NEVER and not any(peak < LEVEL[1] or _begins_level(record, other) for other in level)
+    return peak >= _NEVER and not any(peak < LEVEL[1] or _begins_level(record, load) for load in level_in_others)
 
 
 def _beginning(record: Samples) -> slice:
@@ -198,10 +209,10 @@ def _share(size: Floats, band: tuple[float, float]) -> float:
 
 
 def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
-    """Refuse a record whose level flight, where it is along z, is more often downwards than upwards.
+    """Refuse a record whose level flight is more often downwards than upwards along z, where it is along z.
 
-    To turn z over is advised only if it neither begins upright, as a rocket does on its pad, nor is pushed upwards by
-    more than downwards.
+    To turn z over is advised only if the record does not begin upright, as a rocket does on its pad, and is not pushed
+    upwards by more than downwards.
     """
     in_g = size / STANDARD_GRAVITY
     level = (in_g > LEVEL[0]) & (in_g < LEVEL[1])
@@ -212,13 +223,13 @@ def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
     boost = upwards / STANDARD_GRAVITY - np.copysign(_BOOST, upwards)
     pushed = np.sum(boost[upwards > 0].clip(0)) > -np.sum(boost[upwards < 0].clip(None, 0))
     upright = np.median(upwards[_beginning(record)]) > _BEGINS_LEVEL[0] * STANDARD_GRAVITY
-    turned = "write " + ", ".join(f'{axis} = "{name}"' for axis, name in record.upended.items())
-    hanging = _trust("sign", "if the specimen hangs upside down")
+    turn_over = "write " + ", ".join(f'{axis} = "{name}"' for axis, name in record.upended.items())
+    trust = _trust("sign", "if the specimen hangs upside down")
     raise InputError(
         "record.z",
         f"is {record.said(upwards[i])} at {record.time[i]:g} s ({record.place(i)}), and downwards for "
         f"{100 * down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
-        "; ".join([*([] if pushed or upright else [turned]), _ACCELERATION, *_vehicles(record, size), hanging]),
+        "; ".join([*([] if pushed or upright else [turn_over]), _ACCELERATION, *_vehicles(record, size), trust]),
     )
 
 

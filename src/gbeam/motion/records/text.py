@@ -44,8 +44,8 @@ def read_text(path: str | os.PathLike[str]) -> Table:
     body = [line for _, line in lines[len(lines) // 2 :] if not _COMMENT.match(line)][:_SAMPLE]
     delimiter, width = _dialect(path, body)
     rows = [(number, _cells(line, delimiter)) for number, line in lines]
-    of_labview = rows[0][1][0] == _LABVIEW
-    ends = [i + 1 for i, (_, cells) in enumerate(rows) if of_labview and cells[0] == _END]
+    is_labview = rows[0][1][0] == _LABVIEW
+    ends = [i + 1 for i, (_, cells) in enumerate(rows) if is_labview and cells[0] == _END]
     start = max(ends[:2], default=0)  # of names and data: the heads of the file and of its first piece lie before
     data_rows = (i for i in range(start, len(rows)) if len(rows[i][1]) == width and _is_data(rows[i][1]))
     first = next(data_rows, len(rows))
@@ -57,8 +57,8 @@ def read_text(path: str | os.PathLike[str]) -> Table:
             raise InputError(
                 "record.file", f"row {number} has {len(cells)} cells, the header {len(header)}", "complete the row"
             )
-    others, stated, remarks = _labview({cells[0]: cells[1:] for _, cells in rows[:start]}, len(data))
-    units = [unit or other for unit, other in zip_longest(units, others[:width], fillvalue="")]
+    labview_units, stated, remarks = _labview({cells[0]: cells[1:] for _, cells in rows[:start]}, len(data))
+    units = [unit or other for unit, other in zip_longest(units, labview_units[:width], fillvalue="")]
     columns = (
         _column(name, unit, data, i, indexed=name in indices)
         for i, (name, unit) in enumerate(zip(header[:width], units, strict=False))
@@ -66,16 +66,17 @@ def read_text(path: str | os.PathLike[str]) -> Table:
     return Table(tuple(columns), [number for number, _ in data], stated, remarks)
 
 
-def _labview(said: dict[str, list[str]], count: int) -> tuple[list[str], tuple[Stated, ...], tuple[str, ...]]:
-    """Units of the columns, sample rate and remarks of what LabVIEW's header says, of one column of X or none.
+def _labview(header: dict[str, list[str]], count: int) -> tuple[list[str], tuple[Stated, ...], tuple[str, ...]]:
+    """Units of the columns, sample rate and remarks from the entries of LabVIEW's header, by their names.
 
-    Its number of samples is that of the first piece, or of the whole.
+    The file has one column of X or none. The header's number of samples is that of the first piece, or of the whole.
     """
-    labels, time = said.get("Y_Unit_Label", []), ["s" if said.get("X_Dimension", [])[:1] == ["Time"] else ""]
-    units = {"One": time + labels, "No": labels}.get("".join(said.get("X_Columns", ["One"])[:1]), []) if labels else []
+    labels, time = header.get("Y_Unit_Label", []), ["s" if header.get("X_Dimension", [])[:1] == ["Time"] else ""]
+    x_columns = "".join(header.get("X_Columns", ["One"])[:1])
+    units = {"One": time + labels, "No": labels}.get(x_columns, []) if labels else []
     try:
-        stated = tuple(Stated.read("Delta_X", float(said["Delta_X"][0]), "/"))
-        samples = int(said["Samples"][0])
+        stated = tuple(Stated.read("Delta_X", float(header["Delta_X"][0]), "/"))
+        samples = int(header["Samples"][0])
     except (KeyError, ValueError, IndexError):
         return units, (), ()
     remark = f"the file's header states {samples} samples, and it holds {count}"
@@ -107,15 +108,17 @@ def _decoded(path: str | os.PathLike[str]) -> str:
 
 
 def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
-    """Delimiter and number of columns for which the most cells of some lines are numbers or times of day."""
-    best, delimiter, width = 0.0, "", 0
+    """Delimiter and number of columns. The delimiter is that by which the largest share of cells are numbers or times
+    of day.
+    """
+    best_share, delimiter, width = 0.0, "", 0
     for candidate in _DELIMITERS:
         rows = [_cells(line, candidate) for line in body]
         usual = mode(len(cells) for cells in rows) if rows else 0
         numbers = sum(_count(cells) for cells in rows if len(cells) == usual)
         share = numbers / max(usual * len(rows), 1)
-        if usual > 1 and share > best:
-            best, delimiter, width = share, candidate, usual
+        if usual > 1 and share > best_share:
+            best_share, delimiter, width = share, candidate, usual
     if not width:
         if body and all(_NUMBER.fullmatch(line.strip()) for line in body):
             raise InputError("record.file", f"{path} has one column", "give a column of times and one per component")
@@ -153,15 +156,19 @@ def _comment(line: str, delimiter: str) -> str | None:
 
 
 def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, width: int) -> tuple[list[str], list[str]]:
-    """Names and units of the columns, from the lines before the first of numbers."""
+    """Names and units of the columns, from the lines before the first row of numbers.
+
+    The last line with as many cells as columns names them, or gives units to the names in the line above. A comment
+    counts only where no plain line does.
+    """
     headers: list[tuple[bool, list[str]]] = []
     for line in lines:
         comment = _comment(line, delimiter)
         cells = _cells(line if comment is None else comment, delimiter)
         if len(cells) == width - 1 and comment is None:  # every row of data ends in a delimiter
             cells = [*cells, ""]
-        remarks = len(cells) == width + 1 and delimiter != " "  # names of the columns, and of a last one that is empty
-        if remarks and comment is None and line is lines[-1] and not _is_data(cells):
+        extra_name = len(cells) == width + 1 and delimiter != " "  # of a last column that is empty
+        if extra_name and comment is None and line is lines[-1] and not _is_data(cells):
             return cells, [""] * width
         if len(cells) == width and not _is_data(cells):
             headers.append((comment is not None, cells))
@@ -184,7 +191,7 @@ def _indices(header: list[str]) -> set[str]:
 
 
 def _column(header: str, unit: str, data: list[Row], i: int, *, indexed: bool) -> Column:
-    """Column `i` of the data, with a decimal point; its unit may stand in brackets behind its name."""
+    """Column `i` of the data, read with a decimal point. A unit may follow the name in brackets."""
     bracket = None if indexed else bracketed(header)
     aliases: tuple[str, ...] = ()
     if bracket is not None:

@@ -121,26 +121,29 @@ class Timeline:
         evened: bool,
         judge: Callable[[Floats], None],
     ) -> Timeline:
-        """Timeline of the `part` of a record and values (t, k); `judge` refuses times, in order, of a wrong unit.
+        """Build the timeline of the `part` of a record with values (t, k). `judge` refuses times, in order, of a wrong
+        unit.
 
-        Where samples are `evened` out later, times may jitter, repeat and come late, and lost samples of gaps up to
+        If samples are `evened` out later, times may jitter, repeat and come late, and lost samples of gaps up to
         `bridge`, s, are put on straight lines; InputError otherwise.
         """
         clock = times.values[part]
         order, starts = _in_order(clock, values[part], lambda i: place(part.start + i), judge, evened=evened)
         rows, time = part.start + order[starts], clock[order[starts]]
         gaps = _gaps(time, lambda i: place(int(rows[i])), bridge, evened=evened)
-        whole, bridged = _bridged(time, _averaged(values[part], order, starts), gaps)
-        rows = rows[np.searchsorted(time, whole, side="right") - 1]
-        jitter = _unevenness(whole, lambda i: place(int(rows[i])), evened=evened)
-        done = []
-        if late := int(np.sum(np.diff(clock) < 0)):
-            done.append(f"times go back {late} times: the samples are put in order")
-        if repeated := len(order) - len(starts):
-            done.append(f"{repeated} samples repeat a time: the mean of its samples is flown")
+        bridged_time, bridged = _bridged(time, _averaged(values[part], order, starts), gaps)
+        rows = rows[np.searchsorted(time, bridged_time, side="right") - 1]
+        jitter = _unevenness(bridged_time, lambda i: place(int(rows[i])), evened=evened)
+        late = int(np.sum(np.diff(clock) < 0))
+        repeated = len(order) - len(starts)
+        notes = []
+        if late:
+            notes.append(f"times go back {late} times: the samples are put in order")
+        if repeated:
+            notes.append(f"{repeated} samples repeat a time: the mean of its samples is flown")
         if jitter:
-            done.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
-        return cls(whole, bridged, rows, gaps, tuple(done))
+            notes.append(f"times up to {1e3 * jitter:.3g} ms off even ones: a spline through the samples is flown")
+        return cls(bridged_time, bridged, rows, gaps, tuple(notes))
 
     @property
     def read(self) -> Indices:
@@ -168,7 +171,7 @@ def _in_order(
     changes = np.flatnonzero(steps > 0) + 1  # samples at which the clock has just ticked
     fresh = (np.diff(values, axis=0) != 0).any(axis=1)  # no sample that was written again
     if np.mean(steps == 0) > 0.5 and np.mean(fresh[steps == 0]) > 0.5:
-        rate = _near((changes[-1] - changes[0]) / np.ptp(time[changes])) if changes.size > 1 else 100.0
+        rate = _round_rate((changes[-1] - changes[0]) / np.ptp(time[changes])) if changes.size > 1 else 100.0
         ticks = f"ticks every {usual:g} s" if forward.size else "stands still"
         problem = (
             f"repeats {time[back[0]]:g} s at {place(int(back[0]) + 1)}: the clock {ticks}, and samples lie between"
@@ -185,22 +188,23 @@ def _in_order(
             for i in back[:_LISTED]
         ]
         done = "late samples are put in order, and those of one time become their mean"
-        fix = f'add resample = "{_near(1 / usual):g} Hz": {done}'
+        fix = f'add resample = "{_round_rate(1 / usual):g} Hz": {done}'
         raise InputError("record.time", ", ".join(told) + _more(len(back)), fix)
     return order, starts
 
 
-def _set_back(time: Floats, i: int, by: float, place: Place) -> tuple[str, str]:
-    """Problem and fix of a clock that goes back by more than a late sample: a part between such steps, if it is alone
-    at its times.
+def _set_back(time: Floats, i: int, jump: float, place: Place) -> tuple[str, str]:
+    """Problem and fix of a clock that goes back at sample `i` by more than a late sample does.
+
+    The fix is the longest part between two such steps if no other samples have its times; else the file is to be split.
     """
     edges = [0, *(np.flatnonzero(np.diff(time) < 0) + 1).tolist(), len(time)]
     first, last = max(pairwise(edges), key=lambda ends: ends[1] - ends[0])
     begin, end = float(time[first]), float(time[last - 1])
-    problem = f"goes back by {by:g} s at {place(i)}: the clock was set, or another record begins"
+    problem = f"goes back by {jump:g} s at {place(i)}: the clock was set, or another record begins"
     alone = np.count_nonzero((time >= begin) & (time <= end)) == last - first >= FEWEST
-    apart = f'write from = "{begin:.12g} s", to = "{end:.12g} s", of {place(first)} to {place(last - 1)}'
-    return problem, apart if alone else f"split the file at {place(i)}, and fly one of its parts"
+    part_fix = f'write from = "{begin:.12g} s", to = "{end:.12g} s", of {place(first)} to {place(last - 1)}'
+    return problem, part_fix if alone else f"split the file at {place(i)}, and fly one of its parts"
 
 
 def _averaged(values: Floats, order: Indices, starts: Indices) -> Floats:
@@ -212,15 +216,17 @@ def _averaged(values: Floats, order: Indices, starts: Indices) -> Floats:
 
 
 def _gaps(time: Floats, place: Place, bridge: float | None, *, evened: bool) -> tuple[Gap, ...]:
-    """Gaps in times (t,), s, all of which are to be bridged; InputError, with all of them, unless they may be."""
+    """Gaps in the times (t,), s, all of which are to be bridged. InputError, which lists them, if they may not be
+    bridged.
+    """
     steps = np.diff(time)
     usual = float(np.median(steps))
-    wide = np.flatnonzero(steps > _GAP * usual)
+    gap_starts = np.flatnonzero(steps > _GAP * usual)
     gaps = tuple(
-        Gap(float(time[i]), float(time[i + 1]), round(float(steps[i]) / usual) - 1, place(int(i))) for i in wide
+        Gap(float(time[i]), float(time[i + 1]), round(float(steps[i]) / usual) - 1, place(int(i))) for i in gap_starts
     )
-    longest = float(steps[wide].max(initial=0))
-    if not wide.size or (evened and bridge is not None and longest <= bridge * _ROUND):
+    longest = float(steps[gap_starts].max(initial=0))
+    if not gap_starts.size or (evened and bridge is not None and longest <= bridge * _ROUND):
         return gaps
     listed = [f"{gap.end - gap.start:g} s from {gap.start:g} s to {gap.end:g} s (after {gap.after})" for gap in gaps]
     problem = (
@@ -228,36 +234,38 @@ def _gaps(time: Floats, place: Place, bridge: float | None, *, evened: bool) -> 
         + ", ".join(listed[:_LISTED])
         + _more(len(gaps))
     )
-    also = "" if evened else f' and resample = "{_near(1 / usual):g} Hz"'
-    act = "add" if bridge is None else "write"
-    over = f'{act} bridge = "{_up(1e3 * longest):g} ms"{also}: lost samples are put on straight lines'
-    whole = np.split(np.arange(len(time)), np.flatnonzero(steps > max(_BRIDGED, _GAP * usual)) + 1)
-    kept = max(whole, key=len)
-    cut = f'write from = "{time[kept[0]]:.12g} s", to = "{time[kept[-1]]:.12g} s", between the long ones'
-    fixes = [cut, over] if longest > _BRIDGED and len(kept) >= FEWEST else [over]
+    resampling = "" if evened else f' and resample = "{_round_rate(1 / usual):g} Hz"'
+    verb = "add" if bridge is None else "write"
+    bridge_fix = f'{verb} bridge = "{_up(1e3 * longest):g} ms"{resampling}: lost samples are put on straight lines'
+    stretches = np.split(np.arange(len(time)), np.flatnonzero(steps > max(_BRIDGED, _GAP * usual)) + 1)
+    stretch = max(stretches, key=len)
+    cut_fix = f'write from = "{time[stretch[0]]:.12g} s", to = "{time[stretch[-1]]:.12g} s", between the long ones'
+    fixes = [cut_fix, bridge_fix] if longest > _BRIDGED and len(stretch) >= FEWEST else [bridge_fix]
     raise InputError("record.time", problem, "; ".join(fixes))
 
 
 def _bridged(time: Floats, values: Floats, gaps: Sequence[Gap]) -> tuple[Floats, Floats]:
-    """Times (t,), s, and values (t, n) with the lost samples of gaps, at equal intervals on straight lines."""
+    """Fill gaps in the times (t,), s, and values (t, n): lost samples come at equal intervals, on straight lines."""
     if not gaps:
         return time, values
     lost = sum(gap.lost for gap in gaps)
     refuse_more("record.bridge", "samples", len(time) + lost, SAMPLES, 24.0, "bridge shorter gaps")
     parts = [np.linspace(gap.start, gap.end, gap.lost + 2)[1:-1] for gap in gaps]
-    fresh = np.sort(np.concatenate([time, *parts]))
-    return fresh, np.stack([np.interp(fresh, time, channel) for channel in values.T], axis=1)
+    filled = np.sort(np.concatenate([time, *parts]))
+    return filled, np.stack([np.interp(filled, time, channel) for channel in values.T], axis=1)
 
 
 def _unevenness(time: Floats, place: Place, *, evened: bool) -> float:
-    """Largest distance of times (t,), s, from even ones, zero of slight ones; InputError unless they are `evened`."""
+    """Largest distance of the times (t,), s, from equally spaced ones; zero if slight. InputError unless samples are
+    `evened`.
+    """
     steps = np.diff(time)
     median = float(np.median(steps))
     uneven = np.flatnonzero(np.abs(steps - median) > UNEVEN * median)
     if not uneven.size:
         return 0.0
     if not evened:
-        i, rate = int(uneven[0]), _near((len(time) - 1) / np.ptp(time))
+        i, rate = int(uneven[0]), _round_rate((len(time) - 1) / np.ptp(time))
         late = f"{time[i + 1]:g} s at {place(i + 1)}, after {time[i]:g} s, is {steps[i]:g} s"
         problem = f"is sampled unevenly: {late} where the interval is {median:g} s"
         fix = f'add resample = "{rate:g} Hz": at equal intervals, by a spline through the samples'
@@ -267,25 +275,29 @@ def _unevenness(time: Floats, place: Place, *, evened: bool) -> float:
 
 
 def check_interval(time: Floats, times: Times, stated: Mapping[str, float], *, brief: bool) -> None:
-    """Refuse an interval of times (t,) s that no record of a flight has, unless it may be `brief`, or that the file
-    states otherwise, in Hz by name; say which unit would make it one.
+    """Refuse an interval of the times (t,), s, that no record of a flight has, and say which unit would make it one.
+
+    `stated` are the sample rates, Hz, by name, that the file states; another one is refused, too. A `brief` record may
+    be short and densely sampled.
     """
     where, step, length = f"record.{times.key}", float(np.median(np.diff(time))), float(time[-1] - time[0])
     for name, rate in stated.items():
         if abs(rate * step - 1) > UNEVEN:
             by_rate = times.key == "sample_rate"
-            problem = f"{'is' if by_rate else 'has'} {_near(1 / step):g} Hz, and the file states {name}, {rate:g} Hz"
+            verb = "is" if by_rate else "has"
+            problem = f"{verb} {_round_rate(1 / step):g} Hz, and the file states {name}, {rate:g} Hz"
             instead = f'write sample_rate = "{rate:g} Hz"; ' if by_rate else ""
             raise InputError(where, problem, f"{instead}{TRUST}")
     trust = 'if it is right as it is, add skip_checks = ["sampling"]'
-    sizes, number = UNITS["time"], step / times.unit.size
+    unit_sizes, step_in_unit = UNITS["time"], step / times.unit.size
     likely = [
         unit
-        for unit, size in sizes.items()
-        if size != times.unit.size and _USUAL[0] <= number * size * _ROUND <= _USUAL[1]
+        for unit, size in unit_sizes.items()
+        if size != times.unit.size and _USUAL[0] <= step_in_unit * size * _ROUND <= _USUAL[1]
     ]
-    hint = f"is the time in {likely[0]}? then {times.unit.instead('time_unit', likely[0])}; " if likely else ""
-    hint = "" if times.key != "time" else hint
+    hint = ""
+    if likely and times.key == "time":
+        hint = f"is the time in {likely[0]}? then {times.unit.instead('time_unit', likely[0])}; "
     if step > _ROUND / SLOWEST:
         problem = f"has a sample every {step:g} s ({1 / step:g} Hz), too coarse for the corners of a manoeuvre"
         raise InputError(where, problem, f"{hint}export the record at 20 Hz or more; {trust}")
@@ -297,7 +309,7 @@ def check_interval(time: Floats, times: Times, stated: Mapping[str, float], *, b
         raise InputError(where, problem, fix)
 
 
-def _near(number: float) -> float:
+def _round_rate(number: float) -> float:
     """A number to three digits."""
     return float(f"{number:.3g}")
 

@@ -78,8 +78,10 @@ class AxisSplines:
         return x[:-1]
 
     def assembled(self, pieces: Floats) -> Any:
-        """Sparse symmetric matrix (size, size) for x: the sum of matrices for the 18 coefficients that act on one piece
-        each; `pieces` (171, pieces) are their lower triangles.
+        """Sum matrices of single pieces into the sparse symmetric matrix (size, size) for x.
+
+        Each piece's matrix couples the 18 coefficients that act on it; `pieces` (171, pieces) holds the lower
+        triangles.
         """
         band = np.zeros((NEAR, AXES * self.grid.size))  # row d couples every coefficient with the d-th after it
         for i, j, values in zip(*np.tril_indices(NEAR), pieces, strict=True):
@@ -159,15 +161,15 @@ class Tracking:
         return (float(np.sum(error**2)) + float(x @ (self.ease @ x))) / 2
 
     def model(self, x: Floats) -> tuple[Any, Floats]:
-        """A positive semidefinite matrix near the cost's second derivatives, and its slope.
+        """Slope of the cost, and a positive semidefinite matrix in place of its second derivatives.
 
-        At every time the second derivatives by the states are replaced by their absolute value, that of their
-        eigenvalues: where the flight's load is small, what turns the machine's is a saddle, which the products of
-        the first derivatives alone (Gauss and Newton's) take for a valley.
+        At every time the second derivatives by the states are replaced by their absolute value, which has the absolute
+        eigenvalues. Where the flight's load is small, turning the machine's load is a saddle of the cost; Gauss and
+        Newton's products of first derivatives alone would take it for a valley.
         """
         error, slope, second = self.error((self.states @ x).reshape(4, -1), 2)
-        size, vectors = np.linalg.eigh(second)
-        second = (vectors * np.abs(size)[:, None]) @ vectors.swapaxes(1, 2)
+        eigenvalues, vectors = np.linalg.eigh(second)
+        second = (vectors * np.abs(eigenvalues)[:, None]) @ vectors.swapaxes(1, 2)
         by_states = np.einsum("kjt,kt->jt", slope, error).ravel()
         pieces = second[:, *_PAIRS].reshape(self.splines.grid.pieces, -1)
         hessian = self.splines.assembled(self.by_pair @ pieces.T + self.eased)
@@ -186,6 +188,7 @@ class Tracking:
         error = self.weight * (load - self.flight.T)
         if order == 0:
             return error, load
+        # First derivatives by the states, and Gauss and Newton's part of the second ones.
         zero, by_rate = 0.0 * along, -2 * arm * rate
         d_along = np.stack([by_rate * cos2, arm * sin2, across, zero])
         d_across = np.stack([-by_rate * sin2, arm * cos2, -along, zero])
@@ -263,9 +266,13 @@ class KeptLimits:
         return least
 
     def at(self, x: Floats) -> tuple[Any, Floats, Floats]:
-        """Rows (m, size), lower and upper limits (m,) for the unknowns; the power's are its tangents at x."""
+        """Matrix (m, size) and lower and upper limits (m,) of the linear constraints on the unknowns.
+
+        The power's limit |rate · acceleration| <= P is not linear; its rows are tangents at `x`.
+        """
         if self.power == np.inf:
             return self.rows, self.lower, self.upper
+        # The largest rate of each piece holds for all of it.
         rate = np.repeat(np.max((self.rate @ x).reshape(-1, PIECE), axis=1), PIECE)
         rate = np.maximum(rate, _SLOW * rate.max())
         braking = scipy.sparse.diags_array(rate / self.power) @ self.acceleration

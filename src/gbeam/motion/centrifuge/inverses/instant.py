@@ -75,16 +75,18 @@ def across_beam(load: Series, geometry: Geometry) -> Series:
 
 
 def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Series, Series]:
-    """Angles of axes 2 and 3, rad, at which the specimen feels a load (..., 3) m/s², axis 2 lagging by `lag`, rad; θ3
-    is zero where the load lies along the beam.
+    """Angles of axes 2 and 3, rad, at which the specimen feels a load (..., 3), m/s².
+
+    Axis 2 lags by `lag`, rad. θ3 is zero where the load lies along the beam.
     """
     fx, fy, fz = load[..., 0], load[..., 1], load[..., 2]
     across = across_beam(load, geometry)
-    bent = across.value != 0
+    has_across = across.value != 0
     xp = namespace(across.value)
-    ahead = where(bent, across, xp.ones_like(across.value))
+    safe_across = where(has_across, across, xp.ones_like(across.value))
     gravity = Series.of([geometry.gravity + 0.0 * across.value], across.order)
-    roll = arctan2(gravity, ahead) - arctan2(where(bent, fz, gravity.value), where(bent, fy, ahead.value))
+    safe_fy, safe_fz = where(has_across, fy, safe_across.value), where(has_across, fz, gravity.value)
+    roll = arctan2(gravity, safe_across) - arctan2(safe_fz, safe_fy)
     return math.pi - lag - arctan2(across, fx), roll
 
 
@@ -148,7 +150,10 @@ class Exact(Inverse):
 
 
 def exact(target: Target, geometry: Geometry) -> Exact:
-    """Solve for the lag, by finer and finer knots until the load is tracked within `TRACKING`."""
+    """Solve for the lag on finer and finer knots, until the load is tracked within :data:`TRACKING`.
+
+    Raises InputError if the finest knots still miss by more than :data:`ACCEPTED`.
+    """
     first, last = _times(target)
     lag: Spline | None = None
     for step in _STEPS:
@@ -166,8 +171,9 @@ def exact(target: Target, geometry: Geometry) -> Exact:
 
 
 def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]]:
-    """Returns of the load above idle, first and last time, s, that no smooth motion follows: a target with idle can
-    leave them out, unless one has the largest load.
+    """Stretches, first and last time, s, in which the load returns above idle and no smooth motion follows it.
+
+    A target with idle can leave them out, except the one with the largest load, which is never listed.
     """
     if not target.idle > 0:
         return []
@@ -177,9 +183,13 @@ def unfollowable(target: Target, geometry: Geometry) -> list[tuple[float, float]
         lag, errors = _solve(grid, target, geometry, lag)
     bad, followed = ~(errors.ravel() <= _LEFT_OUT), ~np.asarray(target.not_followed(grid.time))
     size = np.linalg.norm(target.flight(np.clip(grid.time, *target.span)), axis=1)
-    above, peak = true_runs(size > PARTED * float(target.idle)), int(np.argmax(size))
-    returns = [run for run in above if bad[run].any() and followed[run].any() and not run.start <= peak < run.stop]
-    return [(float(grid.time[run.start]), float(grid.time[run.stop - 1])) for run in returns]
+    peak = int(np.argmax(size))
+    stretches = []
+    for run in true_runs(size > PARTED * float(target.idle)):
+        has_peak = run.start <= peak < run.stop
+        if bad[run].any() and followed[run].any() and not has_peak:
+            stretches.append((float(grid.time[run.start]), float(grid.time[run.stop - 1])))
+    return stretches
 
 
 def _times(target: Target) -> tuple[float, float]:
@@ -234,7 +244,9 @@ def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None)
 
 
 def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> InputError:
-    """The error that names the place and, if one is enough, the smoothing with which the load can be followed."""
+    """The error of a load that turns too sharply. It names the worst time and, if smoothing is enough, the width to
+    give.
+    """
     turns = sharp_turns(target, float(geometry.arm))
     if not turns:
         when = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]

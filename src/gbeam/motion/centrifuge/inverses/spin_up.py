@@ -54,31 +54,37 @@ class Ramp:
     outward: float = static()  # way to standstill: −1 of a spin-up, +1 of a spin-down
 
     def pose(self, t: Any, order: int) -> Pose:
-        """Rate of axis 1 (rad/s) and angles of axes 2 and 3 (rad) at times `t` (s), with derivatives up to `order`."""
+        """Rate of axis 1, rad/s, and angles of axes 2 and 3, rad, at times `t`, s, with derivatives up to `order`.
+
+        S(s) is the rate's share of ω1: a polynomial that is flat at standstill, s = 0, and at the steady state, s = 1.
+        """
         s = (Series.variable(t, order) - self.still) / (self.steady - self.still)
         s = where(s.value < 0, 0.0, where(s.value > 1, 1.0, s))
-        zero = 0.0 * s
-        turned = self.rate * abs(self.steady - self.still)
+        zeros = 0.0 * s
+        turned_angle = self.rate * abs(self.steady - self.still)
         # S over s⁵, where S = s⁵ (126 − 420 s + 540 s² − 315 s³ + 70 s⁴) and S' = 630 s⁴ (1 − s)⁴.
         quotient = 126 - s * (420 - s * (540 - s * (315 - 70 * s)))
-        rise = s**5 * quotient
-        yaw, roll = zero + self.yaw, zero + self.roll
+        rate_share = s**5 * quotient
+        yaw, roll = zeros + self.yaw, zeros + self.roll
         if self.yawed:
             # tan δ = (dω1/dt)/ω1² = S'/(ΩT S²), with the powers of s and 1 − s that both hold taken out.
-            lag = math.pi / 2 - arctan2(turned * s**6 * quotient**2, 630 * (1 - s) ** 4)
+            lag = math.pi / 2 - arctan2(turned_angle * s**6 * quotient**2, 630 * (1 - s) ** 4)
             yaw = yaw + self.outward * lag
         if self.gravity:
-            down = zero + self.gravity
-            share = s**4 * sqrt(s**12 * quotient**4 + (630 * (1 - s) ** 4 / turned) ** 2) if self.yawed else rise**2
-            roll = roll + arctan2(down, share * self.across) - arctan2(down, zero + self.across)
-        return rise * self.rate, yaw, roll
+            vertical = zeros + self.gravity
+            # The horizontal load's share: S² of the rate alone, sqrt(S⁴ + (S'/ΩT)²) with the tangential acceleration.
+            load_share = rate_share**2
+            if self.yawed:
+                load_share = s**4 * sqrt(s**12 * quotient**4 + (630 * (1 - s) ** 4 / turned_angle) ** 2)
+            roll = roll + arctan2(vertical, load_share * self.across) - arctan2(vertical, zeros + self.across)
+        return rate_share * self.rate, yaw, roll
 
     def load(self, t: Any, arm: Any) -> Any:
         """Load that the ramp makes at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
         arm_rate, yaw, roll = self.pose(t, 1)
         rate, acceleration = arm_rate.derivatives()
-        zero = 0.0 * rate
-        axes = Axes(rate, acceleration, yaw.value, zero, zero, roll.value, zero, zero)
+        zeros = 0.0 * rate
+        axes = Axes(rate, acceleration, yaw.value, zeros, zeros, roll.value, zeros, zeros)
         return control_point_load(axes, arm, self.gravity)
 
     @property
@@ -91,20 +97,24 @@ class Ramp:
         return replace(self, still=self.steady + self.outward * length)
 
     def usage(self, limits: Limits) -> tuple[LimitUse, ...]:
-        """Use of the machine's limits by the ramp."""
+        """Use of the machine's limits by the ramp, from times spread evenly over it."""
         first, last = sorted((float(self.still), float(self.steady)))
         time = np.linspace(first, last, _SAMPLES)
-        arm, *gimbals = (series.derivatives() for series in self.pose(time, 3))
-        orders = zip(arm[:3], *(angle[1:] for angle in gimbals), strict=True)
-        rate, acceleration, jerk = (np.stack(of_axes, axis=1) for of_axes in orders)
+        axis1, axis2, axis3 = (series.derivatives() for series in self.pose(time, 3))
+        # Axis 1 is described by its rate, axes 2 and 3 by their angles: their rates are first derivatives.
+        orders = zip(axis1[:3], axis2[1:], axis3[1:], strict=True)
+        rate, acceleration, jerk = (np.stack(values, axis=1) for values in orders)
         return usage(time, rate, acceleration, jerk, limits)
 
     def lengthened(self, limits: Limits, share: float = 1.0) -> Ramp:
-        """The ramp, or one so much longer that it uses at most a share of every limit."""
+        """Lengthen the ramp until it uses at most `share` of every limit; a ramp that already does is returned as it
+        is.
+        """
         ramp = self
         for _ in range(50):
             factor = 0.0
             for use in ramp.usage(limits):
+                # A quantity falls with a power of the length; the arm's final rate does not depend on it.
                 power = (_ARM if use.axis in ("axis 1", "arm") else _GIMBAL).get(use.quantity)
                 factor = max(factor, 0.0 if power is None else (use.share / share) ** (1 / power))
             if factor <= 1:
@@ -116,7 +126,7 @@ class Ramp:
 def build_ramps(
     target: Target, inverse: Inverse, geometry: Geometry, limits: Limits, ends: Ends
 ) -> tuple[Ramp, Ramp] | None:
-    """Spin-up and spin-down around an inverse; None for a machine that begins and ends at idle."""
+    """Build the spin-up and spin-down around an inverse. None for a machine that begins and ends at idle."""
     if ends.start == "idle":
         return None
     up = _build("spin_up", target, inverse, geometry, limits, ends)
@@ -124,7 +134,10 @@ def build_ramps(
 
 
 def _build(name: str, target: Target, inverse: Inverse, geometry: Geometry, limits: Limits, ends: Ends) -> Ramp:
-    """The spin-up or spin-down, by name, with the length given in `ends`, or one found within the limits."""
+    """Build the spin-up or spin-down, by name. Its length is that of `ends`, or the shortest that keeps the limits.
+
+    Raises InputError if a given length is so short that the arm's own acceleration exceeds the flight's load.
+    """
     outward, edge = (-1.0, target.span[0]) if name == "spin_up" else (1.0, target.span[1])
     # Beyond `steady` the target stands still: a corner at the flight's edge is rounded within half a width of it.
     lead = target.half_width

@@ -173,22 +173,24 @@ def build_target(
 def _path(
     times: Floats, loads: Floats, held: Flags, out_of_reach: Flags, idle: float | None, gravity: bool, arm: Any | None
 ) -> PiecewiseLinear:
-    """Direction of the load on knots: angles about the beam and from it, (k, 2) rad, those of the flight's loads (k, 3)
-    where it is neither held nor out of the gimbals' reach, (k,), gentle between.
+    """Direction of the target's load on knots (k,): its angles (k, 2), rad, about the beam and from the beam.
+
+    They are the angles of the flight's loads (k, 3), except where the load is held at idle (`held`) or out of the
+    gimbals' reach: there the angles follow a gentle path.
     """
-    whole = MIN_TRANSVERSE_LOAD if idle is None else idle
-    scale = _QUICK if arm is None else float(np.sqrt(_number(arm) / whole))
-    across = np.linalg.norm(loads[:, 1:], axis=1)
-    about_beam, weight = unwrapped(times, loads[:, 2], loads[:, 1], whole)
-    about_beam = gentle(times, about_beam, weight, _and_next(~(held | out_of_reach)) & (weight > 0), scale)
-    from_beam, weight = unwrapped(times, across, loads[:, 0], whole)
-    from_beam = gentle(times, from_beam, weight, _and_next(~held), scale)
+    full_load = MIN_TRANSVERSE_LOAD if idle is None else idle
+    time_scale = _QUICK if arm is None else float(np.sqrt(_number(arm) / full_load))
+    load_across = np.linalg.norm(loads[:, 1:], axis=1)
+    about_beam, weight = unwrapped(times, loads[:, 2], loads[:, 1], full_load)
+    about_beam = gentle(times, about_beam, weight, _with_neighbours(~(held | out_of_reach)) & (weight > 0), time_scale)
+    from_beam, weight = unwrapped(times, load_across, loads[:, 0], full_load)
+    from_beam = gentle(times, from_beam, weight, _with_neighbours(~held), time_scale)
     if not gravity:
         from_beam = np.where(held, off_axis(from_beam), from_beam)
     return PiecewiseLinear(*_padded(times, np.stack([about_beam, from_beam], axis=1)))
 
 
-def _and_next(flags: Flags) -> Flags:
+def _with_neighbours(flags: Flags) -> Flags:
     """The knots and their neighbours: between them the load may cross idle."""
     return np.asarray(flags | np.append(flags[1:], False) | np.append(False, flags[:-1]))
 
@@ -202,17 +204,18 @@ def _number(arm: Any) -> float:
 
 
 def _gate(times: Floats, size: Floats, idle: float | None, leave_out: Stretches) -> PiecewiseLinear | None:
-    """Gate over time: zero on returns above idle that are to be left out, one on others, straight from one to the next;
-    None if it is one throughout.
+    """Gate over time: 0 on returns above idle that `leave_out` names, 1 on other returns, linear in between. None if
+    all are 1.
     """
     if idle is None or not leave_out:
         return None
     gate = np.full(times.size, np.nan)
+    # Returns that are fewer than four knots apart count as one.
     for run in joined(true_runs(size > PARTED * idle), np.arange(times.size, dtype=float), 4):
         closed = any(times[run.start] <= end and start <= times[run.stop - 1] for start, end in leave_out)
         gate[run] = 0.0 if closed else 1.0
-    known = np.isfinite(gate)
-    return PiecewiseLinear(times[known], gate[known]) if known.any() else None
+    is_set = np.isfinite(gate)
+    return PiecewiseLinear(times[is_set], gate[is_set]) if is_set.any() else None
 
 
 def _padded(times: Floats, values: Floats) -> tuple[Floats, Floats]:
@@ -225,15 +228,17 @@ def _padded(times: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
-    """Knots of `raw` and a grid of `step`, s, without points so near a knot that a slope would be mere rounding."""
+    """Knots of `raw` and of a grid with spacing `step`, s. Points that nearly coincide are left out: slopes between
+    them would be rounding.
+    """
     least = 1e-4 * step
     first, last = raw.extent or (start, end)
     knots = raw.knots(min(step, max(_CURVE, (last - first) / _MOST)))
     knots = np.concatenate([[start], knots[(knots > start + least) & (knots < end - least)], [end]])
     knots = knots[np.diff(knots, prepend=-np.inf) > least]
     grid = sampled(start, end, step)
-    after = np.clip(np.searchsorted(knots, grid), 1, knots.size - 1)
-    distance = np.minimum(np.abs(grid - knots[after - 1]), np.abs(knots[after] - grid))
+    next_knot = np.clip(np.searchsorted(knots, grid), 1, knots.size - 1)
+    distance = np.minimum(np.abs(grid - knots[next_knot - 1]), np.abs(knots[next_knot] - grid))
     return np.union1d(knots, grid[distance > step / 4])
 
 

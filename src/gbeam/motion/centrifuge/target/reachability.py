@@ -42,7 +42,11 @@ def refuse_undirected(load: Floats, idle: float) -> None:
 
 
 def refuse_far(times: Floats, load: Floats, out_of_reach: Flags) -> None:
-    """Raise InputError: the load leaves the gimbals' reach, and no target but the flight's own is allowed."""
+    """Raise InputError: the load (k, 3) leaves the gimbals' reach, and the target may not differ from the flight's
+    load.
+
+    It names the worst time and the load across the beam that would be enough.
+    """
     if out_of_reach.all():
         raise InputError(
             "tracks",
@@ -52,12 +56,12 @@ def refuse_far(times: Floats, load: Floats, out_of_reach: Flags) -> None:
     refuse_reversal(times, load[:, 1:], OPPOSED * STANDARD_GRAVITY)
     across = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
     worst = int(np.argmin(across))
-    wrong = np.flatnonzero(out_of_reach)
+    unreached = np.flatnonzero(out_of_reach)
     raise InputError(
         "tracks",
         f"loads the beam across by {across[worst]:.3g} g only at {times[worst]:.3f} s; where gravity acts the gimbals "
-        f"reach {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g or more (out of reach from {times[wrong[0]]:.3f} s, "
-        f"last at {times[wrong[-1]]:.3f} s)",
+        f"reach {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g or more (out of reach from {times[unreached[0]]:.3f} s, "
+        f"last at {times[unreached[-1]]:.3f} s)",
         'set idle = "1.4 g", or clip = true to carry on with the nearest load in reach, '
         f"or add {missing_across(across[worst] * STANDARD_GRAVITY)} across the beam",
     )
@@ -81,7 +85,9 @@ def refuse_reversal(times: Floats, points: Floats, least: float) -> None:
 
 
 def refuse_singular(times: Floats, load: Floats, idle: float | None) -> None:
-    """Refuse a load (k, 3), without gravity, that comes so near to zero, or to the beam, that the axes would spin."""
+    """Refuse a load (k, 3), without gravity, that comes near to zero or to the beam's axis: there the
+    axes would spin.
+    """
     peak = float(np.max(np.linalg.norm(load, axis=1)))
     if idle is None:
         when, distance = nearest_to_zero(times, load)
@@ -106,6 +112,7 @@ def nearest_to_zero(times: Floats, points: Floats) -> tuple[float, float]:
         return float(times[0]), float(np.linalg.norm(points[0]))
     start, along = points[:-1], np.diff(points, axis=0)
     length2 = np.sum(along**2, axis=1)
+    # The foot of the perpendicular from zero on each segment, clipped to its ends.
     share = np.clip(-np.sum(start * along, axis=1) / np.where(length2 > 0, length2, 1.0), 0.0, 1.0)
     distance = np.linalg.norm(start + share[:, None] * along, axis=1)
     i = int(np.argmin(distance))

@@ -29,18 +29,20 @@ Row = tuple[float, float, float, float]  # start s, end s, number of the reason,
 
 
 def stretches(times: Floats, reasons: NDArray[np.int64], size: Floats, reach: Floats, flight: Profile) -> list[Row]:
-    """Rows of the stretches in which all knots, at times (k,) s, have one reason (k,) of `REASONS`, by start; an edge
-    is where `size` or `reach`, (k,) m/s² above idle and above the least that the gimbals reach, is zero.
+    """Stretches of time in which the target is not the flight's load, by their start.
+
+    `reasons` (k,) numbers the reason at each knot, of `REASONS`. An edge of a stretch lies where `size` or `reach`,
+    (k,) m/s², passes zero: the load's excess over idle, and over the least that the gimbals reach.
     """
 
     def edge(outside: int, inside: int) -> float:
-        """Time at which a reason ends and another, or none, begins: between two neighbouring knots, or at the last."""
+        """Time at which the reason changes between two neighbouring knots, by linear interpolation."""
         if outside < 0 or outside == times.size:
             return float(times[inside])
         pair = reasons[outside], reasons[inside]
-        values = reach if GIMBALS in pair and BELOW_IDLE not in pair else size
-        rise = values[outside] - values[inside]
-        share = np.clip(-values[inside] / rise, 0.0, 1.0) if rise != 0 else 1.0
+        excess = reach if GIMBALS in pair and BELOW_IDLE not in pair else size
+        rise = excess[outside] - excess[inside]
+        share = np.clip(-excess[inside] / rise, 0.0, 1.0) if rise != 0 else 1.0
         return float(times[inside] + share * (times[outside] - times[inside]))
 
     rows: list[Row] = []
@@ -61,9 +63,10 @@ def padded_rows(rows: list[Row]) -> Floats:
 
 
 def merged_edges(rows: list[Row], last: float) -> Floats:
-    """Ascending starts and ends, (16 k,) s, of stretches, joined where they touch; filled up with infinite ones.
+    """Ascending starts and ends of stretches, s, where those that touch are joined.
 
-    A stretch that lasts until `last`, the end of the span, goes on beyond.
+    A stretch that lasts until `last`, the end of the span, never ends. The array is filled up with infinite times to a
+    multiple of 16: compiled programs see few lengths.
     """
     edges: list[float] = []
     for start, end, *_ in rows:
@@ -128,16 +131,18 @@ _CARRIED = 0.2  # rad: how far a slope beside the path may carry it away
 _WIDENING = 0.3  # s per s: how its time scale grows from there
 
 
-def unwrapped(times: Floats, y: Floats, x: Floats, whole: float) -> tuple[Floats, Floats]:
-    """Angle atan2(y, x), rad, of a load (k,) m/s² over times (k,) s without jumps, and its weight (k,): the load's
-    share of a whole one, at most 1, and 0 where it is too small to have a direction.
+def unwrapped(times: Floats, y: Floats, x: Floats, full_load: float) -> tuple[Floats, Floats]:
+    """Angle atan2(y, x), rad, of a load over times (k,), s, without jumps, and the weight of the angle at each time.
+
+    `x` and `y` (k,) are components of the load, m/s². The weight is the load's share of `full_load`, at most 1. Where
+    the load is too small to have a direction the weight is 0 and the angle is interpolated.
     """
     size = np.hypot(y, x)
-    directed = size >= _DIRECTED * whole
+    directed = size >= _DIRECTED * full_load
     if not directed.any():
         return np.full(times.size, np.pi / 2), np.zeros(times.size)
     angle = np.unwrap(np.arctan2(y[directed], x[directed]))
-    return np.interp(times, times[directed], angle), np.where(directed, np.minimum(size / whole, 1.0), 0.0)
+    return np.interp(times, times[directed], angle), np.where(directed, np.minimum(size / full_load, 1.0), 0.0)
 
 
 def off_axis(angle: Floats) -> Floats:
@@ -146,38 +151,40 @@ def off_axis(angle: Floats) -> Floats:
 
 
 def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_scale: float) -> Floats:
-    """Replace the values that are not fixed by a path near them.
+    """Replace the values (k,) that are not `fixed` by a smooth path near them, at `times` (k,), s.
 
     It minimises ∫ w (z − values)² + T⁴ z''² dt with the fixed values kept, so that it leaves and meets them without a
-    corner; changes quicker than a period of 2πT are left out. T is `time_scale`, less beside fixed values that change
-    so quickly that the path would be carried far away before it turns.
-
-    `times` (k,), `values`, `weight` (k,), `fixed` (k,).
+    corner; changes quicker than a period of 2πT are left out. T is `time_scale`. It is shorter beside fixed values that
+    change quickly, since the path would go on with their slope and drift away.
     """
     if fixed.all() or times.size < 4:
         return values
     from scipy.linalg import solve_banded  # imported when a path is sought
 
-    left, right = np.diff(times)[:-1], np.diff(times)[1:]
-    stiffness = _time_scales(times, values, fixed, time_scale)[1:-1] ** 2 * np.sqrt((left + right) / 2)
-    second = 2 * stiffness * np.stack([1 / (left * (left + right)), -1 / (left * right), 1 / (right * (left + right))])
-    # At each knot in turn, the distance from the values and the weighted z'': its square, in normal equations of the
-    # distance alone, would lose all digits where knots are close.
-    band, side = np.zeros((7, 2 * times.size)), np.zeros(2 * times.size)
+    before, after = np.diff(times)[:-1], np.diff(times)[1:]
+    stiffness = _time_scales(times, values, fixed, time_scale)[1:-1] ** 2 * np.sqrt((before + after) / 2)
+    # Weighted second differences: of each inner knot, by the value before it, at it and after it.
+    both = before + after
+    second = 2 * stiffness * np.stack([1 / (before * both), -1 / (before * after), 1 / (after * both)])
+    # The unknowns are, at each knot in turn, the distance z − values and the weighted z''. Normal equations of the
+    # distance alone would square z'' and lose all digits where knots are close.
+    band, right_side = np.zeros((7, 2 * times.size)), np.zeros(2 * times.size)
     band[3, ::2] = np.where(fixed, 1.0, np.gradient(times) * np.maximum(weight, _LEAST_WEIGHT))
     band[3, 1::2] = -1.0
     rows = times.size - 2
-    knots, bends = 2 * np.arange(times.size), 2 * np.arange(1, rows + 1) + 1
+    knots, curvature_rows = 2 * np.arange(times.size), 2 * np.arange(1, rows + 1) + 1
     for i in range(3):
-        of_knot, free = knots[i : i + rows], ~fixed[i : i + rows]
-        band[3 + bends - of_knot, of_knot] = second[i] * free
-        band[3 + of_knot - bends, bends] = second[i] * free
-        side[bends] -= second[i] * values[i : i + rows]
-    return np.asarray(values + solve_banded((3, 3), band, side)[::2])
+        columns, free = knots[i : i + rows], ~fixed[i : i + rows]
+        band[3 + curvature_rows - columns, columns] = second[i] * free
+        band[3 + columns - curvature_rows, curvature_rows] = second[i] * free
+        right_side[curvature_rows] -= second[i] * values[i : i + rows]
+    return np.asarray(values + solve_banded((3, 3), band, right_side)[::2])
 
 
 def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) -> Floats:
-    """T at every knot, s: less near fixed values with a slope v, from which the path goes on by about v T."""
+    """Time scale T of the path at every knot, s. It is shorter near fixed values with a slope v: the path goes on by
+    about v T.
+    """
     scale = np.full(times.size, longest)
     for run in true_runs(~fixed):
         for edge, inward in ((run.start - 1, -1), (run.stop, 1)):
@@ -185,8 +192,8 @@ def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) ->
             if min(edge, beyond) < 0 or max(edge, beyond) >= times.size:
                 continue
             slope = abs((values[beyond] - values[edge]) / (times[beyond] - times[edge]))
-            nearest = _CARRIED / max(slope, _CARRIED / longest) + _WIDENING * np.abs(times[run] - times[edge])
-            scale[run] = np.minimum(scale[run], nearest)
+            allowed = _CARRIED / max(slope, _CARRIED / longest) + _WIDENING * np.abs(times[run] - times[edge])
+            scale[run] = np.minimum(scale[run], allowed)
     return scale
 
 
@@ -257,7 +264,7 @@ class NearestLoad(Profile):
             held = held + sized * (full - size)
             # Idle is above the least across the beam, by little where it is lowest.
             band = xp.minimum(REACH_BAND * self.least, self.idle - self.least)
-            x, yz = _reached(held * x, held * yz, self.least, band)
+            x, yz = _raised_across(held * x, held * yz, self.least, band)
         else:
             x, yz = held * x, held * yz
         load = stack([x, yz * y, yz * z])
@@ -281,11 +288,13 @@ def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Seri
     return [component / size for component in mixed]
 
 
-def _reached(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
-    """Parts along and across the beam, the latter raised to `least` where it is less, the former reduced for it."""
-    low = across.value < least + band / 2
+def _raised_across(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
+    """Raise the load across the beam smoothly to at least `least`, and reduce the load along the beam
+    to keep the size.
+    """
+    raised_part = across.value < least + band / 2
     raised = soft_floor(across, least, band)
     # Where it is raised the part along the beam is not small: idle is above the least across the beam.
-    along2, total = along * along, along * along + across * across
-    rest = where(low, (total - raised * raised) / where(low, along2, 1.0), 1.0)
-    return along * sqrt(rest), where(low, raised, across)
+    along_squared, total = along * along, along * along + across * across
+    remaining_share = where(raised_part, (total - raised * raised) / where(raised_part, along_squared, 1.0), 1.0)
+    return along * sqrt(remaining_share), where(raised_part, raised, across)
