@@ -107,9 +107,7 @@ def across(load: Floats, up: Floats) -> bool:
 
 
 def mounted(load: Any, up: Any) -> tuple[float, float, float]:
-    """Rotation vector, rad, from a specimen's axes to a hub's. It turns `load` towards the hub's axis and `up` parallel
-    to it.
-    """
+    """Rotation vector, rad, of a specimen's axes in a hub's: `load` points to the hub's axis, `up` along it."""
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which few motions need
 
     inward, upward = direction("load", load), direction("up", up)
@@ -158,8 +156,7 @@ def level_of(motion: Any) -> ArmLevel | None:
 
 
 def imbalance_of(motion: Any, level: ArmLevel | None, time: Floats, force: Floats, moment: Floats) -> Imbalance | None:
-    """Static and dynamic imbalance of what a plain arm carries, by forces (t, 3), N, and moments (t, 3), N m, on its
-    root.
+    """Static and dynamic imbalance of what loads an arm's root by forces (t, 3), N, and moments (t, 3), N m.
 
     The loads are averaged over the second half of the time at the level: deformation and swinging have settled by then.
     None without a level, if the times (t,), s, end before it, or if gravity is not along the arm's axis.

@@ -147,8 +147,7 @@ class Flight:
         return 0.0, 0.0
 
     def part_of(self, start: float, end: float) -> tuple[float, float] | None:
-        """First and last time of the whole flight, s, if the times from `start` to `end` are only a part of it; else
-        None.
+        """First and last time of the whole flight, s, if the times `start` to `end` are only a part; else None.
 
         The whole of a record is its file's. A part that lacks at most one interval of the record counts as the whole.
         None, too, if the flight has no ends, or if JAX traces it.

@@ -43,6 +43,7 @@ class Mount:
         turn: ArrayLike | None = None,
         control_point: Any | None = None,
     ) -> None:
+        """Find where the root is mounted, and how it is turned, from the control point and the pointing or the turn."""
         if pointing not in POINTINGS:
             raise InputError("pointing", f"is {pointing!r}", f"choose one of {', '.join(POINTINGS)}")
         if gravity is not None:
@@ -74,8 +75,7 @@ class Mount:
         return Base(a_WO_H @ self.R_HB, rate[..., None] * axis, acceleration[..., None] * axis)
 
     def root_acceleration(self, angle: Any, rate: Any, acceleration: Any) -> tuple[Any, Any, Any]:
-        """Components along the hub's axes, m/s², of the root's acceleration, or of its specific force where gravity
-        acts.
+        """Acceleration of the root by components along the hub's axes, m/s²; specific force where gravity acts.
 
         `angle`, rad, `rate` and `acceleration` are the hub's.
         """

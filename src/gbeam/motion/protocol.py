@@ -118,9 +118,7 @@ def implausible_values(motion: Any, where: str, span: tuple[float, float], base:
 
 
 def _flight_warnings(flight: Flight, where: str, span: tuple[float, float]) -> Iterator[str]:
-    """Warnings about a flight: notes on its record, rates that a level factor does not scale, and parts that are not
-    flown.
-    """
+    """Warnings about a flight: of its record, of rates that a level factor does not scale, and of parts left out."""
     if flight.record is not None:
         yield from (f"{where}.record: {note}" for note in flight.record.notes)
     if flight.level_factor is not None and flight.rates is not None:

@@ -365,9 +365,7 @@ class Centrifuge:
         return next(name for name, sign in MOUNTINGS.items() if sign == self.geometry.sign)
 
     def _prepared(self, start: float, end: float) -> Course:
-        """Build the course for a span of the flight's time, s. The load is taken in the axes of the module that axis 3
-        turns.
-        """
+        """Build the course for a span of the flight's time, s, with the load in axes of the module on axis 3."""
         load: Profile = self.flight.acceleration
         if any(self.turn):
             load = Turned(load, rotation_of(self.turn))

@@ -106,9 +106,7 @@ LESS = 0.1  # of the ease, with which a plan is sought again to tell what its ea
 
 @lru_cache(maxsize=4)
 def less_eased(plan: Planned, target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float) -> Planned:
-    """Plan again with :data:`LESS` times the weight of gentle motion. The search starts from `plan` and keeps its
-    knots.
-    """
+    """Plan again with :data:`LESS` times the weight of gentle motion, from `plan` and on its knots."""
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
     from gbeam.numerics.minimise import minimise
 
@@ -136,9 +134,7 @@ def _guess(time: Floats, target: Target, geometry: Geometry, ramps: tuple[Ramp, 
 
 
 def _refusal(limits: Limits, ends: Ends, ramps: tuple[Ramp, Ramp] | None) -> InputError:
-    """The error of a plan that cannot keep the limits. It names the ramp that is too short for them, or else the
-    limits.
-    """
+    """The error of a plan that cannot keep the limits: it names the ramp that is too short, or else the limits."""
     for name, ramp in zip(("spin_up", "spin_down"), ramps or (), strict=False):
         duration = getattr(ends, name)
         lacking = ramp.lengthened(limits).length - ramp.length
@@ -241,8 +237,7 @@ class Course:
         return namespace(load, rate).where(outside[..., None], self._reduced(load, rate, acceleration), load)
 
     def _reduced(self, load: Any, rate: Any, acceleration: Any) -> Any:
-        """Reduce the horizontal part of a load (..., 3) to what the arm makes at a rate, rad/s, and an acceleration,
-        rad/s².
+        """Reduce the horizontal part of a load (..., 3) to what the arm makes at its rate and acceleration.
 
         The vertical part is gravity, which stays. The part across the beam keeps its direction.
         """
@@ -268,9 +263,7 @@ def prepare(
     clip: bool,
     span: tuple[float, float],
 ) -> Course:
-    """Build the target of a load over a span, s, and solve for the axis motions, unless the method is to plan them
-    later.
-    """
+    """Build the target of a load over a span, s, and solve for the axis motions, unless they are planned later."""
     build = partial(
         build_target, load, span=span, idle=idle, smoothing=smoothing, gravity=geometry.gravity > 0, arm=geometry.arm,
         clip=clip,

@@ -33,9 +33,7 @@ def times_between(first: float, last: float, spacing: float = _GRID) -> Floats:
 
 
 def imitated(motion: Centrifuge) -> Imitated:
-    """Motions of a centrifuge and of its flight over the machine's whole run, at times that include the flight's
-    corners.
-    """
+    """Motions of a centrifuge and its flight over the machine's whole run, at the flight's corners, too."""
     (begin, end), span = (float(time) for time in motion.extent), motion.target.span
     corners = motion.flight.corners((span[1] - span[0]) / _MANY)
     corners = corners[(corners > span[0]) & (corners < span[1])]
@@ -48,9 +46,7 @@ def imitated(motion: Centrifuge) -> Imitated:
 
 
 def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
-    """Axes of a centrifuge at the times, s, ascending. The use of its limits and the warnings are those of its whole
-    run.
-    """
+    """Axes of a centrifuge at ascending times, s. Use of limits and warnings are those of its whole run."""
     whole_run = imitated(motion)
     assert whole_run.axes is not None
     flight_load = motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B

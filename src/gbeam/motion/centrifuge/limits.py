@@ -91,6 +91,7 @@ class Limits:
     power: Any  # W
 
     def __init__(self, limits: MachineLimits | None = None) -> None:
+        """Collect the limits in arrays, with infinity for those that are not given."""
         machine = MachineLimits() if limits is None else limits
         if machine.power is not None and machine.inertia is None:
             raise InputError("limits.power", "is given without the inertia", 'add inertia = "2000 kg m^2" of the arm')

@@ -152,7 +152,7 @@ def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> 
 
 
 def as_profile(where: str, value: Any, components: int = 1) -> Profile:
-    """The profile itself, or the constant one of a number or of three."""
+    """The profile itself, or a constant one of a number or of three. InputError unless it has as many `components`."""
     if isinstance(value, Profile):
         profile = value
     else:

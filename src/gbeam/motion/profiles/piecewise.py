@@ -32,6 +32,7 @@ class PiecewiseLinear(Profile):
     summary: RecordSummary | None = static()  # of the flight's record that it is
 
     def __init__(self, times: Any, values: Any, *, record: RecordSummary | None = None) -> None:
+        """Refuse times and values that make no profile, and compute the slopes between them."""
         t, v = (array[None] if array.ndim == 0 else array for array in (as_array(times), as_array(values)))
         if t.ndim != 1 or t.size == 0:
             raise InputError("times", f"has shape {t.shape}", "give a list of one time or more")
@@ -126,6 +127,7 @@ class SmoothedPiecewiseLinear(Rounded):
     count: int = static()  # most knots that one window can hold
 
     def __init__(self, table: PiecewiseLinear, width: Any) -> None:
+        """Compute the bends at the knots, and how many knots one window of the kernel can hold."""
         t, slopes, width = table.times, table.slopes, as_array(width)
         xp = namespace(t, slopes)
         count = t.size
@@ -137,6 +139,7 @@ class SmoothedPiecewiseLinear(Rounded):
         assign(self, table=table, bends=bends, times=xp.append(t, t[-1]), width=width, count=count)
 
     def series(self, t: Any, order: int) -> Series:
+        """Values and derivatives at times `t`, s: the line at the window's begin, and a rounded ramp for each bend."""
         now = as_array(t)
         xp = namespace(now, self.times, self.bends, self.width)
         times, bends = xp.asarray(self.times), xp.asarray(self.bends)
@@ -145,11 +148,12 @@ class SmoothedPiecewiseLinear(Rounded):
             count = int((np.searchsorted(times[:-1], now + self.width / 2, side="right") - first).max())
             if now.ndim == 1 and now.size * count > TOGETHER:
                 return Series.in_pieces(lambda piece: self.series(piece, order), now, 1 + now.size * count // TOGETHER)
-        near = xp.minimum(first[..., None] + np.arange(count), times.size - 1)
-        ramps = hann_orders(0, order, (now[..., None] - times[near]) / self.width)
-        bent = bends[near]
+        # Each knot in the window adds its bend times a rounded ramp.
+        knots = xp.minimum(first[..., None] + np.arange(count), times.size - 1)
+        ramps = hann_orders(0, order, (now[..., None] - times[knots]) / self.width)
+        knot_bends = bends[knots]
         subscripts = "...j,...jv->...v" if bends.ndim > 1 else "...j,...j->..."
-        rounded = [xp.einsum(subscripts, ramp, bent) * self.width ** (1 - k) for k, ramp in enumerate(ramps)]
+        rounded = [xp.einsum(subscripts, ramp, knot_bends) * self.width ** (1 - k) for k, ramp in enumerate(ramps)]
         return _line(self.table, now, first, order) + Series.of(rounded, order)
 
     @property

@@ -120,8 +120,9 @@ def smoothed(profile: Profile, width: Any) -> Profile:
 
 
 def rounded_corners(corners: Any, width: float, step: float) -> Floats:
-    """Corners, s, that steps should not pass unseen if a kernel rounds them: none where steps resolve its `width`, else
-    at least a quarter of it apart.
+    """Corners, s, that steps must not miss if a kernel rounds them, at least a quarter of its `width` apart.
+
+    There are none if steps of length `step` resolve the width.
     """
     spacing, times = float(width) / STEPS_PER_EVENT, np.asarray(corners, dtype=np.float64)
     if spacing >= step or not times.size:
@@ -270,6 +271,7 @@ class Convolved(Rounded):
         assign(self, width=as_array(self.width))
 
     def series(self, t: Any, order: int) -> Series:
+        """Values and derivatives at times `t`, s, by Gauss's rule on panels between the breaks in each window."""
         now, breaks, width = as_array(t), self.profile.breaks, self.width
         xp = namespace(now, breaks, width)
         nodes = (breaks.size + 1) * _POINTS.size

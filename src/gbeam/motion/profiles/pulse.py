@@ -147,6 +147,7 @@ class SplineProfile(Profile):
     start: Any = 0.0
 
     def __post_init__(self) -> None:
+        """Refuse a duration that is not positive, and too few coefficients for a flat begin and end."""
         coefficients = array("coefficients", self.coefficients)
         if coefficients.ndim != 1 or len(coefficients) < 2 * DEGREE + 1:
             raise InputError("coefficients", f"have the shape {coefficients.shape}", "give eleven or more in a row")
@@ -191,7 +192,10 @@ class SplineProfile(Profile):
 
 
 def through(duration: float, time: Any, values: Any, pieces: int) -> SplineProfile:
-    """Least-squares spline of values (t,) at times (t,) from 0 to the duration, s, flat at the first and last value."""
+    """Least-squares spline of values (t,) at times (t,) from 0 to the duration, s.
+
+    It is flat at the first and the last value: the first and last coefficients are those values.
+    """
     basis = Spline(0.0, duration / pieces, np.eye(pieces + DEGREE))(time)
     coefficients = np.zeros(pieces + DEGREE)
     coefficients[:DEGREE], coefficients[-DEGREE:] = values[0], values[-1]

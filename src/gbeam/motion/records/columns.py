@@ -102,12 +102,12 @@ def refuse_other_axes(table: Table, names: dict[str, str], turns: dict[str, str]
 
 
 def _rate_advice(table: Table, turns: dict[str, str], rates: Floats, fitting: list[Floats]) -> str:
-    """Advice on the columns of p, q and r: those of the only rotation that fits the loads; else to take the loads'
-    signs.
-    """
+    """Advice on the columns of p, q and r, by the only rotation that fits the loads; else on their signs."""
+    # Columns of rates by the axis of the file that their names say.
     columns = {int(np.abs(row).argmax()): table.signed(turns[key])[1] for key, row in zip("pqr", rates, strict=True)}
     axes = [] if len(fitting) != 1 else [int(np.abs(row).argmax()) for row in fitting[0]]
-    if not axes or not np.abs(rates).any(axis=1).all() or set(columns) != set(axes):
+    all_names_say_axes = np.abs(rates).any(axis=1).all()
+    if not axes or not all_names_say_axes or set(columns) != set(axes):
         return "give p, q and r the signs and the order of x, y and z"
     signs = ("-" if row.sum() < 0 else "" for row in fitting[0])
     named = zip("pqr", signs, axes, strict=True)
@@ -115,21 +115,22 @@ def _rate_advice(table: Table, turns: dict[str, str], rates: Floats, fitting: li
 
 
 def _mapping(table: Table, names: dict[str, str], pattern: re.Pattern[str]) -> Floats:
-    """Components of three columns (3, 3): by rows their signs, by columns the axes that their names say, as letters or
-    as the three vectors of one array; rows of zeros where they say none.
+    """Axes that the names of three columns say, (3, 3): a row for each column has its sign at that axis.
+
+    Names say an axis by a letter, or as the three vectors of one array. Rows of columns that say none are zero.
     """
     signed = [table.signed(name) for name in names.values()]
     matches = [[pattern.fullmatch(word) for word in words_of(column or "")] for _, column in signed]
-    axes = [[_AXIS_OF[match.group(match.lastindex or 0)] for match in each if match] for each in matches]
+    axes = [[_AXIS_OF[match.group(match.lastindex or 0)] for match in in_words if match] for in_words in matches]
     indexed = [_VECTOR.fullmatch(column or "") for _, column in signed]
     if not any(axes) and all(indexed):
-        stems, numbers = zip(*((each[1], int(each[2])) for each in indexed if each), strict=True)
+        stems, numbers = zip(*((match[1], int(match[2])) for match in indexed if match), strict=True)
         if len(set(stems)) == 1 and sorted(numbers) in ([0, 1, 2], [1, 2, 3]):
             axes = [[number - min(numbers)] for number in numbers]
     mapping = np.zeros((3, 3))
-    for row, (sign, _), known in zip(mapping, signed, axes, strict=True):
-        if len(known) == 1:
-            row[known[0]] = sign
+    for row, (sign, _), axes_of_name in zip(mapping, signed, axes, strict=True):
+        if len(axes_of_name) == 1:
+            row[axes_of_name[0]] = sign
     return mapping
 
 
@@ -139,7 +140,7 @@ def _fits(rotation: Floats, mapping: Floats) -> bool:
 
 
 def load_factors(table: Table, names: dict[str, str], unit: str, *, specific: bool) -> Iterator[str]:
-    """Warn of columns that are load factors by their names, and are taken for something else."""
+    """Warn of columns that are load factors by their names, but are read in another unit than g or as acceleration."""
     columns = [column for _, column in map(table.signed, names.values()) if column is not None]
     factors = [column for column in columns if _FACTOR.search(" ".join(words_of(column)))]
     if factors and unit != "g":

@@ -25,7 +25,7 @@ _NEARLY = 0.99  # of a rate: what is that near to it is not below it
 
 
 def dropout(values: Floats, step: float) -> tuple[int, int] | None:
-    """First and last sample of a stretch in which a channel stands still and ends, or began, with a jump.
+    """First and last sample of a stretch without change that begins or ends with a jump; None if there is none.
 
     A true plateau is entered and left by a corner: the first change beside it is like the next. After a dropout the
     channel has gone on in the meantime, and jumps by much more than in the samples beside the jump. A channel that is
@@ -39,11 +39,11 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
         fewest = 3 if values[first] == 0 else 5
         if last - first + 1 < fewest:
             continue
-        for jump, beside in (
+        for jump, neighbours in (
             (change[last : last + 1], change[last + 1 : last + 4]),
             (change[max(first - 1, 0) : first], change[max(first - 4, 0) : max(first - 1, 0)]),
         ):
-            if jump.size and beside.size and abs(jump[0]) > max(LEAST_JUMP, 3 * float(np.abs(beside).max())):
+            if jump.size and neighbours.size and abs(jump[0]) > max(LEAST_JUMP, 3 * float(np.abs(neighbours).max())):
                 return int(first), int(last)
         if last < len(values) - 1 or (last - first) * step < 0.5 or first < 3:
             continue
@@ -54,12 +54,12 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
 
 
 def spikes(load: Floats, least_jump: float = LEAST_JUMP) -> Flags:
-    """Flags (t, n) of spikes, per channel: runs of up to five samples between two jumps, far off what is around them.
+    """Flags (t, n) of spikes, per channel: runs of up to five samples between two jumps, far off their surroundings.
 
-    Off is measured from the straight line between the medians of the three samples before a run and after it, which is
-    that of a flank too. All of a run is off, its neighbours are not; far is six deviations of what runs of its length
-    are off nearby, and in the whole record. Of bad samples between good ones and good ones between bad, the shorter and
-    outer ones are bad.
+    The deviation is measured from the straight line between the medians of the three samples before a run and after it,
+    which follows a flank, too. All of a run deviates, its neighbours do not. Far means six times the usual deviation of
+    runs of its length, both nearby and in the whole record. If bad samples alternate with good ones, the shorter and
+    outer runs are taken for the bad ones.
     """
     flags = np.zeros(load.shape, dtype=bool)
     padded = np.pad(load, ((_SIDE, _SIDE), (0, 0)), mode="reflect", reflect_type="odd")  # a slope goes on
@@ -68,20 +68,20 @@ def spikes(load: Floats, least_jump: float = LEAST_JUMP) -> Flags:
         count = len(load) - length + 1  # of runs, by their first sample
         before, after = middle[:count], middle[length + _SIDE : length + _SIDE + count]
         lines = (before + (after - before) * (k + 2) / (length + 3) for k in range(-1, length + 1))
-        off = [np.abs(padded[k + _SIDE :][:count] - line) for k, line in enumerate(lines, start=-1)]
-        least, mean = np.minimum.reduce(off[1:-1]), np.mean(off[1:-1], axis=0)
-        far = np.maximum(_OUTLIER * _SPREAD * np.median(mean, axis=0), least_jump)
-        beside = np.maximum(off[0], off[-1])
-        run = (least > far) & (beside < _BESIDE * least)
-        run &= ~np.logical_or.reduce([flags[k:][:count] for k in range(length)])
-        first, channel = np.nonzero(run)
+        deviation = [np.abs(padded[k + _SIDE :][:count] - line) for k, line in enumerate(lines, start=-1)]
+        least, mean = np.minimum.reduce(deviation[1:-1]), np.mean(deviation[1:-1], axis=0)
+        limit = np.maximum(_OUTLIER * _SPREAD * np.median(mean, axis=0), least_jump)
+        neighbour_deviation = np.maximum(deviation[0], deviation[-1])
+        is_spike = (least > limit) & (neighbour_deviation < _BESIDE * least)
+        is_spike &= ~np.logical_or.reduce([flags[k:][:count] for k in range(length)])
+        first, channel = np.nonzero(is_spike)
         distances = length + _SIDE + np.arange(_NEARBY)
         nearby = np.clip(first + np.concatenate([-distances, distances])[:, None], 0, count - 1)
-        far = np.maximum(_OUTLIER * _SPREAD * np.median(mean[nearby, channel], axis=0), far[channel])
-        run[first, channel] = (least[first, channel] > far) & (beside[first, channel] < far)
-        run[length:-length] &= ~(run[: -2 * length] & run[2 * length :])
+        limit = np.maximum(_OUTLIER * _SPREAD * np.median(mean[nearby, channel], axis=0), limit[channel])
+        is_spike[first, channel] = (least[first, channel] > limit) & (neighbour_deviation[first, channel] < limit)
+        is_spike[length:-length] &= ~(is_spike[: -2 * length] & is_spike[2 * length :])
         for k in range(length):
-            flags[k:][:count] |= run
+            flags[k:][:count] |= is_spike
     return flags
 
 
@@ -90,19 +90,22 @@ def _median_of_three(a: Floats, b: Floats, c: Floats) -> Floats:
 
 
 def flat_tops(values: Floats) -> Iterator[tuple[float, list[slice]]]:
-    """Values at which a channel, m/s², is cut off, and where: an extreme that successive samples have exactly.
+    """Values, m/s², at which a channel is cut off, and where: an extreme that successive samples have exactly.
 
-    A curve that is cut off arrives steadily, or by a step larger than the sensor's resolution; one of which a coarse
-    sensor makes a level does neither. A record that begins or ends there, such as in level flight, is not cut off.
+    A curve that is cut off arrives there steadily, or by a step larger than the sensor's resolution. A level of a
+    coarse sensor does neither. A record that begins or ends there, such as in level flight, is not cut off.
     """
     top, bottom = float(values.max()), float(values.min())
-    for extreme, outwards, sign in ((top, top > _FULL, 1.0), (bottom, bottom < -_FULL, -1.0)):
+    for extreme, is_large, sign in ((top, top > _FULL, 1.0), (bottom, bottom < -_FULL, -1.0)):
         runs = [run for run in true_runs(values == extreme) if run.start > 0 and run.stop < len(values)]
         runs = [run for run in runs if run.stop - run.start >= _FLAT]
-        rise, finest = sign * np.diff(values), np.diff(np.unique(values)).min(initial=np.inf)
+        changes, finest = sign * np.diff(values), np.diff(np.unique(values)).min(initial=np.inf)
         # Steps that lead to the extreme, from before a run and, backwards, from after it.
-        ways = [way for run in runs for way in (rise[: run.start][-_STEADY:], -rise[run.stop - 1 :][:_STEADY][::-1])]
-        if outwards and any(way[-1] > _STEP * finest or (len(way) == _STEADY and way.min() > 0) for way in ways):
+        approaches = []
+        for run in runs:
+            approaches += [changes[: run.start][-_STEADY:], -changes[run.stop - 1 :][:_STEADY][::-1]]
+        is_cut = [steps[-1] > _STEP * finest or (len(steps) == _STEADY and steps.min() > 0) for steps in approaches]
+        if is_large and any(is_cut):
             yield extreme, runs
 
 
@@ -113,7 +116,7 @@ def without_spikes(time: Floats, load: Floats, at: Flags) -> Floats:
 
 
 def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float | None) -> tuple[Floats, Floats]:
-    """Times (t,), s, and values (t, n): low-pass at `cutoff`, then splined to `resample`, both Hz; None skips one."""
+    """Times (t,), s, and values (t, n) after a low-pass at `cutoff` and a spline to `resample`, Hz, if not None."""
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if cutoff is not None:
         if np.abs(np.diff(time) - step).max() > UNEVEN * step:
@@ -138,9 +141,9 @@ def filtered(time: Floats, values: Floats, cutoff: float | None, resample: float
     per_sample = 24.0 * values[0].size  # bytes, with the spline
     fix = f"give {SAMPLES / length:.3g} Hz or less"
     refuse_more("record.resample", "samples", length * rate, SAMPLES, per_sample, fix)
-    fresh = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
-    fresh = np.minimum(fresh, time[-1])
-    return fresh, _splined(time, values, fresh)
+    new_times = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
+    new_times = np.minimum(new_times, time[-1])
+    return new_times, _splined(time, values, new_times)
 
 
 def _splined(time: Floats, values: Floats, fresh: Floats) -> Floats:

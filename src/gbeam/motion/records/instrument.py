@@ -60,15 +60,14 @@ class Instrument:
     def axes(
         self, times: Times, load: Floats, rates: Floats, counted: Callable[[int], str], *, specific: bool
     ) -> tuple[Floats, list[str], tuple[float, float] | None]:
-        """Return the rotation matrix from the block's to base axes, what is done in words, and first and last time of
-        the level stretch.
+        """Return the rotation from the block's to base axes, words for it, and the ends of the level stretch, s.
 
         Loads (t, 3), m/s², and rates (t, 3) or (t, 0), rad/s, are in axes of the block.
         """
-        matrix, done, ends = np.eye(3), list[str](), None
+        matrix, notes, ends = np.eye(3), list[str](), None
         if np.any(turn := vector("record.turn", self.turn)):
             matrix = rotation_of(turn)
-            done.append(f"the block's axes are turned by {_words(turn)} in base axes")
+            notes.append(f"the block's axes are turned by {_words(turn)} in base axes")
         if self.level is not None:
             if not specific:
                 problem = "is given, and the record holds acceleration, which is none at rest"
@@ -78,25 +77,28 @@ class Instrument:
             span = f"from {ends[0]:.6g} to {ends[1]:.6g} s"
             tilt = _tilt(load[stretch] @ matrix.T, rates[stretch], span)
             matrix = rotation_of(tilt) @ matrix
-            done.append(f"levelled by the rest {span}: turned by {_words(tilt)} in base axes")
-        return matrix, done, ends
+            notes.append(f"levelled by the rest {span}: turned by {_words(tilt)} in base axes")
+        return matrix, notes, ends
 
     def carried(self, time: Floats, load: Floats, rates: Floats) -> tuple[Floats, list[str]]:
-        """Return the load (t, 3), m/s², at the root, and what is done in words; rates (t, 3), rad/s, in base axes.
+        """Return the load (t, 3), m/s², at the root instead of at the instrument, and words for it. Rates (t, 3),
+        rad/s, are in base axes.
 
-        Angular accelerations are those that the flight turns with: derivatives of the rates without their corners.
+        Angular accelerations are derivatives of the rates without their corners: the flight turns with these.
         """
         if not any(self.arm):
             return load, []
         turning = body_rates(PiecewiseLinear(time, rates))
         root = moved(Base(load, *turning.derivatives(time)), np.array(self.arm)).a_WO_B
-        most = np.linalg.norm(root - load, axis=1).max() / STANDARD_GRAVITY
-        arm = ", ".join(f"{1e3 * each:.4g}" for each in self.arm)
-        return root, [f"at the root, ({arm}) mm from the instrument: turning adds up to {most:.4g} g"]
+        largest_change = np.linalg.norm(root - load, axis=1).max() / STANDARD_GRAVITY
+        arm = ", ".join(f"{1e3 * component:.4g}" for component in self.arm)
+        return root, [f"at the root, ({arm}) mm from the instrument: turning adds up to {largest_change:.4g} g"]
 
 
 def _tilt(load: Floats, rates: Floats, span: str) -> Floats:
-    """Rotation vector that makes the mean of a load (t, 3) point along z; InputError unless it is one at rest."""
+    """Rotation vector that turns the mean of a load (t, 3) to point along z. InputError unless the load
+    is one at rest.
+    """
     mean = mean_of("level", load, rates, span, _REST)[0] / STANDARD_GRAVITY
     size = float(np.linalg.norm(mean))
     if abs(size - 1) > _SIZE:

@@ -149,8 +149,8 @@ def read_flight(
     section: str | None = None,
     **options: Any,
 ) -> FlightRecord:
-    """Read a record with the body's rates, and say what was done to it. The options are those of
-    :meth:`Recording.read`.
+    """Read a record with the body's rates, and say what was done to it; see :func:`read_record`, and
+    :meth:`Recording.read` for the options.
     """
     recording = Recording.read(path, time, x, y, z, unit, **options)
     flight = recording.flight(*span, section)
@@ -266,8 +266,7 @@ class Recording:
         )  # fmt: skip
 
     def part(self, span: Span, section: str | None) -> tuple[slice, tuple[float, float]]:
-        """Return the samples within a span and a section, and the first and last time, s, of the section or else of the
-        file.
+        """Return the samples within a span and a section, and the ends, s, of the section or else of the file.
 
         InputError if one of the samples is no number.
         """
@@ -400,7 +399,7 @@ def _times(
     *,
     trust: bool,
 ) -> Times:
-    """Times of the samples: from the column `name`, or, in place of it, from a sample rate, Hz."""
+    """Times of the samples, of the column `name`, or at a rate in place of it."""
     if name is None or rate is not None:
         if name is not None:
             raise InputError("record.sample_rate", "is given beside time", "give one of them")

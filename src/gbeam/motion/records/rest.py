@@ -91,9 +91,7 @@ class Offsets:
         return np.asarray(self.values[k] + share[:, None] * (self.values[k + 1] - self.values[k]))
 
     def carried_on(self, first: float, last: float) -> list[str]:
-        """Warn if the offsets' drift is extrapolated by more than the time between the stretches at rest that it comes
-        from.
-        """
+        """Warn if the offsets' drift is extrapolated by more than the time within which it was observed."""
         if len(self.times) < 2:
             return []
         extrapolated = max(self.times[0] - first, last - self.times[-1])

@@ -79,9 +79,7 @@ def refuse_unlevel(whole: Samples, skip: Collection[str]) -> None:
 
 
 def _refuse_unlevel(record: Samples, load: Floats, size: Floats, skip: Collection[str]) -> None:
-    """Judge level flight by the load (t, 3) without spikes and its size (t,). A fragment of less than 2 s need hold
-    none.
-    """
+    """Judge level flight by the load (t, 3) without spikes, of `size` (t,); a fragment below 2 s need hold none."""
     if not _flies(record):
         return
     if "unit" not in skip:
@@ -111,9 +109,7 @@ def _trust(check: str, otherwise: str = "if the record is right as it is") -> st
 
 
 def _check_spikes(record: Samples, spiked: Flags, size: Floats) -> None:
-    """Refuse a spike that would be the record's peak. `spiked` (t, 3) marks spikes, `size` (t,) is the load without
-    them.
-    """
+    """Refuse a spike that would be the record's peak: where `spiked` (t, 3); `size` (t,) is without spikes."""
     raw_size = np.linalg.norm(record.load, axis=1)
     i = int(np.argmax(np.where(spiked.any(axis=1), raw_size, 0)))
     calm_size, largest = size.max(), LARGEST * STANDARD_GRAVITY
@@ -130,7 +126,7 @@ def _check_spikes(record: Samples, spiked: Flags, size: Floats) -> None:
 
 
 def _check_size(record: Samples, size: Floats) -> None:
-    """Refuse a load that nothing withstands in the declared unit."""
+    """Refuse a load that nothing withstands, in the declared unit."""
     i = int(size.argmax())
     if size[i] > LARGEST * STANDARD_GRAVITY:
         raise InputError(
@@ -142,7 +138,7 @@ def _check_size(record: Samples, size: Floats) -> None:
 
 
 def _check_level(record: Samples, size: Floats) -> None:
-    """Refuse a load that is level flight in another unit and no flight in the declared one."""
+    """Refuse a load that would be level flight in another unit, and is none in the declared one."""
     if not _is_flight(record, size, record.unit.size):
         peak = float(size.max())
         raise InputError(
@@ -234,7 +230,7 @@ def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
 
 
 def _check_dropouts(record: Samples) -> None:
-    """Refuse a channel that stands still where a sensor dropped out."""
+    """Refuse a channel that stops changing where a sensor dropped out."""
     step = float(np.median(np.diff(record.time)))
     for values, (axis, name) in zip(record.load.T, record.names.items(), strict=True):
         still = dropout(values, step)
@@ -259,7 +255,9 @@ _LISTED = 4  # flat tops
 
 
 def curves(time: Floats, load: Floats, rates: Floats) -> Curves:
-    """Summarise a load (t, 3), m/s², and rates (t, 3) or none (t, 0), rad/s, at times (t,), s."""
+    """Summary of a load (t, 3), m/s², and rates (t, 3), rad/s, or none (t, 0), at times (t,), s: rate,
+    ranges and peak.
+    """
     top = int(np.linalg.norm(load, axis=1).argmax())
     return Curves(
         samples=len(time),
@@ -273,10 +271,10 @@ def curves(time: Floats, load: Floats, rates: Floats) -> Curves:
 
 
 def oddities(record: Samples) -> Iterator[str]:
-    """Warn where a sensor seems to have been at the end of its range, and of a largest load along the beam."""
+    """Warn if a sensor seems to have reached the end of its range, and if the largest load lies along the beam."""
     for (axis, name), values in zip(record.names.items(), record.load.T, strict=True):
         for extreme, runs in flat_tops(values):
-            listed = ", ".join(
+            stretches = ", ".join(
                 f"{record.time[run.start]:g} to {record.time[run.stop - 1]:g} s "
                 f"({rows(record.place(run.start), record.place(run.stop - 1))})"
                 for run in runs[:_LISTED]
@@ -284,7 +282,7 @@ def oddities(record: Samples) -> Iterator[str]:
             rest = f" and {len(runs) - _LISTED} times more" if len(runs) > _LISTED else ""
             yield (
                 f"{axis}, column {name.lstrip('-')!r}, stands at its extreme, {record.said(extreme)}, from "
-                f"{listed}{rest}: its sensor seems to be at the end of its range, and what is beyond is lost"
+                f"{stretches}{rest}: its sensor seems to be at the end of its range, and what is beyond is lost"
             )
     size = np.linalg.norm(record.load, axis=1)
     top = int(size.argmax())
@@ -297,7 +295,7 @@ def oddities(record: Samples) -> Iterator[str]:
 
 
 def level(record: Samples) -> Level | None:
-    """Longest stretch of level flight, of a second at least, with its mean load; None without any."""
+    """Longest stretch of level flight, of at least a second, with its mean load; None without any."""
     if not record.specific or record.vehicle != "aircraft":
         return None
     in_g = np.linalg.norm(record.load, axis=1) / STANDARD_GRAVITY

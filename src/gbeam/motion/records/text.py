@@ -84,7 +84,7 @@ def _labview(header: dict[str, list[str]], count: int) -> tuple[list[str], tuple
 
 
 def _decoded(path: str | os.PathLike[str]) -> str:
-    """Text of a file, in the encoding of its mark, or UTF-8, or Latin-1."""
+    """Text of a file, in the encoding of its byte order mark, or UTF-8 or Latin-1. InputError if it is no text."""
     try:
         fix = f"cut the record, or save it as HDF5, of which {in_bytes(BINARY_BYTES)} are read"
         refuse_large_file("record.file", path, TEXT_BYTES, fix)
@@ -108,9 +108,7 @@ def _decoded(path: str | os.PathLike[str]) -> str:
 
 
 def _dialect(path: str | os.PathLike[str], body: list[str]) -> tuple[str, int]:
-    """Delimiter and number of columns. The delimiter is that by which the largest share of cells are numbers or times
-    of day.
-    """
+    """Delimiter, and number of columns, for which the largest share of cells are numbers or times of day."""
     best_share, delimiter, width = 0.0, "", 0
     for candidate in _DELIMITERS:
         rows = [_cells(line, candidate) for line in body]

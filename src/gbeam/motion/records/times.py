@@ -71,22 +71,26 @@ class Times:
         return float(self.values.min()), float(self.values.max())
 
     def part(self, span: Span, counted: Callable[[int], str], keys: tuple[str, str] = ("from", "to")) -> slice:
-        """Return the samples within a span of the record's own clock, which the scenario gives at `keys`."""
+        """Return the samples within a span of the record's own clock; `keys` are those at which the scenario gives it.
+
+        InputError if an end lies outside the record, or if too few samples are left.
+        """
         if span == (None, None):
             return slice(0, len(self.values))
         first, last = self.ends
         interval = float(np.median(np.abs(np.diff(self.values))))
-        shown = f"{first:g} to {last:g} s" + ("" if self.zero is None else f", 0 s being {self.zero.first}")
+        extent = f"{first:g} to {last:g} s" + ("" if self.zero is None else f", 0 s being {self.zero.first}")
 
         def read(key: str, value: float | str | None, otherwise: float) -> float:
+            """Time, s, of an end of the span; `otherwise` where it is None."""
             if value is None:
                 return otherwise
             number = self.zero.seconds(value) if isinstance(value, str) and self.zero is not None else value
             if number is None or isinstance(number, str):
-                raise InputError(f"record.{key}", f"is {value!r}", f"give a time of the record's own clock, {shown}")
+                raise InputError(f"record.{key}", f"is {value!r}", f"give a time of the record's own clock, {extent}")
             if not first - interval <= number <= last + interval:
-                what = value if isinstance(value, str) else f"{value:g} s"
-                raise InputError(f"record.{key}", f"is {what}, and the record lasts {shown}", "give a time of it")
+                text = value if isinstance(value, str) else f"{value:g} s"
+                raise InputError(f"record.{key}", f"is {text}, and the record lasts {extent}", "give a time of it")
             return float(number)
 
         begin, end = read(keys[0], span[0], first), read(keys[1], span[1], last)
@@ -94,7 +98,7 @@ class Times:
         inside = np.flatnonzero((self.values >= begin - slack) & (self.values <= end + slack))
         if inside.size < FEWEST:
             problem = f"leaves {counted(inside.size)} from {begin:g} to {end:g} s"
-            fix = f"give more of {shown}: {FEWEST} samples at least"
+            fix = f"give more of {extent}: {FEWEST} samples at least"
             raise InputError(f"record.{keys[span[1] is not None]}", problem, fix)
         return slice(int(inside[0]), int(inside[-1]) + 1)
 
@@ -121,8 +125,7 @@ class Timeline:
         evened: bool,
         judge: Callable[[Floats], None],
     ) -> Timeline:
-        """Build the timeline of the `part` of a record with values (t, k). `judge` refuses times, in order, of a wrong
-        unit.
+        """Timeline of the `part` of a record with values (t, k). `judge` refuses times, in order, of a wrong unit.
 
         If samples are `evened` out later, times may jitter, repeat and come late, and lost samples of gaps up to
         `bridge`, s, are put on straight lines; InputError otherwise.
@@ -216,9 +219,7 @@ def _averaged(values: Floats, order: Indices, starts: Indices) -> Floats:
 
 
 def _gaps(time: Floats, place: Place, bridge: float | None, *, evened: bool) -> tuple[Gap, ...]:
-    """Gaps in the times (t,), s, all of which are to be bridged. InputError, which lists them, if they may not be
-    bridged.
-    """
+    """Gaps in the times (t,), s, which are to be bridged. InputError, which lists them, if they may not be."""
     steps = np.diff(time)
     usual = float(np.median(steps))
     gap_starts = np.flatnonzero(steps > _GAP * usual)
@@ -256,9 +257,7 @@ def _bridged(time: Floats, values: Floats, gaps: Sequence[Gap]) -> tuple[Floats,
 
 
 def _unevenness(time: Floats, place: Place, *, evened: bool) -> float:
-    """Largest distance of the times (t,), s, from equally spaced ones; zero if slight. InputError unless samples are
-    `evened`.
-    """
+    """Largest distance of the times (t,), s, from even ones, zero if slight. InputError unless they are `evened`."""
     steps = np.diff(time)
     median = float(np.median(steps))
     uneven = np.flatnonzero(np.abs(steps - median) > UNEVEN * median)

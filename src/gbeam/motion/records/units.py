@@ -138,9 +138,9 @@ def bracketed(name: str) -> tuple[str, str] | None:
 
 
 def unit_in_name(name: str) -> str:
-    """Unit in which a column's name ends, as files spell it: g of ``a_z_g``, rad/s of ``p_rad_s``; empty if none.
+    """Unit at the end of a column's name, as files spell it: g of ``a_z_g``, rad/s of ``p_rad_s``; else empty.
 
-    It stands behind a separator, or has two letters: ``timeUS`` is in µs, ``accHighG`` in nothing.
+    It follows a separator, or has two letters: ``timeUS`` is in µs, ``accHighG`` has no unit.
     """
     stem = _INDEX.sub("", name)
     *before, last = _separated(stem) or [""]
@@ -165,16 +165,18 @@ def spelled(text: str, quantity: str) -> str | None:
 
 
 def sized(key: str, quantity: str, text: str) -> tuple[Unit, str | None]:
-    """Return the unit that a scenario names at a key of its record, and, where it sizes the numbers of the file, such
-    as ``1 g / 2048`` or ``1 g / 100 mV``, in which unit these are; None where it is one of ``UNITS`` itself.
+    """Return the unit that a scenario names at a key of its record, and the file's unit if it sizes that.
+
+    Sizes are such as ``1 g / 2048`` or ``1 g / 100 mV``, for counts or mV. The second is None for one of ``UNITS``
+    itself.
     """
     match = _SIZED.fullmatch(text.strip())
     unit = None if match is None else spelled(match[2], quantity)
     if match is None or unit is None or match[2] in _BARE:
         examples = {"acceleration": "1 g / 2048", "rate": "1 deg/s / 16.4", "time": "1 s / 32768"}
-        listed = f'choose {" or ".join(UNITS[quantity])}, or the size of a count, such as "{examples[quantity]}"'
-        near = advise(text, UNITS[quantity], listed="")
-        raise InputError(f"record.{key}", f"is {shortened(repr(text))}", near if near.startswith("did") else listed)
+        choices = f'choose {" or ".join(UNITS[quantity])}, or the size of a count, such as "{examples[quantity]}"'
+        guess = advise(text, UNITS[quantity], listed="")
+        raise InputError(f"record.{key}", f"is {shortened(repr(text))}", guess if guess.startswith("did") else choices)
     number, count = float(match[1] or 1), float(match[3] or 1)
     size = number * UNITS[quantity][unit] / count if count else math.inf
     if not 0 < size < math.inf:
@@ -186,9 +188,10 @@ def sized(key: str, quantity: str, text: str) -> tuple[Unit, str | None]:
 def unit_of(
     key: str, quantity: str, declared: str | None, stated: Iterable[tuple[str, str]], *, trust: bool
 ) -> Unit | None:
-    """Return the unit that the scenario and the file, by column, agree on; None where neither says one.
+    """Return the unit on which the scenario and the file, by column, agree. None if neither says one.
 
-    Of a unit that gbeam does not know, numbers are of no use without their size; `trust` is in the scenario alone.
+    A unit that gbeam does not know is of use only with its size. With `trust` the scenario's unit holds, whatever the
+    file says.
     """
     unit, counts = (None, None) if declared is None else sized(key, quantity, declared)
     if unit is not None and trust:
@@ -197,8 +200,9 @@ def unit_of(
     for column, stated_unit in stated:
         text = (stated_unit or unit_in_name(column)).strip()
         canonical = spelled(text, quantity)
-        others = [kind for kind in _TELLING if kind != quantity and text not in _BARE and spelled(text, kind)]
-        if not text or (canonical is None and not (others or (stated_unit and text not in _BARE))):
+        other_kinds = [kind for kind in _TELLING if kind != quantity and text not in _BARE and spelled(text, kind)]
+        # A text that is no known unit counts only if the file states it as a unit, or it is one of another quantity.
+        if not text or (canonical is None and not (other_kinds or (stated_unit and text not in _BARE))):
             continue
         if counts is not None and canonical is None:
             if counts and stated_unit and counts.lower() != text.strip("[]()").lower():
@@ -208,7 +212,7 @@ def unit_of(
             continue
         problem = f"is {declared or 'missing'}, and the file gives column {column!r} in {text}"
         if canonical is None:
-            raise InputError(f"record.{key}", *_unknown(key, quantity, text, problem, others))
+            raise InputError(f"record.{key}", *_unknown(key, quantity, text, problem, other_kinds))
         if first and unit is not None and canonical != unit.text:
             problem = f"is of columns in two units: the file gives {first!r} in {unit.text}, {column!r} in {text}"
             raise InputError(f"record.{key}", problem, f"convert one of them; {_TRUST}")
@@ -221,10 +225,10 @@ def unit_of(
 _TRUST = 'if the file is wrong, add skip_checks = ["unit"]'
 
 
-def _unknown(key: str, quantity: str, text: str, problem: str, others: list[str]) -> tuple[str, str]:
-    """Problem and fix of a unit that is of another quantity, or not known."""
-    if others and others != ["signal"]:
-        return f"{problem}, of {others[0]}", f"name another column; {_TRUST}"
+def _unknown(key: str, quantity: str, text: str, problem: str, other_kinds: list[str]) -> tuple[str, str]:
+    """Problem and fix of a unit of another quantity, or of none that is known."""
+    if other_kinds and other_kinds != ["signal"]:
+        return f"{problem}, of {other_kinds[0]}", f"name another column; {_TRUST}"
     if quantity == "time":
         return f"{problem}, which is no unit of time", 'write time_unit = "s" and skip_checks = ["unit"] if it is in s'
     unit, plain = ("g", text.strip("[]()")) if quantity == "acceleration" else ("deg/s", text.strip("[]()"))

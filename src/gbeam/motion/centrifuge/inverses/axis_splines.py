@@ -36,6 +36,10 @@ class AxisSplines:
     """
 
     def __init__(self, grid: Grid, standstill: bool) -> None:
+        """Number the unknowns, and lay out the sparse matrices: where each pair of coefficients is stored.
+
+        At a `standstill` the arm's rate at both ends is zero, and no unknown.
+        """
         self.grid = grid
         place = np.clip(np.arange(grid.size), DEGREE - 1, grid.size - DEGREE) - (DEGREE - 1)
         number = np.arange(AXES * (place[-1] + 1)).reshape(-1, AXES)
@@ -116,6 +120,7 @@ class Tracking:
     def __init__(
         self, splines: AxisSplines, geometry: Geometry, target: Target, ramps: tuple[Ramp, Ramp] | None = None
     ) -> None:
+        """Compute the flight's load at the knots' times, its weights, and all that does not depend on the unknowns."""
         grid = splines.grid
         self.splines, self.arm, self.gravity = splines, float(geometry.arm), float(geometry.gravity)
         first, last = (float(end) for end in target.span)
@@ -132,9 +137,9 @@ class Tracking:
         states = (RATE, 0), (RATE, 1), (YAW, 0), (ROLL, 0)
         self.states = scipy.sparse.vstack([splines.derivative(*state) for state in states], format="csr")
         # Weights of a piece's coefficients in its states, (points, 4, 18).
-        near = np.stack([_on_axis(grid.rows(order), axis) for axis, order in states], axis=1)
+        piece_weights = np.stack([_on_axis(grid.rows(order), axis) for axis, order in states], axis=1)
         # Lower triangles (171, points · 10) that turn second derivatives by the states into those by the coefficients.
-        by_pair = np.einsum("qsi,qtj->ijqst", near, near)[np.tril_indices(NEAR)]
+        by_pair = np.einsum("qsi,qtj->ijqst", piece_weights, piece_weights)[np.tril_indices(NEAR)]
         by_pair = by_pair + by_pair.swapaxes(2, 3)
         by_pair[:, :, range(4), range(4)] /= 2
         self.by_pair = by_pair[:, :, *_PAIRS].reshape(len(by_pair), -1)
@@ -234,6 +239,7 @@ class KeptLimits:
     """
 
     def __init__(self, splines: AxisSplines, geometry: Geometry, limits: Limits, target: Target) -> None:
+        """Write limits of rate, acceleration and jerk as linear constraints on the splines' coefficients."""
         grid, allowed = splines.grid, np.asarray(limits.axes)
         self.idle = idle_rate(target, geometry)
         rows, lower, upper = [], [], []

@@ -244,9 +244,7 @@ def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None)
 
 
 def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> InputError:
-    """The error of a load that turns too sharply. It names the worst time and, if smoothing is enough, the width to
-    give.
-    """
+    """The error of a load that turns too sharply: it names the worst time and, if any is enough, the smoothing."""
     turns = sharp_turns(target, float(geometry.arm))
     if not turns:
         when = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]

@@ -107,9 +107,7 @@ class Ramp:
         return usage(time, rate, acceleration, jerk, limits)
 
     def lengthened(self, limits: Limits, share: float = 1.0) -> Ramp:
-        """Lengthen the ramp until it uses at most `share` of every limit; a ramp that already does is returned as it
-        is.
-        """
+        """Lengthen the ramp until it uses at most `share` of every limit, unless it does already."""
         ramp = self
         for _ in range(50):
             factor = 0.0

@@ -204,8 +204,8 @@ def _number(arm: Any) -> float:
 
 
 def _gate(times: Floats, size: Floats, idle: float | None, leave_out: Stretches) -> PiecewiseLinear | None:
-    """Gate over time: 0 on returns above idle that `leave_out` names, 1 on other returns, linear in between. None if
-    all are 1.
+    """Gate over time: 0 on returns above idle that `leave_out` names, 1 on others, linear between; None
+    if all are 1.
     """
     if idle is None or not leave_out:
         return None

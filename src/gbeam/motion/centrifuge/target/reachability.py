@@ -42,8 +42,7 @@ def refuse_undirected(load: Floats, idle: float) -> None:
 
 
 def refuse_far(times: Floats, load: Floats, out_of_reach: Flags) -> None:
-    """Raise InputError: the load (k, 3) leaves the gimbals' reach, and the target may not differ from the flight's
-    load.
+    """Raise InputError: the load (k, 3) leaves the gimbals' reach, and the target must be the flight's load.
 
     It names the worst time and the load across the beam that would be enough.
     """
@@ -131,8 +130,8 @@ def required_smoothing(
 ) -> list[float | None]:
     """For each stretch of times, the smallest smoothing with which nothing in it turns too sharply for the arm.
 
-    It is found by trying: on a slope that gravity bends, −ä <= a²/R may need more than a corner's 2jR/a², or be out of
-    any smoothing's reach.
+    It is found by trying wider and wider kernels. A formula would not do: on a slope that gravity bends, −ä <= a²/R may
+    need more than a corner's 2jR/a², or be out of any smoothing's reach.
 
     `time` (t,) s.
     """
@@ -143,12 +142,12 @@ def required_smoothing(
     spectrum = np.fft.rfft(corners(times), axis=0)
     ends = [(float(time[run.start]), float(time[run.stop - 1])) for run in runs]
     widths: list[float | None] = [None] * len(runs)
-    wide = max(width, _LEAST / _LADDER) * _LADDER
+    kernel_width = max(width, _LEAST / _LADDER) * _LADDER
     index = np.arange(times.size)
     offset = np.minimum(index, times.size - index) * step
     across = MIN_TRANSVERSE_LOAD if gravity else 0.0
-    while None in widths and wide <= _WIDEST:
-        kernel = np.where(offset < wide / 2, 1 + np.cos(2 * np.pi * offset / wide), 0.0)
+    while None in widths and kernel_width <= _WIDEST:
+        kernel = np.where(offset < kernel_width / 2, 1 + np.cos(2 * np.pi * offset / kernel_width), 0.0)
         load = np.fft.irfft(spectrum * np.fft.rfft(kernel / kernel.sum())[:, None], times.size, axis=0)
         total = np.linalg.norm(load, axis=1)
         is_held = (total < UNTOUCHED * idle) | (np.linalg.norm(load[:, 1:], axis=1) < across)
@@ -156,9 +155,9 @@ def required_smoothing(
         turn = -np.gradient(np.gradient(size, step), step)
         sharp = times[(turn > size**2 / arm * (1 + _BY_DIFFERENCES)) & ~is_held]
         for i, (start, end) in enumerate(ends):
-            if widths[i] is None and not np.any((sharp > start - wide / 2) & (sharp < end + wide / 2)):
-                widths[i] = wide
-        wide *= _LADDER
+            if widths[i] is None and not np.any((sharp > start - kernel_width / 2) & (sharp < end + kernel_width / 2)):
+                widths[i] = kernel_width
+        kernel_width *= _LADDER
     return widths
 
 
@@ -169,7 +168,7 @@ _ROUNDING = 1e-6
 
 
 def shortfalls(target: Target, arm: float, *, turns: bool = True) -> tuple[Shortfall, ...]:
-    """List where the flight's load is below idle, across the beam below gravity, or turns too sharply."""
+    """List where the flight's load is below idle, below gravity across the beam, and where it turns too sharply."""
     time = _times(target)
     flight = np.asarray(target.flight(time))
     idle, gravity = float(target.idle), float(target.gravity)
@@ -221,7 +220,7 @@ def size_and_rates(load: Profile, gravity: float, time: Any) -> tuple[Any, Any, 
 
 
 def _idle_remedy(total: Floats, across: Floats, gravity: float) -> str:
-    """Change that makes loads below idle, m/s², trackable."""
+    """Change that makes loads below idle, m/s², trackable, in words."""
     least = np.floor(100 * np.min(total) / UNTOUCHED / STANDARD_GRAVITY) / 100
     if least >= (LEAST_IDLE if gravity else 0.02):
         return f'idle = "{least:.2f} g" or less would follow it'
@@ -242,7 +241,7 @@ def _sharp_remedy(width: float | None, load: float) -> str:
 
 
 def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]) -> list[Shortfall]:
-    """Stretches in which a load (t,) m/s² is below the least that a machine makes."""
+    """Stretches in which a load (t,), m/s², is below the least that a machine makes."""
     stretches = []
     for run in joined(true_runs(load < least * (1 - _ROUNDING)), time, _JOINED):
         worst = run.start + int(np.argmin(load[run]))
@@ -253,7 +252,7 @@ def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callab
 
 
 def _too_sharp(time: Floats, turn: Floats, allowed: Floats, runs: list[slice], remedies: list[str]) -> list[Shortfall]:
-    """Stretches, `runs` of times, in which −ä `turn` exceeds what the arm allows, (t,) m/s⁴ both."""
+    """Stretches, the `runs` of times, in which the load's −ä, `turn`, exceeds what the arm allows, both (t,), m/s⁴."""
     stretches = []
     for run, remedy in zip(runs, remedies, strict=True):
         worst = run.start + int(np.argmax(turn[run] / allowed[run]))

@@ -182,9 +182,7 @@ def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_sca
 
 
 def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) -> Floats:
-    """Time scale T of the path at every knot, s. It is shorter near fixed values with a slope v: the path goes on by
-    about v T.
-    """
+    """Time scale T of the path at every knot, s, shorter near fixed values with a slope v: the path goes on by v T."""
     scale = np.full(times.size, longest)
     for run in true_runs(~fixed):
         for edge, inward in ((run.start - 1, -1), (run.stop, 1)):
