@@ -46,27 +46,27 @@ _OF: dict[type[Figured[Any]], tuple[Callable[..., Figure], ...]] = {
 
 
 def figure_of(result: Any, what: str = "", title: str = "") -> Figure:
-    """Describe one figure of a result, the first that it has or the one of that name."""
-    every = figures_of(result, title)
-    if not every:
+    """Describe one figure of a result: the one of that name, or the first that it has."""
+    descriptions = figures_of(result, title)
+    if not descriptions:
         raise InputError("result", "has nothing to draw", "print it")
-    if what and what not in every:
-        near = closest(what, every)
-        guess = f"did you mean {near!r}? " if near else ""
-        fix = f"{guess}choose from {', '.join(every)}"
+    if what and what not in descriptions:
+        guess = closest(what, descriptions)
+        guess_words = f"did you mean {guess!r}? " if guess else ""
+        fix = f"{guess_words}choose from {', '.join(descriptions)}"
         raise InputError("what", f"is {what!r}, which this result does not have", fix)
-    return every[what or next(iter(every))]()
+    return descriptions[what or next(iter(descriptions))]()
 
 
 def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
-    """Return what describes each figure of a result, or of several of one kind, by name."""
+    """Return the functions that describe the figures of a result, or of several of one kind, by the figures' names."""
     match result:
         case Rest():
             return _of_rests((result,), title)
         case (Rest(), *_):
             return _of_rests(result, title)
         case (MachinePlan(), *_):
-            return _by_motion({each.name: figures_of(each, title) for each in result})
+            return _by_motion({plan.name: figures_of(plan, title) for plan in result})
         case Study():
             return _of_study(result, title or result.title)
         case Response():
@@ -101,14 +101,16 @@ def figure_names(kind: type[Figured[Any]]) -> tuple[str, ...]:
 
 
 def _of_records(summaries: Mapping[str, RecordSummary], title: str) -> dict[str, Describe]:
-    """Figures of records that were read, and of each file of which parts are flown, by the names of flights."""
-    read = {name: each for name, each in summaries.items() if each.as_read is not None}
+    """Figures of the records that were read, and of each file of which only parts are flown, by the
+    names of flights.
+    """
+    read = {name: summary for name, summary in summaries.items() if summary.as_read is not None}
     described: dict[str, Describe] = {}
-    for name, each in read.items():
-        of_file = {other: record for other, record in read.items() if record.as_read is each.as_read}
-        if next(iter(of_file)) == name and any(record.is_part for record in of_file.values()):
-            described[f"file {name}"] = partial(records.file, of_file, title)
-    return described | {f"record {name}": partial(records.record, each, name, title) for name, each in read.items()}
+    for name, summary in read.items():
+        same_file = {other: record for other, record in read.items() if record.as_read is summary.as_read}
+        if next(iter(same_file)) == name and any(record.is_part for record in same_file.values()):
+            described[f"file {name}"] = partial(records.file, same_file, title)
+    return described | {f"record {name}": partial(records.record, read[name], name, title) for name in read}
 
 
 def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
@@ -117,7 +119,7 @@ def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
 
 
 def _of_rests(rests: Sequence[Rest], title: str = "") -> dict[str, Describe]:
-    """Return what describes the figures of rest in several motions: all together, then the loads of each beam."""
+    """Figures of states of rest in several motions: one of all together, then the loads of each body that bends."""
     drawn = [rest for rest in rests if rest.several or rest.specimen is None]
     described: dict[str, Describe] = {"static": partial(steady.static, drawn, title)} if drawn else {}
     for rest in drawn:
@@ -129,7 +131,7 @@ def _of_rests(rests: Sequence[Rest], title: str = "") -> dict[str, Describe]:
 
 
 def _of_sweep(result: Sweep, title: str) -> dict[str, Describe]:
-    """Figures of a sweep: measures over two dimensions at most, probabilities over one, indices and histories."""
+    """Figures of a sweep: measures over at most two dimensions, probabilities over one, Sobol indices and histories."""
     described: dict[str, Describe] = {}
     few = len(result.dimensions) <= 2
     for name in result.measures:
@@ -152,15 +154,15 @@ def _of_machine(result: Response | MachinePlan, axes: AxesResult, title: str) ->
 
 
 def _of_response(result: Response, title: str) -> dict[str, Describe]:
-    """Functions that describe the figures of a response but for its tips, of what it holds, by name."""
+    """Figures of a response, of the parts that it holds, by name; those of its tips are not among them."""
     described: dict[str, Describe] = {}
-    turning = result.hub is not None and result.base is None  # freely: the hub's figure has its coordinate
-    joints = {} if turning else named(result)
+    free_hub = result.hub is not None and result.base is None  # the hub's figure has its coordinate
+    joints = {} if free_hub else named(result)
     if result.several and (result.largest.any() or not joints):
         described["points"] = partial(response.points, result, title)
     if joints:
         described["coordinates"] = partial(response.coordinates, result, joints, title)
-    base = next((each.base for each in result.bodies.values()), None) if turning else result.base
+    base = next((body.base for body in result.bodies.values()), None) if free_hub else result.base
     if base is not None:
         described["base"] = partial(response.base, result, base, title)
     if result.readings is not None:
@@ -168,8 +170,8 @@ def _of_response(result: Response, title: str) -> dict[str, Describe]:
     if result.loop is not None:
         described["loop"] = partial(response.loop, result, result.loop, title)
     for name, body in result.bodies.items():
-        of_body = _of_body(result, name, body, title)
-        described |= {_named(kind, name, result.bodies): describe for kind, describe in of_body.items()}
+        body_figures = _of_body(result, name, body, title)
+        described |= {_named(kind, name, result.bodies): describe for kind, describe in body_figures.items()}
     if result.axes is not None:
         described |= _of_machine(result, result.axes, title)
     if result.hub is not None:
@@ -197,7 +199,7 @@ def _named(kind: str, body: str, names: Collection[str]) -> str:
 
 
 def _of_comparison(result: Comparison, title: str, main: str, other: str, end: str = "") -> dict[str, Describe]:
-    """Figures of a comparison: `main` along the axis in which the tip moves most, `other` along others; shock."""
+    """Figures of a comparison: `main` along the axis in which the tip moves most, `other` along others, and shock."""
     first, *others = imitation.moved(result)
     described: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
     described |= {f"{other}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
@@ -207,32 +209,35 @@ def _of_comparison(result: Comparison, title: str, main: str, other: str, end: s
 
 
 def _of_study(study: Study, title: str) -> dict[str, Describe]:
-    """Figures of a study: the tips, the sizes of the loads, every response, and comparisons."""
+    """Figures of a study: the tips, the sizes of the loads, every response, and the comparisons."""
     names, described = response.bodies(study), _of_tips(study)
     for body in names:
-        if sum(body in each.bodies and each.bodies[body].loads is not None for each in study.responses.values()) > 1:
+        with_loads = [
+            run for run in study.responses.values() if body in run.bodies and run.bodies[body].loads is not None
+        ]
+        if len(with_loads) > 1:
             described[_named("sizes", body, names)] = partial(response.sizes, study, body)
-    described |= _by_motion({name: _of_response(each, title) for name, each in study.responses.items()})
+    described |= _by_motion({name: _of_response(run, title) for name, run in study.responses.items()})
     return described | _compared(study, title)
 
 
 def _of_tips(study: Study) -> dict[str, Describe]:
-    """The figure of the tip of every body in a study's motions together; none of rigid specimens."""
+    """Figures of the tip of every body, in all of a study's motions together; a rigid specimen has none."""
     responses, names = study.responses.values(), response.bodies(study)
     return {
         _named("tip", body, names): partial(response.tip, study, body)
         for body in names
-        if any(body in each.bodies and each.bodies[body].specimen is None for each in responses)
+        if any(body in run.bodies and run.bodies[body].specimen is None for run in responses)
     }
 
 
 def _compared(study: Study, title: str) -> dict[str, Describe]:
-    """Figures of comparisons, by the names of their centrifuges."""
+    """Figures of a study's comparisons, by the names of their centrifuges."""
     described: dict[str, Describe] = {}
-    for compared in study.comparisons:
-        of_pair = _of_comparison(compared, title, "comparison", "comparison_", f" {compared.centrifuge}")
-        parts = compared.root or compared.stations or compared.load_difference
-        # Without parts a comparison is the difference that a tip's figure has.
-        apart = parts or not any(response.at_tip(compared, body) for body in response.bodies(study))
-        described |= {name: each for name, each in of_pair.items() if apart or name.startswith("shock")}
+    for comparison in study.comparisons:
+        pair_figures = _of_comparison(comparison, title, "comparison", "comparison_", f" {comparison.centrifuge}")
+        has_parts = comparison.root or comparison.stations or comparison.load_difference
+        # Without parts a comparison is the difference that a tip's figure shows already.
+        is_new = has_parts or not any(response.at_tip(comparison, body) for body in response.bodies(study))
+        described |= {name: describe for name, describe in pair_figures.items() if is_new or name.startswith("shock")}
     return described

@@ -37,20 +37,19 @@ NEAR = 3.0  # times the largest stress: a strength beyond would press the lines 
 
 
 def loads(response: Response, body: str, title: str = "") -> Figure:
-    """Describe over time what the root of a body carries, the extreme stresses, and the torque from a hub."""
-    of = response.bodies[body]
-    carried = of.loads
+    """Describe over time the loads of a body's root, the extreme stresses, and the torque about a hub's axis."""
+    carried = response.bodies[body].loads
     assert carried is not None
-    beam = of.shapes is not None  # which only a beam has
-    panels = [*carried_at_root(response.time, carried, SECTION if beam else BASE)]
+    is_beam = response.bodies[body].shapes is not None
+    panels = [*carried_at_root(response.time, carried, SECTION if is_beam else BASE)]
     if carried.beam_torque is not None:
         scale, unit = scale_of("N m", carried.beam_torque)
         panels.append(Panel(f"torque about the axis, {unit}", (Line(response.time, scale * carried.beam_torque),)))
     spans = stretches(response.axes, response.time)
     of_body = f" of {body}" if len(response.bodies) > 1 else ""
     section = f"loads in the root's section{of_body}, and stress anywhere along {'it' if of_body else 'the beam'}"
-    words = section if beam else f"loads on the base{of_body}, base axes"
-    shaded = tuple(replace(each, spans=spans) for each in panels)
+    words = section if is_beam else f"loads on the base{of_body}, base axes"
+    shaded = tuple(replace(panel, spans=spans) for panel in panels)
     subject = of_motion(response.name, words)
     return Figure(title, subject, shaded, judged(response, body, carried), (response.outcome,))
 
@@ -70,14 +69,14 @@ def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Ite
 
 
 def judged(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...]:
-    """Notes on the estimated errors of a body's loads and, where it is known, stress."""
+    """Notes on the estimated errors of a body's loads and, if it is known, stress."""
     errors = result.errors
     kinds = {"loads": errors.loads.total, "their peaks": errors.loads.peak}
     kinds |= {"stress": errors.stress.total, "its peaks": errors.stress.peak}
     if len(result.bodies) > 1:  # of which these are the largest
         by_body = errors.loads_by_beam, errors.load_peaks_by_beam, errors.stress_by_beam, errors.stress_peaks_by_beam
-        known = (dict(zip(errors.beams, each.tolist(), strict=False)) for each in by_body)
-        kinds = {kind: each.get(body, math.nan) for kind, each in zip(kinds, known, strict=True)}
+        errors_of_body = (dict(zip(errors.beams, values.tolist(), strict=False)) for values in by_body)
+        kinds = {kind: values.get(body, math.nan) for kind, values in zip(kinds, errors_of_body, strict=True)}
     if not np.isfinite(carried.stress).all():
         kinds |= {"stress": math.nan, "its peaks": math.nan}
     return estimated(kinds)
@@ -106,7 +105,7 @@ def _carried(
 
 
 def stress(result: SolidStress, title: str = "") -> Figure:
-    """Describe the largest von Mises stress over time, and that at the named points."""
+    """Describe the largest von Mises stress over time, and the stress at the named points."""
     scale, unit = scale_of("Pa", result.von_mises)
     lines = [Line(result.time, scale * result.von_mises, "anywhere", **FLIGHT)]
     lines += [
@@ -114,9 +113,9 @@ def stress(result: SolidStress, title: str = "") -> Figure:
         for k, name in enumerate(result.points)
     ]
     levels: tuple[Level, ...] = ()
-    near = result.nearest_yield
-    if near is not None and near.yield_strength is not None and near.yield_strength < NEAR * result.von_mises.max():
-        levels = (Level(scale * near.yield_strength, f"yield of {near.material or 'the material'}"),)
+    worst = result.nearest_yield
+    if worst is not None and worst.yield_strength is not None and worst.yield_strength < NEAR * result.von_mises.max():
+        levels = (Level(scale * worst.yield_strength, f"yield of {worst.material or 'the material'}"),)
     subject = of_motion(result.motion, f"von Mises stress, {result.model}")
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
     where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.apart}"
@@ -124,7 +123,7 @@ def stress(result: SolidStress, title: str = "") -> Figure:
 
 
 def specimen(result: SpecimenLoads, title: str = "") -> Figure:
-    """Describe the load at the corners, force and moment of the fixture, and of the bolts."""
+    """Describe the loads of a rigid specimen: at its corners, force and moment of the fixture, and of the bolts."""
     size = np.linalg.norm(result.acceleration, axis=-1)
     scale, unit = scale_of("m/s^2", size)
     centre = np.linalg.norm(result.centre, axis=-1)

@@ -165,10 +165,10 @@ def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
 
 
 def components(x: Floats, values: Floats, names: Sequence[str], panel: Panel) -> Panel:
-    """Put the components (n, 3) that are more than a hundredth of the largest into a panel, and name the others."""
-    shown, sizes = moving(values), np.abs(values).max(axis=0)
-    omitted = [names[i] for i in range(3) if i not in shown and sizes[i] > ROUNDING * sizes.max()]
-    lines = tuple(Line(x, values[:, i], names[i], colour=i, dash=_DASHES[i]) for i in shown)
+    """Put components (n, 3) into a panel. Those below a hundredth of the largest are named and not drawn."""
+    drawn_axes, sizes = moving(values), np.abs(values).max(axis=0)
+    omitted = [names[i] for i in range(3) if i not in drawn_axes and sizes[i] > ROUNDING * sizes.max()]
+    lines = tuple(Line(x, values[:, i], names[i], colour=i, dash=_DASHES[i]) for i in drawn_axes)
     return replace(
         panel, lines=lines, title=f"{' and '.join(omitted)}: below 1 %, not drawn" if omitted else panel.title
     )
@@ -191,24 +191,27 @@ def limit_levels(allowed: float, values: Floats, label: str = "limit") -> tuple[
 
 
 def ends_of(covered: Flags, *values: Floats) -> tuple[float, float] | None:
-    """Return ends of an axis: zero and the values at covered times, with a margin; None if all or none are covered."""
+    """Return the ends of an axis for values at the covered times, with zero and a margin.
+
+    None if all times are covered, or none: the axis then fits all values.
+    """
     if covered.all() or not covered.any():
         return None
-    low = min(0.0, *(float(each[covered].min()) for each in values))
-    high = max(0.0, *(float(each[covered].max()) for each in values))
+    low = min(0.0, *(float(array[covered].min()) for array in values))
+    high = max(0.0, *(float(array[covered].max()) for array in values))
     margin = 0.05 * (high - low) or 1.0
     return low - margin, high + margin
 
 
 def stretches(axes: AxesResult | None, time: Floats, accounting: Accounting | None = None) -> tuple[Span, ...]:
-    """Return the spin-up, what is not followed and why, and the spin-down, in order of `time` (t,) s."""
+    """Return the spans of a run to shade: spin-up, stretches that are not followed, with reasons, and spin-down."""
     if axes is None and accounting is None:
         return ()
-    held: Iterable[Span] = axes.episodes if axes is not None else ()
+    not_followed: Iterable[Span] = axes.episodes if axes is not None else ()
     if accounting is not None:
-        held = [(each.start, each.end, each.reason) for each in accounting.not_followed]
+        not_followed = [(stretch.start, stretch.end, stretch.reason) for stretch in accounting.not_followed]
     first, last = (float(time[0]), float(time[-1])) if axes is None else axes.span
-    ends = [(float(time[0]), first, "spin-up"), *held, (last, float(time[-1]), "spin-down")]
+    ends = [(float(time[0]), first, "spin-up"), *not_followed, (last, float(time[-1]), "spin-down")]
     return tuple((start, end, _short(reason)) for start, end, reason in ends if end - start > _SPAN)
 
 
@@ -246,7 +249,7 @@ def largest(values: Floats) -> float:
 
 
 def scaled(name: str, unit: str, values: Floats) -> tuple[float, str]:
-    """Return a factor 1000^n by which values become readable, and the label of an axis in the unit so scaled."""
+    """Return a factor 1000^n that makes values readable, and the label of an axis in the scaled unit."""
     low, high = _READABLE
     size, unit = largest(values), raised(unit)
     power = 0 if size == 0 or low <= size < high else 3 * math.floor(math.log10(size) / 3)

@@ -18,26 +18,26 @@ _Part = tuple[str, str, str, dict[str, Floats]]  # what it shows, SI unit, quant
 
 
 def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
-    """Describe root loads, tip and load along an axis over time, as a comparison has them; else the difference."""
+    """Describe a comparison over time along an axis: root loads, tip and load, or else the tip's difference alone."""
     c = comparison
-    shown = [*_root(c, axis), *_tip(c, axis), *_load_difference(c, axis)]
-    shown = shown or [("tip displacement", "m", "difference", {_less(c): c.difference[:, axis]})]
-    height = 0.85 if len(shown) > 1 else 1.6
+    histories = [*_root(c, axis), *_tip(c, axis), *_load_difference(c, axis)]
+    histories = histories or [("tip displacement", "m", "difference", {_less(c): c.difference[:, axis]})]
+    height = 0.85 if len(histories) > 1 else 1.6
     spans = stretches(None, c.time, c.accounting)
-    panels = tuple(replace(_panel(c, *each), spans=spans, height=height) for each in shown)
+    panels = tuple(replace(_panel(c, *part), spans=spans, height=height) for part in histories)
     return Figure(title, f"{c.centrifuge} and {c.flight}, along {'xyz'[axis]}", panels)
 
 
 def _panel(c: Comparison, title: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
-    """Panel of lines by name, that of flight broad, scaled to the times at which the target is the flight's load."""
+    """Panel of lines by name, the flight's broad, scaled to the times at which the target is the flight's load."""
     covered = c.covered if c.covered.any() else ~c.covered
-    scale, unit = scale_of(si, *(each[covered] for each in lines.values()))
-    others = [name for name in lines if name != c.flight]
-    looks = {name: imitating(min(k, 1)) for k, name in enumerate(others)} | {c.flight: FLIGHT}
-    values = {name: scale * each for name, each in lines.items()}
-    drawn = tuple(Line(c.time, each, name, **looks[name]) for name, each in values.items())
+    scale, unit = scale_of(si, *(history[covered] for history in lines.values()))
+    other_names = [name for name in lines if name != c.flight]
+    looks = {name: imitating(min(k, 1)) for k, name in enumerate(other_names)} | {c.flight: FLIGHT}
+    values = {name: scale * history for name, history in lines.items()}
+    panel_lines = tuple(Line(c.time, history, name, **looks[name]) for name, history in values.items())
     limits = ends_of(c.covered, *values.values())
-    return Panel(f"{quantity}, {unit}", drawn, title, limits=limits, zero=limits is None)
+    return Panel(f"{quantity}, {unit}", panel_lines, title, limits=limits, zero=limits is None)
 
 
 def moved(comparison: Comparison) -> list[int]:
@@ -51,7 +51,7 @@ def _less(c: Comparison) -> str:
 
 
 def _root(c: Comparison, axis: int) -> Iterator[_Part]:
-    """Force along an axis at the root, and the moment that bends along it."""
+    """Histories of the force along an axis at the root, and of the moment that bends along it."""
     if c.root is None:
         return
     history, k = c.root.history, _BENDS[axis]
@@ -63,7 +63,7 @@ def _root(c: Comparison, axis: int) -> Iterator[_Part]:
 
 
 def _tip(c: Comparison, axis: int) -> Iterator[_Part]:
-    """Slow difference of the tip, beside what a slow difference of the load implies, and its elastic vibrations."""
+    """Histories of the tip's slow difference, of the one that the load's implies, and of the tip's vibrations."""
     stations = c.stations
     if stations is None:
         return
@@ -84,7 +84,7 @@ def _load_difference(c: Comparison, axis: int) -> Iterator[_Part]:
 
 
 def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
-    """Describe the shock response spectra, along the axes in which they are not small."""
+    """Describe the shock response spectra along the axes in which they are not small."""
     panels, main = [], comparison.main_axis
     scale, unit = scale_of("m/s^2", spectra.flight, spectra.centrifuge)
     for axis in sorted(moving(spectra.flight, spectra.centrifuge), key=lambda k: k != main):
@@ -99,9 +99,9 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
 
 
 def placement(result: Placement, title: str = "") -> Figure:
-    """Describe what a placement leaves of each measure of the load's difference, beside other control points."""
+    """Describe the difference of the load that a placement leaves, by each measure, beside other control points."""
     measures = tuple(next(iter(result.values.values()), {}))
-    bars = {place: 100 * np.array([values[each] for each in measures]) for place, values in result.values.items()}
+    bars = {place: 100 * np.array([values[name] for name in measures]) for place, values in result.values.items()}
     panel = Panel(
         "",
         x="difference of the load over flight's peak, %",

@@ -34,7 +34,7 @@ AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
 
 
 def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str = "") -> Figure:
-    """Describe one quantity of a centrifuge's axes, a panel for each axis, with its limits."""
+    """Describe one quantity of a centrifuge's axes, with its limits, in a panel for each axis."""
     history: Floats = getattr(axes, quantity)
     unit = raised(declared(AxesResult, quantity)[1])
     allowed = {use.axis: use.allowed for use in axes.limits if use.quantity == quantity}
@@ -53,14 +53,15 @@ def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str =
 
 
 def _with_power(panel: Panel, axes: AxesResult) -> Panel:
-    """Add the arm's acceleration that a limit on its power leaves at its rate."""
+    """Add to the panel of the arm's acceleration the acceleration that a limit of its power allows at its rate."""
     (line,) = panel.lines
     rate, size = np.abs(axes.rate[:, 0]), np.abs(line.y)
-    most = max([float(size.max()), *(abs(each.value) for each in panel.levels)])
+    largest_shown = max([float(size.max()), *(abs(level.value) for level in panel.levels)])
     for use in axes.limits:
         if use.quantity == "power" and math.isfinite(use.allowed) and use.used > 0:
+            # The power P allows |rate · acceleration| of at most P/J: the largest product over the share that it uses.
             available = float((rate * size).max()) / use.share / np.maximum(rate, 1e-12)
-            bound = np.where(available < 1.3 * most, available, np.nan)
+            bound = np.where(available < 1.3 * largest_shown, available, np.nan)
             power = Line(line.x, bound, "limit of the power", colour=REFERENCE, dash="dotted")
             panel = replace(panel, lines=(*panel.lines, power, replace(power, y=-bound, label=f"_{power.label}")))
     return panel
@@ -79,7 +80,7 @@ def _plain(value: float) -> str:
 
 
 def tracking(response: PlotHeading, axes: AxesResult, title: str = "") -> Figure:
-    """Figure of the load at the control point over time: size and components, target, machine's and flight's."""
+    """Describe the load at the control point over time, size and components: of target, machine and flight."""
     components = moving(axes.actual, axes.reference)  # those that are not negligible
     time = response.time
     scale, unit = scale_of("m/s^2", axes.reference)
@@ -88,8 +89,8 @@ def tracking(response: PlotHeading, axes: AxesResult, title: str = "") -> Figure
         (time, axes.actual, "machine", imitating(0)),
     ]
     if axes.flight is not None:
-        near = 1e-9 * (time[-1] - time[0])
-        flown = (time >= axes.span[0] - near) & (time <= axes.span[1] + near)
+        slack = 1e-9 * (time[-1] - time[0])
+        flown = (time >= axes.span[0] - slack) & (time <= axes.span[1] + slack)
         loads.insert(0, (time[flown], axes.flight[flown], "flight", FLIGHT))
     size = tuple(Line(times, scale * np.linalg.norm(load, axis=1), name, **look) for times, load, name, look in loads)
     idle = (Level(scale * axes.idle, "idle", "dotted"),) if axes.idle > 0 else ()
@@ -99,15 +100,16 @@ def tracking(response: PlotHeading, axes: AxesResult, title: str = "") -> Figure
         panels.append(Panel(f"{'xyz'[i]}, {unit}", lines, named=False, height=0.8))
     panels.append(_error(time, axes, scale, unit))
     spans = stretches(axes, time)
-    about = of_motion(response.name, "load at the control point: flight's, the target and the machine's")
-    return Figure(title, about, tuple(replace(each, spans=spans) for each in panels), outcomes=(response.outcome,))
+    subject = of_motion(response.name, "load at the control point: flight's, the target and the machine's")
+    shaded = tuple(replace(panel, spans=spans) for panel in panels)
+    return Figure(title, subject, shaded, outcomes=(response.outcome,))
 
 
 def _error(time: Floats, axes: AxesResult, scale: float, unit: str) -> Panel:
-    """Panel of the tracking error, in the unit of the loads, scaled to the times that are followed."""
+    """Panel of the tracking error in the unit of the loads, scaled to the times that are followed."""
     error, followed = axes.tracking_error, ~axes.not_followed
     ends = ends_of(followed, scale * error)
-    # Below a millionth of the load it is rounding, and shown as none.
+    # An axis of at least a millionth of the load shows rounding errors as a line at zero.
     top = max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest(axes.reference)) or 1.0
     title = f"size of machine − target{', scaled to the times that are followed' if ends else ''}"
     line = Line(time, scale * error, "machine − target", **imitating(0))

@@ -22,7 +22,7 @@ _ALWAYS = (-math.inf, math.inf)
 
 
 def record(summary: RecordSummary, name: str = "", title: str = "") -> Figure:
-    """Describe a record's channels over the part that is flown, as its file has them, and below as they are flown."""
+    """Describe a record's channels over the part that is flown: in pairs, as the file has them and as flown."""
     assert summary.as_read is not None and summary.as_flown is not None  # it was read from its file
     read = _panels(summary.as_read, "as read", summary.span)
     flown = _panels(summary.as_flown, "flown", summary.span)
@@ -30,23 +30,23 @@ def record(summary: RecordSummary, name: str = "", title: str = "") -> Figure:
     panels = [replace(panel, spans=spans) for pair in zip(read, flown, strict=True) for panel in pair]
     section = f", {summary.sections_by} {summary.section}" if summary.section else ""
     subject = of_motion(name, f"{Path(summary.file).name}{section}, as read in its own axes, and as flown in base axes")
-    off = ("offsets of the sensors subtracted",) if summary.offsets else ()
-    return Figure(title, subject, tuple(panels), (*summary.done, *off))
+    offsets = ("offsets of the sensors subtracted",) if summary.offsets else ()
+    return Figure(title, subject, tuple(panels), (*summary.done, *offsets))
 
 
 def file(records: Mapping[str, RecordSummary], title: str = "") -> Figure:
-    """Describe all channels of a file over the whole of it, with the parts that flights, by name, are of it."""
+    """Describe all channels of a whole file, with the parts that flights use, by the flights' names."""
     summary = next(iter(records.values()))
     assert summary.as_read is not None  # it was read from its file
-    parts = {name: each.span for name, each in records.items()}
+    parts = {name: record.span for name, record in records.items()}
     width = float(np.ptp(summary.as_read.time))
     apart = _BETWEEN * width
     touching = [any(abs(start - end) < apart for start, _ in parts.values()) for _, end in parts.values()]
     ends = [end - apart * touches for (_, end), touches in zip(parts.values(), touching, strict=True)]
     flown = ((start, end, "flown") for (start, _), end in zip(parts.values(), ends, strict=True) if end > start)
     spans = (*flown, *_marked(summary))
-    first, *others = (replace(panel, spans=spans) for panel in _panels(summary.as_read, "as read", _ALWAYS))
-    values = np.concatenate([each.y for each in first.lines])
+    first, *other_panels = (replace(panel, spans=spans) for panel in _panels(summary.as_read, "as read", _ALWAYS))
+    values = np.concatenate([line.y for line in first.lines])
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     height = high - low or 1.0
     rows = _rows(parts, width)
@@ -56,13 +56,13 @@ def file(records: Mapping[str, RecordSummary], title: str = "") -> Figure:
     left_out = len(parts) - len(rows)
     notes = (f"{left_out} names of parts are left out for want of room",) if left_out else ()
     subject = f"{Path(summary.file).name}: all that is read of it, and the parts that are flown"
-    return Figure(title, subject, (first, *others), notes)
+    return Figure(title, subject, (first, *other_panels), notes)
 
 
 def _rows(parts: Mapping[str, tuple[float, float]], width: float) -> dict[str, tuple[float, int]]:
-    """Middle of each part, s, and the row above the lines in which its name has room; without those that have none."""
+    """Middle of each part, s, and the row above the lines in which its name fits; without names that fit in none."""
     ends, rows = [-math.inf] * _ROWS, dict[str, tuple[float, int]]()
-    for name, (first, last) in sorted(parts.items(), key=lambda each: sum(each[1])):
+    for name, (first, last) in sorted(parts.items(), key=lambda part: sum(part[1])):
         middle, half = (first + last) / 2, (len(name) + 1) * _LETTER * width / 2
         row = next((k for k, end in enumerate(ends) if middle - half >= end), None)
         if row is not None:
@@ -72,18 +72,18 @@ def _rows(parts: Mapping[str, tuple[float, float]], width: float) -> dict[str, t
 
 
 def _panels(channels: Channels, what: str, span: tuple[float, float]) -> list[Panel]:
-    """Panels of the channels of each unit, in the order of their times within a span."""
+    """Panels of the channels within a span, one for each unit, with samples in the order of their times."""
     order = np.argsort(channels.time, kind="stable")
     time = channels.time[order]
     order = order[(time >= span[0]) & (time <= span[1])]
     panels = []
     for unit, group in groupby(range(len(channels.names)), key=lambda k: channels.units[k]):
-        size, shown = _SHOWN.get(unit, (1.0, unit)) if what == "flown" else (1.0, unit)
+        size, unit_name = _SHOWN.get(unit, (1.0, unit)) if what == "flown" else (1.0, unit)
         lines = tuple(
             Line(channels.time[order], size * channels.values[order, k], channels.names[k], colour=i % 3)
             for i, k in enumerate(group)
         )
-        panels.append(Panel(f"{what}, {raised(shown)}", lines))
+        panels.append(Panel(f"{what}, {raised(unit_name)}", lines))
     return panels
 
 

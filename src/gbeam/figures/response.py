@@ -68,28 +68,31 @@ def at_tip(compared: Comparison, body: str) -> bool:
 
 
 def tip(study: Study, body: str) -> Figure:
-    """Describe the displacement of a body's tip along every axis in which it moves."""
-    responses = {name: each for name, each in study.responses.items() if body in each.bodies}
-    moved = {name: each.bodies[body] for name, each in responses.items()}
-    compared = [each for each in study.comparisons if at_tip(each, body)]
-    sizes = [each.peaks.max_abs for each in moved.values()]
-    axes = sorted(moving(*sizes), key=lambda axis: -max(each[axis] for each in sizes))
-    spans = [_spans(responses, each) for each in compared]
-    shaded = spans[0] if len(compared) == 1 else ()
-    if not compared and len(responses) == 1:
-        shaded = tuple(span for each in responses.values() for span in stretches(each.axes, each.time))
+    """Describe the displacement of a body's tip along every axis in which it moves, and its difference
+    in comparisons.
+    """
+    responses = {name: run for name, run in study.responses.items() if body in run.bodies}
+    motions = {name: run.bodies[body] for name, run in responses.items()}
+    comparisons = [comparison for comparison in study.comparisons if at_tip(comparison, body)]
+    sizes = [motion.peaks.max_abs for motion in motions.values()]
+    axes = sorted(moving(*sizes), key=lambda axis: -max(size[axis] for size in sizes))
+    spans = [_spans(responses, comparison) for comparison in comparisons]
+    shaded = spans[0] if len(comparisons) == 1 else ()
+    if not comparisons and len(responses) == 1:
+        (run,) = responses.values()
+        shaded = tuple(stretches(run.axes, run.time))
     panels = []
     for axis in axes:
-        panel = _displacement(study, moved, axis, named=len(responses) > 1 and axis == axes[0])
+        panel = _displacement(study, motions, axis, named=len(responses) > 1 and axis == axes[0])
         panels.append(replace(panel, spans=shaded, height=1.6 if len(axes) == 1 else 1.2))
-        panels += [_difference(study, each, axis, span) for each, span in zip(compared, spans, strict=True)]
+        panels += [_difference(study, pair, axis, span) for pair, span in zip(comparisons, spans, strict=True)]
     if len(panels) == 1:
         panels[0] = replace(panels[0], height=2.0)
-    errors = {name if len(responses) > 1 else "": _error(each, body) for name, each in responses.items()}
+    errors = {name if len(responses) > 1 else "": _error(run, body) for name, run in responses.items()}
     notes = (*not_drawn(axes, *sizes), *estimated(errors))
-    outcomes = tuple(each.outcome for each in responses.values())
-    of = f"of {body} relative to its root" if len(bodies(study)) > 1 else "relative to the base"
-    return Figure(study.title, f"tip displacement {of}", tuple(panels), notes, outcomes)
+    outcomes = tuple(run.outcome for run in responses.values())
+    origin = f"of {body} relative to its root" if len(bodies(study)) > 1 else "relative to the base"
+    return Figure(study.title, f"tip displacement {origin}", tuple(panels), notes, outcomes)
 
 
 def _error(response: Response, body: str) -> float:
@@ -101,7 +104,7 @@ def _error(response: Response, body: str) -> float:
 
 
 def models(study: ModelStudy, title: str = "") -> Figure:
-    """Describe the tip's displacement by every model, in every motion; the one compared with is broad."""
+    """Describe the tip's displacement by every model, in every motion. The line of the reference model is broad."""
     panels = []
     for name, axis in study.direction.items():
         rows = [row for row in study.rows if row.motion == name and len(row.time)]
@@ -114,19 +117,19 @@ def models(study: ModelStudy, title: str = "") -> Figure:
     return Figure(title or study.title, subject, tuple(panels), outcomes=(study.outcome,))
 
 
-def _displacement(study: Study, moved: Mapping[str, BodyResponse], axis: int, *, named: bool) -> Panel:
-    """Panel of a tip's displacement along an axis, a line for every environment."""
-    scale, unit = scale_of("m", *(each.tip[:, axis] for each in moved.values()))
+def _displacement(study: Study, motions: Mapping[str, BodyResponse], axis: int, *, named: bool) -> Panel:
+    """Panel of a tip's displacement along an axis, with a line for every motion."""
+    scale, unit = scale_of("m", *(body.tip[:, axis] for body in motions.values()))
     lines = []
-    for name, each in moved.items():
+    for name, body in motions.items():
         time = study.responses[name].time
         marks: Marks = "joined" if len(time) == 1 else ""  # a run that diverged at once is no line
-        lines.append(Line(time, scale * each.tip[:, axis], name, marks=marks, **looks(study)[name]))
+        lines.append(Line(time, scale * body.tip[:, axis], name, marks=marks, **looks(study)[name]))
     return Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=named)
 
 
 def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span, ...]) -> Panel:
-    """Panel of the difference from flight along an axis, scaled to times at which the target is the flight's."""
+    """Panel of the difference from the flight along an axis, scaled to the times at which the target is its load."""
     difference, covered = compared.difference[:, axis], compared.covered
     counted = difference[covered] if covered.any() else difference
     scale, unit = scale_of("m", counted)
@@ -147,21 +150,23 @@ def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Spa
 
 
 def sizes(study: Study, body: str) -> Figure:
-    """Describe the sizes of stress, root force and root moment of a body in all environments together."""
-    loaded = {name: each for name, each in study.responses.items() if each.bodies[body].loads is not None}
+    """Describe the sizes of stress, root force and root moment of a body, in all motions together."""
+    loaded = {name: run for name, run in study.responses.items() if run.bodies[body].loads is not None}
     kinds: tuple[tuple[str, str, Callable[[BodyResponse, Any], Floats]], ...] = (
-        ("largest stress", "Pa", lambda of, its: its.stress.max(axis=1) if of.solid is None else of.solid.von_mises),
+        ("largest stress", "Pa", _largest_stress),
         ("root force", "N", lambda _, loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),
         ("root moment", "N m", lambda _, loads: np.linalg.norm(loads.section_moment[:, 0], axis=1)),
     )
     panels: list[Panel] = []
     for words, si, size in kinds:
-        of = {name: each.bodies[body] for name, each in loaded.items()}
-        values = {name: (loaded[name].time, size(each, each.loads)) for name, each in of.items()}
-        known = {name: each for name, each in values.items() if np.isfinite(each[1]).any()}
-        scale, unit = scale_of(si, *(each for _, each in known.values()))
+        histories = {}
+        for name, run in loaded.items():
+            history = size(run.bodies[body], run.bodies[body].loads)
+            if np.isfinite(history).any():
+                histories[name] = run.time, history
+        scale, unit = scale_of(si, *(history for _, history in histories.values()))
         look = looks(study)
-        lines = tuple(Line(time, scale * each, name, **look[name]) for name, (time, each) in known.items())
+        lines = tuple(Line(time, scale * history, name, **look[name]) for name, (time, history) in histories.items())
         if lines:
             panels.append(Panel(f"{words}, {unit}", lines, zero=True, named=not panels))
     stress = " and largest stress anywhere" if len(panels) == len(kinds) else ""
@@ -169,36 +174,30 @@ def sizes(study: Study, body: str) -> Figure:
     return Figure(study.title, f"sizes of the loads at the root{of_body}{stress}", tuple(panels))
 
 
+def _largest_stress(body: BodyResponse, loads: Any) -> Floats:
+    """Largest stress over time (t,), Pa: von Mises of a mesh, or of the extreme fibres of a beam."""
+    return np.asarray(loads.stress.max(axis=1) if body.solid is None else body.solid.von_mises)
+
+
 def points(response: Response, title: str = "") -> Figure:
-    """Describe the displacement of every point from its place at the start along the axes of the ground."""
+    """Describe the displacement of every point from its place at the start, along the axes of the ground."""
     moved = response.place - response.place[0]
     scale, unit = scale_of("m", moved)
     axes = moving(moved)
-    panels = tuple(
-        Panel(
-            f"{'xyz'[i]}, {unit}",
-            tuple(
-                Line(
-                    response.time,
-                    scale * moved[:, k, i],
-                    response.points[k],
-                    colour=n % COLOURS,
-                    dash=DASHES[n // COLOURS % len(DASHES)],
-                )
-                for n, k in enumerate(_moving(moved))
-            ),
-            zero=True,
-            named=i == axes[0],
-        )
-        for i in axes
-    )
+    panels = []
+    for axis in axes:
+        lines = []
+        for n, k in enumerate(_moving(moved)):
+            look: dict[str, Any] = {"colour": n % COLOURS, "dash": DASHES[n // COLOURS % len(DASHES)]}
+            lines.append(Line(response.time, scale * moved[:, k, axis], response.points[k], **look))
+        panels.append(Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=axis == axes[0]))
     subject = of_motion(response.name, "displacement of the points from the start, axes of the ground")
     notes = (*not_drawn(axes, moved), *estimated({"": response.errors.place.total}))
-    return Figure(title, subject, panels, notes, (response.outcome,))
+    return Figure(title, subject, tuple(panels), notes, (response.outcome,))
 
 
 def _moving(moved: np.ndarray) -> list[int]:
-    """Indices of the points that move; of points that move alike only the first."""
+    """Indices of the points that move. Of points that move alike only the first is listed."""
     size = np.abs(moved).max(initial=0.0)
     chosen: list[int] = []
     for k in range(moved.shape[1]):
@@ -209,7 +208,7 @@ def _moving(moved: np.ndarray) -> list[int]:
 
 
 def coordinates(response: Response, histories: Coordinates, title: str = "") -> Figure:
-    """Describe joints' coordinates, by name each with its unit, and the efforts of their drives."""
+    """Describe the coordinates of joints, each with its unit, and the efforts of their drives."""
     panels = []
     size = max((np.abs(history).max(initial=0.0) for history, *_ in histories.values()), default=0.0)
     for name, (history, unit, effort) in histories.items():
@@ -224,7 +223,7 @@ def coordinates(response: Response, histories: Coordinates, title: str = "") -> 
 
 
 def loop(response: Response, control: Loop, title: str = "") -> Figure:
-    """Describe measurements and commands of the controllers, as asked for and as applied."""
+    """Describe the measurements of controllers, and their commands as asked for and as applied."""
     panels = [
         Panel(f"{name.rpartition(': ')[2]}, {raised(unit)}", (Line(response.time, control.measured[:, k]),))
         for k, (name, unit) in enumerate(zip(control.measurements, control.units, strict=True))
@@ -267,14 +266,14 @@ def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
 
 
 def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
-    """Describe the turning of a hub or an arm about z."""
+    """Describe the turning of a hub or an arm about z: its angle, its rate and, if known, the torque of its drive."""
     turns = np.abs(motion.angle).max(initial=0.0) / (2 * math.pi)
     unit, angle = ("turns", motion.angle / (2 * math.pi)) if turns > FEW else ("deg", np.degrees(motion.angle))
-    shown = [(f"angle, {unit}", angle), ("rate, rpm", 30 / math.pi * motion.rate)]
+    histories = [(f"angle, {unit}", angle), ("rate, rpm", 30 / math.pi * motion.rate)]
     if motion.drive_torque is not None:
         scale, unit = scale_of("N m", motion.drive_torque)
-        shown.append((f"drive torque, {unit}", scale * motion.drive_torque))
-    panels = tuple(Panel(label, (Line(response.time, values),)) for label, values in shown)
+        histories.append((f"drive torque, {unit}", scale * motion.drive_torque))
+    panels = tuple(Panel(label, (Line(response.time, values),)) for label, values in histories)
     subject = of_motion(response.name, f"the {response.environment}, about z")
     return Figure(title, subject, panels, outcomes=(response.outcome,))
 

@@ -48,8 +48,10 @@ def _few(stations: Floats) -> Marks:
 
 
 def static(rests: Sequence[Rest], title: str = "") -> Figure:
-    """Describe where a system rests in some motions: bodies that deform along their length, one panel for each
-    direction in which one moves, and the points of several bodies.
+    """Describe where a system rests in some motions.
+
+    Each body that deforms along its length has a panel for every direction in which it moves. A system of several
+    bodies also has the displacements of its points.
     """
     first = rests[0]
     bending = [name for name, body in first.bodies.items() if body.bends]
@@ -57,7 +59,7 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
     panels, notes = list[Panel](), list[str]()
     for name in bending:
         bodies = [rest.bodies[name] for rest in rests]
-        moved = [_along(each) for each in bodies]
+        moved = [_along(body) for body in bodies]
         axes = moving(*(shape for _, shape in moved))
         notes += not_drawn(axes, *(shape for _, shape in moved))
         x_scale, x_unit = scale_of("m", *(points for points, _ in moved))
@@ -75,8 +77,8 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
     panels += [
         _points_at_rest(rest, rest.motion if len(rests) > 1 else "") for rest in rests if rest.several or not bending
     ]
-    errors = [each.errors.displacement.total for each in rests]
-    error = {"": max((each for each in errors if math.isfinite(each)), default=math.nan)}
+    errors = [rest.errors.displacement.total for rest in rests]
+    error = {"": max((total for total in errors if math.isfinite(total)), default=math.nan)}
     subject = ", ".join((relative, *_models(first), f"t = {first.time:.4g} s"))
     return Figure(title, subject, tuple(panels), (*notes, *estimated(error)))
 
@@ -110,8 +112,9 @@ def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
 
 
 def modes(result: Modes, title: str = "") -> Figure:
-    """Describe the lowest modes, each along the bodies that deform in the direction in which that moves most, and of
-    several bodies their shares in the kinetic energy.
+    """Describe the lowest modes: each along the bodies that deform, in the direction in which it moves most.
+
+    Of several bodies also their shares in the kinetic energy are drawn.
     """
     panels = [_shapes(result, name) for name in result.bodies]
     if len(result.body_names) > 1 or not panels:
@@ -124,11 +127,12 @@ def modes(result: Modes, title: str = "") -> Figure:
 
 
 def _shapes(result: Modes, name: str) -> Panel:
-    """Panel of the lowest modes along one body."""
+    """Panel of the lowest modes along one body. A complex mode has a second line, a quarter of a period later."""
     body = result.bodies[name]
     lines = []
     x_scale, x_unit = 1.0, "m"
-    for k in [k for k, way in enumerate(body.direction) if way][:SHOWN]:
+    moving_modes = [k for k, direction in enumerate(body.direction) if direction]
+    for k in moving_modes[:SHOWN]:
         points, moved = body.moved(k)
         x_scale, x_unit = scale_of("m", points)
         label = f"{result.frequency[k]:.4g} Hz, {body.direction[k]}"
@@ -141,12 +145,15 @@ def _shapes(result: Modes, name: str) -> Panel:
 
 
 def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0, "rad/s")) -> Figure:
-    """Describe a Campbell diagram; `unit` is that of the speed: how many of it are 1 rad/s, and its name."""
-    shown = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
-    omitted = len(diagram.direction) - len(shown)
+    """Describe a Campbell diagram: frequencies over the speed, its multiples, crossings and the critical speed.
+
+    `unit` is that of the speed: how many of it are 1 rad/s, and its name.
+    """
+    drawn = near_multiples(diagram.frequency.T, diagram.speed, diagram.orders)
+    omitted = len(diagram.direction) - len(drawn)
     factor, name = unit
     speed = factor * diagram.speed
-    top = 1.05 * float(np.nanmax(diagram.frequency[:, shown]))
+    top = 1.05 * float(np.nanmax(diagram.frequency[:, drawn]))
     lines, texts = [], []
     for order in diagram.orders:
         multiple = order * diagram.speed / (2 * np.pi)
@@ -155,24 +162,24 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
         end = min(1.0, top / multiple[-1]) * 0.96 if multiple[-1] > 0 else 0.0
         if end * diagram.speed[-1] > diagram.speed[0]:
             texts.append((end * speed[-1], end * multiple[-1], f"{order}P"))
-    for k in shown:
+    for k in drawn:
         direction = diagram.direction[k]
         dash = _DASHES[direction.rpartition(" ")[2]]  # of a system it has the body's name before
         lines.append(Line(speed, diagram.frequency[:, k], f"mode {k + 1}, {direction}", colour=k % 6, dash=dash))
     if diagram.crossings:
-        met = sorted((factor * each.speed, each.frequency) for each in diagram.crossings)
-        speeds, frequency = np.array(met).T
+        points = sorted((factor * crossing.speed, crossing.frequency) for crossing in diagram.crossings)
+        speeds, frequency = np.array(points).T
         lines.append(Line(speeds, frequency, "crossings", colour=REFERENCE, marks="rings"))
     marks: tuple[Mark, ...] = ()
     if diagram.critical is not None and diagram.critical.value is not None:
         marks = (Mark(factor * diagram.critical.value, diagram.critical.kind),)
     words, unit_name = declared(Campbell, "frequency")
     rate = "rate" if diagram.model == "system" else declared(Campbell, "speed")[0]
-    over = f"{rate}, {name}"
-    spans = tuple((factor * each.start, factor * each.end, "not stable") for each in diagram.unstable)
+    x_label = f"{rate}, {name}"
+    spans = tuple((factor * stretch.start, factor * stretch.end, "not stable") for stretch in diagram.unstable)
     panel = Panel(
-        f"{words}, {unit_name}", tuple(lines), x=over, marks=marks, texts=tuple(texts), limits=(0.0, top), height=2.4,
-        spans=spans,
+        f"{words}, {unit_name}", tuple(lines), x=x_label, marks=marks, texts=tuple(texts), limits=(0.0, top),
+        height=2.4, spans=spans,
     )  # fmt: skip
     turning = ", in the turning frame" if diagram.frame == "turning" else ""
     subject = of_motion(diagram.motion, f"frequencies about the equilibrium{turning}, {diagram.model}")
@@ -182,32 +189,35 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
 
 
 def critical(lost: Critical, title: str = "") -> Figure:
-    """Describe the lowest frequencies on the way to a critical value, and its errors to both sides of it."""
+    """Describe the lowest frequencies on the way to a critical value, and the value's error to both sides."""
     end = float(lost.followed[-1])
     factor, quantity = scaled(lost.quantity, lost.unit if "/" in lost.unit else "", np.array([end]))
-    known = [k for k in range(lost.frequency.shape[1]) if np.isfinite(lost.frequency[:, k]).any()]
-    near = 3 * float(np.nanmax(lost.frequency[:, known[:2]], initial=0.0))
-    shown = [k for k in known if np.nanmin(lost.frequency[:, k]) <= near]
+    finite = [k for k in range(lost.frequency.shape[1]) if np.isfinite(lost.frequency[:, k]).any()]
+    # Frequencies that stay far above the lowest two are left out.
+    highest = 3 * float(np.nanmax(lost.frequency[:, finite[:2]], initial=0.0))
+    drawn = [k for k in finite if np.nanmin(lost.frequency[:, k]) <= highest]
     dots: Marks = "dots" if len(lost.followed) == 1 else ""
     lines = tuple(
-        Line(factor * lost.followed, lost.frequency[:, k], f"frequency {k + 1}", colour=k, marks=dots) for k in shown
+        Line(factor * lost.followed, lost.frequency[:, k], f"frequency {k + 1}", colour=k, marks=dots) for k in drawn
     )
     marks: tuple[Mark, ...] = ()
     spans: tuple[Span, ...] = ()
     error = lost.errors.total  # not finite where the exact model loses nothing, or it is not known
     if lost.value is not None:
-        way = f" {along(lost.direction)}" if lost.direction else ""
-        marks = (Mark(factor * lost.value, f"{lost.kind}{way}"),)
+        direction = f" {along(lost.direction)}" if lost.direction else ""
+        marks = (Mark(factor * lost.value, f"{lost.kind}{direction}"),)
         if 0.0 < error < math.inf:
-            at = factor * lost.value
-            spans = (((1 - min(error, 1.0)) * at, (1 + error) * at, "estimated error"),)
+            value = factor * lost.value
+            spans = (((1 - min(error, 1.0)) * value, (1 + error) * value, "estimated error"),)
     frame = " in the turning frame" if lost.frame == "turning" else ""
     panel = Panel(f"frequency{frame}, Hz", lines, x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
     return Figure(title, of_motion(lost.motion, lost.reason), (panel,), estimated({"": error}))
 
 
 def critical_map(critical: CriticalMap, title: str = "") -> Figure:
-    """Describe a map of critical speeds, one line per mass (2009 Fig. 9 shows the stiffness at one speed instead)."""
+    """Describe a map of critical speeds with one line per mass (2009 Fig. 9 shows the stiffness at one
+    speed instead).
+    """
     x_scale, x_unit = scale_of("m", critical.position)
     lines = tuple(
         Line(x_scale * critical.position, speed, f"{mass:g} kg", colour=k % 6, marks="joined")
@@ -223,7 +233,7 @@ def critical_map(critical: CriticalMap, title: str = "") -> Figure:
 
 
 def poles(linear: StateSpace, title: str = "") -> Figure:
-    """Describe the poles of a linear model, of a pair that oscillates one: frequency over growth."""
+    """Describe the poles of a linear model, frequency over growth; of a pair that oscillates only one is drawn."""
     values = np.sort(linear.eigenvalue[linear.eigenvalue.imag >= 0])  # by growth
     grows = values.real > ROUNDING * np.abs(values).max(initial=0.0)
     lines = tuple(

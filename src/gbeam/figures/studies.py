@@ -25,22 +25,22 @@ _SIGMAS = 2.0
 
 
 def sweep(result: Sweep, name: str, title: str = "") -> Figure:
-    """Describe one measure of a sweep over its parameters."""
+    """Describe one measure of a sweep over its parameters: lines, a heat map, or the distribution of random draws."""
     values = result.measures[name]
     if values.ndim > 2:
         raise InputError("sweep", f"varies {values.ndim} values", "draw one with to_xarray(), or vary two or fewer")
     factor, label = scaled(name, result.units[name], values)
-    ended = [f"{count} {each}" for each, count in result.counts.items() if each != "done"]
-    subject = name + (f" (of {result.outcome.size} cases {', '.join(ended)})" if ended else "")
+    not_done = [f"{count} {outcome}" for outcome, count in result.counts.items() if outcome != "done"]
+    subject = name + (f" (of {result.outcome.size} cases {', '.join(not_done)})" if not_done else "")
     if values.ndim == 2 and SAMPLE not in result.dimensions:
         panels = [_surface(result, factor * values, label)]
     elif result.dimensions == (SAMPLE,):
         # How the draws are distributed, then over each value that is drawn.
-        drawn = [each for each in result.parameters if each.numeric]
-        panels = [_histogram(factor * values, label), *(_drawn(each, factor * values, label) for each in drawn)]
+        panels = [_histogram(factor * values, label)]
+        panels += [_drawn(drawn, factor * values, label) for drawn in result.parameters if drawn.numeric]
     else:
         panels = [_over(result.parameters[0], _bands if values.ndim == 2 else _line, factor * values, label)]
-    return Figure(title or result.title, subject, tuple(replace(each, height=2.0) for each in panels))
+    return Figure(title or result.title, subject, tuple(replace(panel, height=2.0) for panel in panels))
 
 
 def _over(parameter: Parameter, draw: Any, values: Floats, label: str) -> Panel:
@@ -77,19 +77,19 @@ def _bands(x: Floats, values: Floats, label: str) -> Panel:
 
 
 def _histogram(values: Floats, label: str) -> Panel:
-    """Histogram of the cases that have a value, with median, 5 and 95 %."""
-    known = values[np.isfinite(values)]
+    """Histogram of the cases that have a value, with marks at the median, 5 and 95 %."""
+    finite = values[np.isfinite(values)]
     title = "lines: median, 5 and 95 %"
-    if not len(known):
+    if not len(finite):
         return Panel("cases", title=title, x=label)
-    counts, edges = np.histogram(known, bins=max(5, round(math.sqrt(len(known)))))
+    counts, edges = np.histogram(finite, bins=max(5, round(math.sqrt(len(finite)))))
     x, high = np.repeat(edges, 2), np.array([0, *np.repeat(counts, 2), 0], dtype=float)
-    marks = tuple(Mark(float(np.quantile(known, share)), f"{100 * share:g} %") for share in (0.05, 0.5, 0.95))
+    marks = tuple(Mark(float(np.quantile(finite, share)), f"{100 * share:g} %") for share in (0.05, 0.5, 0.95))
     return Panel("cases", title=title, x=label, areas=(Area(x, 0 * high, high, "cases"),), marks=marks, named=False)
 
 
 def _surface(result: Sweep, values: Floats, label: str) -> Panel:
-    """A family of lines where the shorter parameter has few values, else a heat map."""
+    """Panel of a measure over two parameters: lines where one parameter has few values, else a heat map."""
     first, second = result.parameters
     if len(first.values) < len(second.values) or not first.numeric:
         first, second, values = second, first, values.T
@@ -115,7 +115,7 @@ def _named(parameter: Parameter) -> str:
 
 
 def history(result: Sweep, name: str, title: str = "") -> Figure:
-    """Describe a history of all cases: the median and the band of nine tenths, or one line per case of a grid."""
+    """Describe a history of all cases: median and band of nine tenths of random draws, or a line for each case."""
     values, time = result.histories[name], result.time
     factor, label = scaled(name, result.units[name], values)
     lines: list[Line] = []
@@ -124,7 +124,7 @@ def history(result: Sweep, name: str, title: str = "") -> Figure:
     if name in result.statistics:
         statistics, note = result.statistics[name], "dotted: 95 % confidence of the band's edges"
         for k, place in enumerate(list(np.ndindex(statistics.values.shape[:-3]))[:_POINTS]):
-            low, middle, high = (factor * statistics[each][place] for each in ("5 %", "median", "95 %"))
+            low, middle, high = (factor * statistics[quantile][place] for quantile in ("5 %", "median", "95 %"))
             areas.append(Area(time, low[:, 0], high[:, 0], f"5 to 95 %{_place(result, place)}", k))
             for edge in (low[:, 1], high[:, 2]):
                 lines.append(Line(time, edge, "_95 % confidence", colour=k, dash="dotted"))
@@ -143,7 +143,7 @@ def _place(result: Sweep, place: tuple[int, ...]) -> str:
 
 
 def indices(result: Sweep, name: str, title: str = "") -> Figure:
-    """Describe the Sobol indices of a measure, at the first point of the grid, the largest on top."""
+    """Describe the Sobol indices of a measure at the first point of the grid, with the largest on top."""
     shares = result.indices[name]
     values = np.nan_to_num(shares.values[(0,) * (shares.values.ndim - 3)])
     order = np.argsort(-values[:, 1, 0], kind="stable")
@@ -156,14 +156,14 @@ def indices(result: Sweep, name: str, title: str = "") -> Figure:
 
 
 def probability(result: Sweep, name: str, title: str = "") -> Figure:
-    """Describe a probability with its bounds over the one parameter of the grid."""
+    """Describe a probability, with its bounds, over the one parameter of the grid."""
 
     def draw(x: Floats, values: Floats, label: str) -> Panel:
         middle, low, high = values.T
         areas = (Area(x, low, high, "95 % confidence"),)
         return Panel(label, (Line(x, middle, "estimate", marks="joined"),), areas=areas, zero=True, height=2.0)
 
-    (parameter,) = (each for each in result.parameters if not each.drawn)
+    (parameter,) = (parameter for parameter in result.parameters if not parameter.drawn)
     panel = _over(parameter, draw, result.statistics[name][PROBABILITY], f"probability of {name}")
     return Figure(title or result.title, f"{name}: probability", (panel,))
 
@@ -177,7 +177,7 @@ def fit(result: Fit, title: str = "") -> Figure:
 
 
 def _values(result: Fit | Optimum) -> str:
-    """Write the values of a fit or an optimum with their units."""
+    """Values of a fit or an optimum in words, with their units."""
     rows = zip(result.parameters, result.values, result.units, strict=True)
     short = isinstance(result, Fit)
     return ", ".join(
@@ -187,7 +187,7 @@ def _values(result: Fit | Optimum) -> str:
 
 
 def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
-    """Panels of a column over time: data with the fitted values, and what is left, with its standard deviation."""
+    """Panels of a column over time: data with the fitted values, and the residual with its standard deviation."""
     factor, label = scaled(column.name, column.unit, column.measured)
     stride, x = max(1, len(result.at) // _DOTS), result.at
     lines = (
@@ -205,7 +205,7 @@ def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
 
 
 def _of_modes(result: Fit, column: FittedColumn) -> Panel:
-    """Panel of the residual of every mode over its measured value, before and after the fit."""
+    """Panel of the residual of every mode as a share of its measured value, before and after the fit."""
     size = np.abs(column.measured)
     shares = {
         label: 100 * (column.measured - values) / size
@@ -216,7 +216,7 @@ def _of_modes(result: Fit, column: FittedColumn) -> Panel:
 
 
 def optimum(result: Optimum, title: str = "") -> Figure:
-    """Describe the figure over the improving tries, and where the values lie between their bounds."""
+    """Describe the objective over the tries that improved it, and where their values lie between the bounds."""
     o, x = result, np.arange(len(result.history), dtype=float)
     factor, label = scaled(o.minimise, o.unit, o.history)
     line = Line(x, factor * o.history, o.minimise, colour=REFERENCE, marks="joined")
@@ -233,7 +233,7 @@ def optimum(result: Optimum, title: str = "") -> Figure:
 
 
 def sensitivity(result: Sensitivity, name: str, title: str = "") -> Figure:
-    """Describe how one measure changes with each parameter."""
+    """Describe how one measure changes with each parameter, with the parameters that matter most."""
     s, k = result, result.measures.index(name)
     chosen = result.ranked(name)[:_BARS]
     size = float(s.figures[k])
@@ -254,7 +254,9 @@ def sensitivity(result: Sensitivity, name: str, title: str = "") -> Figure:
 
 
 def shaping(command: ShapedCommand, title: str = "") -> Figure:
-    """Describe a shaped command, a ZVD-shaped one and a smooth step."""
+    """Describe commands over time, a shaped one, a ZVD-shaped one and a smooth step, and the tip's
+    motion after each.
+    """
     c = command
     axis = int(np.nan_to_num(np.abs(c.runs[-1].tip)).max(axis=0).argmax())
     factor, label = scaled(f"tip {'xyz'[axis]}", "m", c.runs[-1].tip[:, axis])
@@ -269,7 +271,7 @@ def shaping(command: ShapedCommand, title: str = "") -> Figure:
 
 
 def robustness(command: ShapedCommand, title: str = "") -> Figure:
-    """Describe the amplitude that each command leaves, over the ratio of all frequencies to the design's."""
+    """Describe the vibration that each command leaves if all frequencies differ from the design's by a ratio."""
     c = command
     top = 1.2 * 1e3 * float(c.runs[-1].by_ratio.max())
     lines = tuple(Line(c.ratio, 1e3 * run.by_ratio, run.name, colour=k) for k, run in enumerate(c.runs))

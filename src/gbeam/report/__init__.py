@@ -48,13 +48,13 @@ def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
 def lines_of(kind: type, facts: Facts, *, verbose: bool = True, **options: Any) -> list[tuple[str, str]]:
     """Return the lines that a terminal shows of a kind of result, from its JSON, each with its tone.
 
-    Without `verbose` a verdict stands alone, and what it rests on is left out.
+    Without `verbose` the figures that a verdict rests on are left out.
     """
     from gbeam.results.facts import paths_of
     from gbeam.results.study import tree_of_answers  # of every kind, which `gbeam check` does without
 
     title = [Sentence(facts["title"], "verdict")] if facts.get("title") and kind.__name__ in _TITLED else []
-    words = {path: each.words for path, each in paths_of(tree_of_answers(kind))}
+    words = {path: declaration.words for path, declaration in paths_of(tree_of_answers(kind))}
     blocks = list(blocks_of(kind.__name__, facts, words, options))
     lines = in_words([*title, *blocks, *remarks_of(facts)], verbose=verbose)
     hidden = not verbose and any(isinstance(block, Section) and block.verbose for block in blocks)
@@ -72,8 +72,8 @@ def remarks_of(facts: Facts) -> tuple[Items, Items]:
     """Return the warnings and the notes of a result, or of several by motion, each once."""
     answers = facts.get("motions", {})
 
-    def said(kind: str) -> tuple[str, ...]:
-        of_answers = {name: answer.get(kind, ()) for name, answer in answers.items()}
-        return tuple(dict.fromkeys((*facts.get(kind, ()), *each_once(of_answers))))
+    def remarks(kind: str) -> tuple[str, ...]:
+        by_motion = {name: answer.get(kind, ()) for name, answer in answers.items()}
+        return tuple(dict.fromkeys((*facts.get(kind, ()), *each_once(by_motion))))
 
-    return Items(said("warnings"), "warning"), Items(said("notes"), "note")
+    return Items(remarks("warnings"), "warning"), Items(remarks("notes"), "note")

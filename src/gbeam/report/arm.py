@@ -8,9 +8,12 @@ from gbeam.report.words import along, number
 
 
 def levels(motions: Facts) -> Block:
-    """Table of the levels of plain arms, a row for each of them and each of their rigid specimens."""
-    rows = [{"name": item, **each["hub"]["level"], "felt": felt} for name, each in motions.items()
-            if "level" in each.get("hub", {}) for item, felt in _felt(name, each).items()]  # fmt: skip
+    """Table of the levels of plain arms: a row for each motion, or for each rigid specimen on it."""
+    rows = []
+    for name, motion in motions.items():
+        if "level" in motion.get("hub", {}):
+            for label, loads in _felt(name, motion).items():
+                rows.append({"name": label, **motion["hub"]["level"], "felt": loads})
     cells: Columns = {
         "motion": "name",
         "along": lambda row: along([*row["load"].values()]),
@@ -30,9 +33,12 @@ def levels(motions: Facts) -> Block:
 
 
 def balance(motions: Facts) -> Block:
-    """Table of the imbalance of what plain arms carry, and the counterweight, a row for each of them."""
-    rows = [{"name": name, **each["hub"]["imbalance"], "radius": each["hub"]["level"]["radius"]}
-            for name, each in motions.items() if "imbalance" in each.get("hub", {})]  # fmt: skip
+    """Table of the imbalance of what plain arms carry and of the counterweights, a row for each motion."""
+    rows = []
+    for name, motion in motions.items():
+        hub = motion.get("hub", {})
+        if "imbalance" in hub:
+            rows.append({"name": name, **hub["imbalance"], "radius": hub["level"]["radius"]})
     cells: Columns = {
         "motion": "name",
         "imbalance, kg m": "size",
@@ -46,16 +52,18 @@ def balance(motions: Facts) -> Block:
 
 
 def _felt(name: str, motion: Facts) -> dict[str, Facts]:
-    """Largest loads of the centre and of every corner of rigid specimens, m/s², by motion and body; nothing of other
-    bodies.
+    """Largest loads, m/s², of the centre and of every corner of each rigid specimen, by the name of its row.
+
+    The name is the motion, with the body where there are several. Without a specimen the motion has one empty row.
     """
     bodies = motion.get("bodies", {})
-    specimens = {key: each["specimen"] for key, each in bodies.items() if "specimen" in each}
-    felt = {
-        key: {"centre": each["centre"], "corners": [corner["max_abs"] for corner in each["corners"]]}
-        for key, each in specimens.items()
-    }
-    return {f"{name}, {key}" if len(bodies) > 1 else name: each for key, each in felt.items()} or {name: {}}
+    felt: dict[str, Facts] = {}
+    for body_name, body in bodies.items():
+        if "specimen" in body:
+            label = f"{name}, {body_name}" if len(bodies) > 1 else name
+            corners = [corner["max_abs"] for corner in body["specimen"]["corners"]]
+            felt[label] = {"centre": body["specimen"]["centre"], "corners": corners}
+    return felt or {name: {}}
 
 
 def _range(sizes: list[float]) -> str:

@@ -114,27 +114,29 @@ def table(
     scale: float = 0.0,
     **more: Any,
 ) -> Table:
-    """Return a table of rows of JSON; `cells` are its columns by head, and `optional` ones are left out where empty.
+    """Return a table of rows of JSON. `cells` are its columns by their heads; `optional` ones are left out where empty.
 
-    Numbers at paths are in SI: a head such as "stress, MPa" converts them. What is a rounding error beside the largest
-    number of the same unit, or beside a larger `scale`, is zero.
+    Numbers at paths are in SI: a head such as "stress, MPa" converts them. A number that is only a rounding error
+    beside the largest one of the same unit, or beside a larger `scale`, is shown as zero.
     """
     forms = ["" if callable(column) else column.partition(":")[2] for column in cells.values()]
     units = ["" if callable(column) else _unit(head) for head, column in cells.items()]
     values = [[_value(row, column) for column in cells.values()] for row in rows]
-    sizes = dict.fromkeys(units, 0.0)
+    largest = dict.fromkeys(units, 0.0)
     for unit, value in (pair for row in values for pair in zip(units, row, strict=True)):
-        sizes[unit] = max(sizes[unit], abs(value) if isinstance(value, (int, float)) else 0.0)
+        largest[unit] = max(largest[unit], abs(value) if isinstance(value, (int, float)) else 0.0)
 
     def cell(value: Value, form: str, unit: str) -> Cell:
         if unit and isinstance(value, (int, float)):
-            value = 0.0 if abs(value) <= rounding(sizes[unit], scale) else factor(unit) * value
+            value = 0.0 if abs(value) <= rounding(largest[unit], scale) else factor(unit) * value
         return _cell(value, form)
 
-    drawn = [tuple(map(cell, row, forms, units)) for row in values]
-    kept = [k for k, head in enumerate(cells) if head not in optional or any(row[k].text not in " –" for row in drawn)]
-    heads = tuple(head.strip() for k, head in enumerate(cells) if k in kept)
-    return Table(heads, tuple(tuple(row[k] for k in kept) for row in drawn), caption, **more)
+    cell_rows = [tuple(map(cell, row, forms, units)) for row in values]
+    kept_columns = [
+        k for k, head in enumerate(cells) if head not in optional or any(row[k].text not in " –" for row in cell_rows)
+    ]
+    heads = tuple(head.strip() for k, head in enumerate(cells) if k in kept_columns)
+    return Table(heads, tuple(tuple(row[k] for k in kept_columns) for row in cell_rows), caption, **more)
 
 
 def _unit(head: str) -> str:
@@ -167,54 +169,61 @@ _APART = ("form", "units", "provenance", "warnings", "notes", "files", "title", 
 def quantities(
     facts: Facts, units: Mapping[str, str] | None = None, place: str = "", words: Mapping[str, str] | None = None
 ) -> Iterator[Block]:
-    """Yield any JSON: a table of its plain values, and a section of each list of rows and of each object; `units` and
-    `words` are by path, `place` is the path of `facts`.
+    """Yield any JSON as blocks: a table of its plain values, and a section for each list of rows and each object.
+
+    `units` and `words` are by path; `place` is the path of `facts`.
     """
 
     units = facts.get("units", {}) if units is None else units
-    shown = {key: value for key, value in facts.items() if key not in _APART and value not in (None, "")}
+    entries = {key: value for key, value in facts.items() if key not in _APART and value not in (None, "")}
     cells: dict[str, Column] = {
         "": lambda key: key.replace("_", " "),
-        " ": lambda key: shown[key],
+        " ": lambda key: entries[key],
         "  ": lambda key: raised(units.get(place + key, "")),
         "   ": lambda key: (words or {}).get(place + key, ""),
     }
-    yield table([key for key, value in shown.items() if not isinstance(value, (dict, list))], cells, optional=("   ",))
-    for key, value in shown.items():
+    yield table(
+        [key for key, value in entries.items() if not isinstance(value, (dict, list))], cells, optional=("   ",)
+    )
+    for key, value in entries.items():
         if key == "motions":
-            for name, each in value.items():
-                yield Section(
-                    f"motion {name}", tuple(quantities(each, units, f"{place}motions.*.", words)), titled=True
-                )
+            for name, motion in value.items():
+                blocks = tuple(quantities(motion, units, f"{place}motions.*.", words))
+                yield Section(f"motion {name}", blocks, titled=True)
             continue
-        if isinstance(value, dict) and any(not isinstance(each, dict) for each in value.values()):
+        if isinstance(value, dict) and not all(isinstance(entry, dict) for entry in value.values()):
             yield Section(key.replace("_", " "), tuple(quantities(value, units, f"{place}{key}.", words)), titled=True)
             continue
         named_rows = isinstance(value, dict)
         rows = [{"": name, **row} for name, row in value.items()] if named_rows else value
         if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows):
             below = f"{place}{key}.*." if named_rows else f"{place}{key}[i]."
-            keys = [key for key, each in rows[0].items() if not isinstance(each, (dict, list))]
-            heads = (
-                ", ".join(filter(None, (each.replace("_", " "), raised(units.get(below + each, ""))))) for each in keys
-            )
-            yield Section(
-                key.replace("_", " "), (table(rows, dict(zip(heads, keys, strict=True)), most=24),), titled=True
-            )
+            columns: dict[str, Column] = {}
+            for column, entry in rows[0].items():
+                if not isinstance(entry, (dict, list)):
+                    unit = raised(units.get(below + column, ""))
+                    columns[", ".join(filter(None, (column.replace("_", " "), unit)))] = column
+            yield Section(key.replace("_", " "), (table(rows, columns, most=24),), titled=True)
 
 
 def _value(row: Any, column: Column) -> Value:
-    """Value of a column in a row: by its function, or at its path; None where a key of the path is missing."""
+    """Value of a column in a row: by the column's function, or at its path. None where a key of the path is missing."""
     if callable(column):
         return column(row)
+    value = row
     for key in column.partition(":")[0].split("."):
-        row = row.get(key) if isinstance(row, Mapping) else None if row is None else row[int(key)]
-    value: Value = row
-    return value
+        if isinstance(value, Mapping):
+            value = value.get(key)
+        elif value is not None:
+            value = value[int(key)]
+    result: Value = value
+    return result
 
 
 def _cell(value: Value, form: str = "") -> Cell:
-    """Cell of a value: a dash for None and what is not finite; numbers by the form, else with four digits."""
+    """Cell of a value: a dash for None and for what is not finite; numbers by the format `form`, or
+    with four digits.
+    """
     match value:
         case Cell():
             return value
@@ -226,7 +235,9 @@ def _cell(value: Value, form: str = "") -> Cell:
             return Cell("–")
     if not math.isfinite(value):
         return Cell("–")
-    return Cell(percent(value) if form == "%" else f"{value:{form}}".rstrip(".") if form else number(value))
+    if form == "%":
+        return Cell(percent(value))
+    return Cell(f"{value:{form}}".rstrip(".") if form else number(value))
 
 
 def six(value: float | str | None) -> Cell:
@@ -247,7 +258,7 @@ _BLANK = ("", "")
 
 
 def _lines(blocks: Iterable[Block], verbose: bool) -> Iterator[tuple[str, str]]:
-    """Lines of blocks for a terminal, each with its tone; empty ones about sections."""
+    """Lines of blocks for a terminal, each with its tone. Empty lines stand around sections."""
     for block in blocks:
         match block:
             case Section(verbose=True) if not verbose:
@@ -257,8 +268,8 @@ def _lines(blocks: Iterable[Block], verbose: bool) -> Iterator[tuple[str, str]]:
             case Sentence():
                 yield block.text, block.tone
             case Items():
-                start = f"  {block.tone}: " if block.tone in ("warning", "note") else ""
-                yield from ((f"{start}{line}", block.tone) for line in block.lines)
+                prefix = f"  {block.tone}: " if block.tone in ("warning", "note") else ""
+                yield from ((f"{prefix}{line}", block.tone) for line in block.lines)
             case Verbatim():
                 yield f"  {block.text}", ""
             case Section(detail=False, titled=False):
@@ -269,17 +280,21 @@ def _lines(blocks: Iterable[Block], verbose: bool) -> Iterator[tuple[str, str]]:
 
 
 def _rows(block: Table) -> Iterator[tuple[str, str]]:
-    """Lines of a table for a terminal, each with its tone: bad where a cell of the row is, none in folded rows."""
-    shown = block.rows[: block.most]
+    """Lines of a table for a terminal, each with its tone.
+
+    A row with a bad cell is bad. Where the terminal is so narrow that rows are folded, they have no tone.
+    """
+    shown_rows = block.rows[: block.most]
     flush_left = {k for k in range(len(block.heads)) if not block.numeric(k)}
-    lines = columns(list(block.heads), [[cell.text for cell in row] for row in shown], flush_left)
-    tones = ["faint", *("bad" if any(cell.tone == "bad" for cell in row) else "" for row in shown)]
+    lines = columns(list(block.heads), [[cell.text for cell in row] for row in shown_rows], flush_left)
+    tones = ["faint", *("bad" if any(cell.tone == "bad" for cell in row) else "" for row in shown_rows)]
     folded = len(lines) != len(tones)
-    drawn = list(zip(lines, [""] * len(lines) if folded else tones, strict=True))
+    toned_lines = list(zip(lines, [""] * len(lines) if folded else tones, strict=True))
     if not folded and not any(block.heads):
-        drawn = drawn[1:]
+        toned_lines = toned_lines[1:]
     if block.most is not None and len(block.rows) > block.most:
-        drawn.append((f"and {len(block.rows) - block.most} more: see --json", ""))
+        toned_lines.append((f"and {len(block.rows) - block.most} more: see --json", ""))
     if block.caption:
-        drawn = [_BLANK, (f"{block.caption}:", ""), *((f"  {line}", tone) for line, tone in drawn), _BLANK]
-    yield from drawn
+        indented = [(f"  {line}", tone) for line, tone in toned_lines]
+        toned_lines = [_BLANK, (f"{block.caption}:", ""), *indented, _BLANK]
+    yield from toned_lines

@@ -31,15 +31,15 @@ _FAILURES = 5  # that are named
 
 
 def sweep(facts: Facts) -> Blocks:
-    """Cases of a sweep, if few, or quantiles; of random draws statistics; how cases ended; on a page all cases."""
+    """Report of a sweep: few cases one by one, else quantiles; statistics of random draws; and how cases ended."""
     outcomes = np.array(facts["outcomes"], dtype=object)
     few = not facts["statistics"] and outcomes.size <= _FEW
     yield table(
         facts["parameters"],
         {
             "varies": "path",
-            "unit": lambda each: raised(each["unit"]),
-            "values": lambda each: each["distribution"] or _ends(each["values"]),
+            "unit": lambda parameter: raised(parameter["unit"]),
+            "values": lambda parameter: parameter["distribution"] or _ends(parameter["values"]),
         },
         f"figures of gbeam {facts['verb']}",
         detail=True,
@@ -55,12 +55,12 @@ def sweep(facts: Facts) -> Blocks:
 
 
 def _ended(facts: Facts, outcomes: Any) -> Blocks:
-    """Numbers of cases by outcome, and each message of those that are not done, with its number of cases."""
-    lost = int((~np.isin(outcomes.astype(str), ("done", *ANSWERED))).sum())
-    if facts["statistics"] and lost:
-        yield Sentence(f"{lost} of {outcomes.size} cases are not done: the estimates are of the others")
+    """Number of cases by outcome, and the messages of cases that are not done, each with the number of its cases."""
+    failed = int((~np.isin(outcomes.astype(str), ("done", *ANSWERED))).sum())
+    if facts["statistics"] and failed:
+        yield Sentence(f"{failed} of {outcomes.size} cases are not done: the estimates are of the others")
     counts = ", ".join(f"{count} {name}" for name, count in facts["counts"].items())
-    yield Sentence(f"{outcomes.size} cases: {counts}", "bad" if lost else "")
+    yield Sentence(f"{outcomes.size} cases: {counts}", "bad" if failed else "")
     counts_of: dict[str, int] = {}
     for outcome, message in zip(outcomes.ravel(), np.array(facts["messages"], dtype=object).ravel(), strict=True):
         if outcome != "done":
@@ -80,19 +80,20 @@ def _ends(values: list[Any]) -> str:
 
 
 def _cases(facts: Facts, outcomes: Any) -> Block:
-    """Table of the parameters and figures of every case, with its outcome where not all are done."""
+    """Table of the parameters and figures of every case, with its outcome unless all are done."""
 
     parameters, measures = facts["parameters"], facts["measures"]
-    axes = [facts["dimensions"].index("sample" if each["distribution"] else each["path"]) for each in parameters]
-    figures = [np.array(each["values"], dtype=float) for each in measures.values()]
+    # The dimension along which each parameter varies: random ones vary together.
+    axes = [facts["dimensions"].index("sample" if row["distribution"] else row["path"]) for row in parameters]
+    figures = [np.array(measure["values"], dtype=float) for measure in measures.values()]
 
     def case(place: tuple[int, ...]) -> list[Cell]:
-        ended = Cell(outcomes[place], "" if outcomes[place] == "done" else "bad")
-        values = (each["values"][place[axis]] for each, axis in zip(parameters, axes, strict=True))
-        return [*map(six, values), *(Cell(number(each[place])) for each in figures), ended]
+        outcome = Cell(outcomes[place], "" if outcomes[place] == "done" else "bad")
+        values = (row["values"][place[axis]] for row, axis in zip(parameters, axes, strict=True))
+        return [*map(six, values), *(Cell(number(figure[place])) for figure in figures), outcome]
 
-    heads = [_titled(each["path"], each["unit"]) for each in parameters]
-    heads += [_titled(name, each["unit"]) for name, each in measures.items()]
+    heads = [_titled(row["path"], row["unit"]) for row in parameters]
+    heads += [_titled(name, measure["unit"]) for name, measure in measures.items()]
     heads += [] if facts["outcome"] == "done" else ["outcome"]
     places = list(np.ndindex(outcomes.shape))
     caption = f"the first {_LISTED} of {len(places)}" if len(places) > _LISTED else ""
@@ -101,7 +102,7 @@ def _cases(facts: Facts, outcomes: Any) -> Block:
 
 
 def _quantiles(measures: Facts) -> Block:
-    """Extremes, mean, quantiles and standard deviation of each measure, over the cases that have it."""
+    """Table of the extremes, mean, quantiles and standard deviation of each measure, over the cases that have it."""
     summaries: dict[str, Any] = {
         "least": np.min,
         "5 %": lambda v: np.quantile(v, 0.05),
@@ -112,35 +113,37 @@ def _quantiles(measures: Facts) -> Block:
         "standard deviation": lambda v: np.std(v, ddof=1) if len(v) > 1 else np.nan,
     }
 
-    measured = [np.array(each["values"], dtype=float) for each in measures.values()]
-    finite = [values[np.isfinite(values)] for values in measured]
-    rows = [[name, *(number(f(each)) if len(each) else "–" for each in finite)] for name, f in summaries.items()]
-    heads = ["", *(_titled(name, each["unit"]) for name, each in measures.items())]
+    values = [np.array(measure["values"], dtype=float) for measure in measures.values()]
+    finite = [array[np.isfinite(array)] for array in values]
+    rows = []
+    for name, summary in summaries.items():
+        rows.append([name, *(number(summary(array)) if len(array) else "–" for array in finite)])
+    heads = ["", *(_titled(name, measure["unit"]) for name, measure in measures.items())]
     return table(rows, {head: str(k) for k, head in enumerate(heads)})
 
 
 def _estimates(facts: Facts, name: str) -> Blocks:
-    """Statistics of one measure or history, with their intervals of 95 % confidence."""
+    """Tables of the statistics of one measure or history, with their intervals of 95 % confidence."""
     estimates, history = facts["statistics"][name], name in facts["histories"]
     title = _titled(name, facts["histories" if history else "measures"][name]["unit"])
     if history:
         yield _history(facts["time"], estimates, title)
     elif isinstance(estimates["draws"], int):
         rows = [
-            (statistic, number(known(bounds["estimate"])), _between(bounds))
+            (statistic, number(known(bounds["estimate"])), _interval_words(bounds))
             for statistic, bounds in estimates.items()
             if statistic != "draws"
         ]
         columns = {"": "0", " ": "1", "  ": "2"}
         yield table(rows, columns, f"{title}, of {estimates['draws']} draws, with 95 % confidence")
         if name in facts["indices"]:
-            yield _shares(facts["indices"][name])
+            yield _sobol_table(facts["indices"][name])
     else:
         yield _over_grid(facts, estimates, title)
 
 
-def _between(bounds: Facts) -> str:
-    """An interval, ``0.1 to 0.2``; one-sided where an end is not known."""
+def _interval_words(bounds: Facts) -> str:
+    """Interval in words, ``0.1 to 0.2``; one-sided where an end is not known."""
     low, high = (known(bounds[end]) for end in ("low", "high"))
     if math.isnan(low) and math.isnan(high):
         return "too few draws for a bound"
@@ -149,8 +152,8 @@ def _between(bounds: Facts) -> str:
     return f"above {number(low)}" if math.isnan(high) else f"{number(low)} to {number(high)}"
 
 
-def _shares(indices: Facts) -> Block:
-    """Sobol indices, the largest in total first."""
+def _sobol_table(indices: Facts) -> Block:
+    """Table of Sobol indices, the largest in total first."""
 
     def bounded(bounds: Facts) -> str:
         return f"{known(bounds['estimate']):.3f} ± {known(bounds['high']) - known(bounds['estimate']):.3f}"
@@ -164,23 +167,25 @@ def _shares(indices: Facts) -> Block:
 
 
 def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:
-    """Table of the grid, a row a point: the first statistic with its 95 % interval, then the others."""
-    grid = [each for each in facts["parameters"] if not each["distribution"]]
-    names = [each for each in estimates if each in ("mean", "5 %", "95 %", PROBABILITY)]
+    """Table with a row for each point of the grid: the first statistic with its 95 % interval, then the others."""
+    grid = [parameter for parameter in facts["parameters"] if not parameter["distribution"]]
+    names = [name for name in estimates if name in ("mean", "5 %", "95 %", PROBABILITY)]
     values = {name: {bound: np.array(estimates[name][bound], dtype=float) for bound in BOUNDS} for name in names}
 
     def row(place: tuple[int, ...]) -> list[Cell]:
         first, *others = (Cell(number(values[name]["estimate"][place])) for name in names)
-        between = _between({bound: values[names[0]][bound][place] for bound in BOUNDS})
-        return [*(six(each["values"][k]) for each, k in zip(grid, place, strict=True)), first, Cell(between), *others]
+        interval = _interval_words({bound: values[names[0]][bound][place] for bound in BOUNDS})
+        point = [six(parameter["values"][k]) for parameter, k in zip(grid, place, strict=True)]
+        return [*point, first, Cell(interval), *others]
 
-    heads = [*(_titled(each["path"], each["unit"]) for each in grid), names[0], "95 % confidence", *names[1:]]
+    point_heads = [_titled(parameter["path"], parameter["unit"]) for parameter in grid]
+    heads = [*point_heads, names[0], "95 % confidence", *names[1:]]
     places = np.ndindex(values[names[0]]["estimate"].shape)
     return table(map(row, places), {head: str(k) for k, head in enumerate(heads)}, title)
 
 
 def _history(time: list[float], estimates: Facts, title: str) -> Block:
-    """Quantiles of a history at the time at which its median is largest, at the first point of the grid."""
+    """Quantiles of a history at the time when its median is largest in size, at the first point of the grid."""
 
     def over_time(name: str, bound: str) -> Any:
         values = np.array(estimates[name][bound], dtype=float)

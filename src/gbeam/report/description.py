@@ -16,13 +16,16 @@ from gbeam.results.result import part_words
 
 
 def text(case: Description) -> str:
-    """Description on a few lines."""
+    """Description of a scenario for a terminal, on a few lines."""
     lines = [case.title or "(no title)", *_bodies(case)]
     motions = []
     for name, kind in case.motions.items():
-        described = kind + (f" that tracks {case.tracks[name]}" if name in case.tracks else "")
-        described += f", {_held(case.levels[name])}" if name in case.levels else ""
-        motions.append(level_words(name, case.scales.get(name)) + (f": {described}" if described != name else ""))
+        words = kind
+        if name in case.tracks:
+            words += f" that tracks {case.tracks[name]}"
+        if name in case.levels:
+            words += f", {_held(case.levels[name])}"
+        motions.append(level_words(name, case.scales.get(name)) + (f": {words}" if words != name else ""))
     lines += _listed("motions", motions)
     for name, record in case.records.items():
         first, *more_lines = [*_lines(record), *_offsets(name, case.records)]
@@ -35,8 +38,8 @@ def text(case: Description) -> str:
         step = "auto" if case.step is None else f"{1e3 * case.step:.4g} ms"
         lines.append(f"  response  {times}, {case.integrator}, step {step}")
     lines += _listed("drawn", [f"{path}: {drawn}; here its centre" for path, drawn in case.distributions.items()])
-    lines += [f"  warning: {each}" for each in case.warnings]
-    lines += [f"  note: {each}" for each in case.notes]
+    lines += [f"  warning: {warning}" for warning in case.warnings]
+    lines += [f"  note: {note}" for note in case.notes]
     return "\n".join([*lines, "Scenario valid."])
 
 
@@ -53,24 +56,25 @@ def _listed(head: str, lines: Sequence[str]) -> list[str]:
 
 
 def _bodies(case: Description) -> list[str]:
-    """Lines on the bodies, joints, forces, controllers and gravity; a body alone on the base is told in full."""
+    """Lines on the bodies, joints, forces, controllers and gravity. A single body on the base is described in full."""
     if len(case.bodies) == 1 and not case.joints:
         ((name, body),) = case.bodies.items()
         return [*_listed(name, list(_facts(body))), *_listed("modes", _modes(body, "at rest, Hz: ")), *_acting(case)]
-    bodies = [f"{name}: {'; '.join((*_facts(each), *_modes(each, 'held at rest, Hz: ')))}" for name, each in
-              case.bodies.items()]  # fmt: skip
+    bodies = []
+    for name, body in case.bodies.items():
+        bodies.append(f"{name}: {'; '.join((*_facts(body), *_modes(body, 'held at rest, Hz: ')))}")
     return [*_listed("bodies", [f"{case.mass:.4g} kg, {_centre(case.centre)} at the start", *bodies]), *_acting(case)]
 
 
 def _facts(body: BodyDescription) -> Iterator[str]:
-    """Yield words on a body's kind, size and mass, its coordinates and points, and what clamps hold."""
+    """Yield words on a body: its kind, size and mass, its coordinates and points, and the nodes that clamps hold."""
     length = "" if body.length is None else f"{1e3 * body.length:.4g} mm, "
     added = f", {body.mass:.4g} kg with {len(body.masses)} added" if body.masses else ""
     centre = _centre(body.centre) if body.length is None else ""
     yield ", ".join(filter(None, (body.kind, f"{length}{body.bare:.4g} kg{added}", centre)))
-    counted = ", ".join(f"{count} {way}" for way, count in body.counts.items())
-    of_shapes = f": {counted}" if counted else ""
-    coordinates = f"{body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}{of_shapes}; "
+    count_words = ", ".join(f"{count} {family}" for family, count in body.counts.items())
+    shape_words = f": {count_words}" if count_words else ""
+    coordinates = f"{body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}{shape_words}; "
     yield f"{coordinates if body.coordinates else ''}points {', '.join(body.points)}"
     yield from (f"clamp {name} holds {nodes}" for name, nodes in body.clamps.items())
 
@@ -87,19 +91,21 @@ def _centre(centre: Any) -> str:
 
 
 def _acting(case: Description) -> list[str]:
-    """Lines on the joints, forces, controllers and gravity."""
+    """Lines on the joints, forces, controllers and gravity of a case."""
     joints = []
     for name, joint in case.joints.items():
         ways = {"free": joint.free, "driven": joint.driven, "prescribed": joint.prescribed}
         moving = "; ".join(f"{way} {', '.join(names)}" for way, names in ways.items() if names) or "nothing moves"
         joints.append(f"{name}: {joint.kind}, {joint.body} on {joint.on}; {moving}")
-    forces = [f"{name}: on {each.on}{', following it' if each.follower else ''}" for name, each in case.forces.items()]
-    controllers = [
-        f"{name}: {', '.join(each.drive)} from {', '.join(each.measure)}, every {1e3 * each.sample:.4g} ms"
-        + (f", {1e3 * each.delay:.4g} ms late" if each.delay else "")
-        for name, each in case.controllers.items()
+    forces = [
+        f"{name}: on {force.on}{', following it' if force.follower else ''}" for name, force in case.forces.items()
     ]
-    gravity = () if case.gravity is None else (", ".join(f"{each:.4g}" for each in case.gravity) + " m/s²",)
+    controllers = [
+        f"{name}: {', '.join(loop.drive)} from {', '.join(loop.measure)}, every {1e3 * loop.sample:.4g} ms"
+        + (f", {1e3 * loop.delay:.4g} ms late" if loop.delay else "")
+        for name, loop in case.controllers.items()
+    ]
+    gravity = () if case.gravity is None else (", ".join(f"{g:.4g}" for g in case.gravity) + " m/s²",)
     parts = {"joints": joints, "forces": forces, "control": controllers, "gravity": gravity}
     return [line for head, lines in parts.items() for line in _listed(head, lines)]
 
@@ -117,16 +123,20 @@ def _by_file(records: Mapping[str, RecordSummary]) -> dict[str, dict[str, Record
 
 
 def _offsets(name: str, records: Mapping[str, RecordSummary]) -> Iterator[str]:
-    """Yield a table of the offsets that are subtracted from a record; of a file they are told once."""
+    """Yield a table of the offsets that are subtracted from a record. For several records of one file
+    it is shown once.
+    """
     record = records[name]
     if not record.offsets:
         return
-    same = [key for key, each in records.items()
-            if each.file == record.file and each.offsets_of_columns == record.offsets_of_columns]  # fmt: skip
-    if same[0] != name:
-        yield f"offsets as of {same[0]} are subtracted"
+    first = next(
+        key for key, other in records.items()
+        if other.file == record.file and other.offsets_of_columns == record.offsets_of_columns
+    )  # fmt: skip
+    if first != name:
+        yield f"offsets as of {first} are subtracted"
         return
-    cells = [["offsets at rest", *(f"{each.start:.6g} to {each.end:.6g} s" for each in record.offsets), ""]]
+    cells = [["offsets at rest", *(f"{offset.start:.6g} to {offset.end:.6g} s" for offset in record.offsets), ""]]
     cells += [[f"{axis} = {record.channels[axis]}", *values, unit] for axis, unit, values in record.offsets_of_columns]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     for row in cells:
@@ -135,15 +145,15 @@ def _offsets(name: str, records: Mapping[str, RecordSummary]) -> Iterator[str]:
 
 
 def _sections(records: Mapping[str, RecordSummary]) -> Iterator[str]:
-    """Yield a table of the sections of a file, with the flights by records that are flown of each."""
+    """Yield a table of the sections of a file, each with the flights whose records lie in it."""
     record = next(iter(records.values()))
-    widest = max(len(each.value) for each in record.sections)
+    widest = max(len(section.value) for section in record.sections)
     for section in record.sections[:_SECTIONS]:
-        inside = [
-            name
-            for name, each in records.items()
-            if each.span[0] <= section.end and each.span[1] >= section.start and each.section in ("", section.value)
-        ]
+        inside = []
+        for name, flown in records.items():
+            overlaps = flown.span[0] <= section.end and flown.span[1] >= section.start
+            if overlaps and flown.section in ("", section.value):
+                inside.append(name)
         value = f"{record.sections_by} {section.value:<{widest}}"
         ends = f"{section.start:9.6g} to {f'{section.end:.6g} s':<11}"
         yield f"{value}  {ends}  {', '.join(inside) or 'not flown'}"
@@ -152,23 +162,24 @@ def _sections(records: Mapping[str, RecordSummary]) -> Iterator[str]:
 
 
 def _lines(record: RecordSummary) -> Iterator[str]:
-    """Yield lines on a record, what is read beside what is flown if they differ; its notes are among the warnings."""
+    """Yield lines on a record: its file and span, ranges as read and, if they differ, as flown, level flight and gaps.
+
+    Its notes are among the warnings.
+    """
     span = f"{record.span[0]:.6g} to {record.span[1]:.6g} s"
     part = span if record.span == record.whole else part_words(record.span, record.whole)
     clock = f", 0 s being {record.clock}" if record.clock else ""
-    of = (
-        "" if record.vehicle == "aircraft" else f" of {'a rocket' if record.vehicle == 'rocket' else 'another vehicle'}"
-    )
+    vehicle = {"aircraft": "", "rocket": " of a rocket"}.get(record.vehicle, " of another vehicle")
     section = f", {record.sections_by} {record.section}" if record.section else ""
-    yield f"{Path(record.file).name}{section}, {part}{clock}, {record.quantity.replace('-', ' ')}{of}"
-    read, flown = (_cells(record, each) for each in (record.read, record.flown))
+    yield f"{Path(record.file).name}{section}, {part}{clock}, {record.quantity.replace('-', ' ')}{vehicle}"
+    read, flown = _cells(record, record.read), _cells(record, record.flown)
     same = [*read.values()] == [*flown.values()]
     rows = [("", "read and flown" if same else "read", "flown")]
     rows += [(name, cell, flown[name]) for name, cell in read.items()]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for name, *cells in rows:
-        shown = cells[:1] if same else cells
-        yield "  ".join(f"{cell:<{width}}" for cell, width in zip((name, *shown), widths, strict=False)).rstrip()
+        row_cells = cells[:1] if same else cells
+        yield "  ".join(f"{cell:<{width}}" for cell, width in zip((name, *row_cells), widths, strict=False)).rstrip()
     if record.level is not None:
         yield f"level from {record.level.start:.6g} to {record.level.end:.6g} s: {_load(record.level.load)} on average"
     elif record.quantity == "specific-force" and record.vehicle == "aircraft":
@@ -183,7 +194,7 @@ def _lines(record: RecordSummary) -> Iterator[str]:
 
 
 def _cells(record: RecordSummary, curves: Curves) -> dict[str, str]:
-    """Samples, ranges of all columns, and the largest load, of a record as it is read or flown."""
+    """Cells on a record as it is read or flown: its samples, the range of every column, and the largest load."""
     cells = {"samples": f"{curves.samples} at {curves.rate:.4g} Hz"}
     columns = [*zip("xyz", record.columns, curves.smallest, curves.largest, strict=True)]
     scales = [(STANDARD_GRAVITY, "g")] * len(columns)

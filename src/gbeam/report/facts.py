@@ -22,31 +22,34 @@ VERSION = 1  # of the keys: raised where one changes or goes
 
 
 def whole(result: Result) -> Result:
-    """Return a result as its JSON has it: a response in a study of its own; of kinds listed by motion, with a name."""
+    """Return a result as its JSON has it: a response in a study of its own, an answer for a motion with a name."""
     if isinstance(result, Response):
         name = result.name or result.environment
-        said = result.warnings, result.notes
-        return Study("", {name: result}, (), warnings=said[0], notes=said[1], provenance=result.provenance)
-    named: dict[str, Any] = {result.listed_by: result.unnamed}
-    return replace(result, **named) if result.listed_by and not getattr(result, result.listed_by) else result
+        remarks: dict[str, Any] = {"warnings": result.warnings, "notes": result.notes}
+        return Study("", {name: result}, (), provenance=result.provenance, **remarks)
+    if result.listed_by and not getattr(result, result.listed_by):
+        named: dict[str, Any] = {result.listed_by: result.unnamed}
+        return replace(result, **named)
+    return result
 
 
 def facts(*results: Result, title: str = "", files: Iterable[Path] | None = None) -> dict[str, Any]:
-    """Return a result as JSON, or those in several motions; with the files that were written, where they are given.
+    """Return a result as JSON, or one result in several motions. `files` are those that were written with it.
 
-    It carries its form, the kind of result with the version of its keys, and the unit of every number by its path.
+    It carries its form (the kind of result and the version of its keys) and the unit of every number by its path.
     """
-    answers = [whole(each) for each in results]
+    answers = [whole(result) for result in results]
     kind = type(answers[0])
     written = {} if files is None else {"files": [str(file) for file in files]}
-    units = {path: each.unit for path, each in paths_of(tree_of_answers(kind)) if each.unit not in ("", "unit")}
+    declared = paths_of(tree_of_answers(kind))
+    units = {path: quantity.unit for path, quantity in declared if quantity.unit not in ("", "unit")}
     form = {"kind": kind.__name__, "version": VERSION}
     figures = by_motion(answers, title) if kind.listed_by else json_of(answers[0])
-    return {"form": form} | _worded(figures, answers) | written | {"units": units}
+    return {"form": form} | _with_words(figures, answers) | written | {"units": units}
 
 
-def _worded(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
-    """Add to JSON the sentences of the answers' printed reports, and to a sweep's its state as outcome; return it."""
+def _with_words(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
+    """Add to JSON the sentences of printed reports, and to a sweep's its state as the outcome; return it."""
     for answer in answers:
         match answer:
             case MachinePlan():
@@ -83,29 +86,30 @@ def origin_json(provenance: Provenance) -> dict[str, Any]:
     return facts_of(provenance.stated()[0])
 
 
-def reproduction_json(again: Reproduction) -> dict[str, Any]:
+def reproduction_json(reproduction: Reproduction) -> dict[str, Any]:
     """Reproduction as JSON; a difference's size is null where the two cannot be compared."""
     return {
-        "outcome": "reproduced" if again.reproduced else "not reproduced",
-        "file": again.file,
-        "compared": again.compared,
-        "tolerance": again.tolerance,
-        "rounded": again.rounded,
-        "differences": [asdict(each) for each in again.differences],
-        "changed": {name: {"then": then, "now": now} for name, (then, now) in again.changed.items()},
+        "outcome": "reproduced" if reproduction.reproduced else "not reproduced",
+        "file": reproduction.file,
+        "compared": reproduction.compared,
+        "tolerance": reproduction.tolerance,
+        "rounded": reproduction.rounded,
+        "differences": [asdict(difference) for difference in reproduction.differences],
+        "changed": {name: {"then": then, "now": now} for name, (then, now) in reproduction.changed.items()},
     }
 
 
-def reproduction_text(again: Reproduction) -> str:
-    """Return a reproduction in words: values compared, differences, changes since."""
-    verdict = again.agreement.replace("to the", "the same to the")
-    lines = [f"{again.file}: {again.compared} values and arrays computed again: {verdict}"]
-    listed = again.beyond or 1  # what is beyond rounding, or else the largest
-    listed = min(listed, LISTED)
-    lines += [f"  {each}" for each in again.differences[:listed]]
-    if len(again.differences) > listed:
-        lines.append(f"  and {len(again.differences) - listed} more: see --json")
-    lines += [f"  {each}" for each in again.circumstances()]
+def reproduction_text(reproduction: Reproduction) -> str:
+    """Return a reproduction in words: the values compared, their differences, and changes of the
+    circumstances since.
+    """
+    verdict = reproduction.agreement.replace("to the", "the same to the")
+    lines = [f"{reproduction.file}: {reproduction.compared} values and arrays computed again: {verdict}"]
+    count = min(reproduction.beyond or 1, LISTED)  # those beyond rounding, or else the largest
+    lines += [f"  {difference}" for difference in reproduction.differences[:count]]
+    if len(reproduction.differences) > count:
+        lines.append(f"  and {len(reproduction.differences) - count} more: see --json")
+    lines += [f"  {change}" for change in reproduction.circumstances()]
     return "\n".join(lines)
 
 
@@ -157,16 +161,15 @@ def reference_of_results() -> str:
 
 
 def _rows(kind: type) -> Iterator[tuple[str, str, str]]:
-    """Yield path, unit and words of the quantities of a kind; of what is another kind of result only a link to it."""
-    others = [
-        (entry.key or name, [each.__name__ for each in records_in(kind, name) if each.__name__ in KINDS])
-        for name, entry in declarations(kind)
-        if entry.role == "rows"
-    ]
-    links = {key: names for key, names in others if names} if kind is Study else {}
+    """Yield path, unit and words of the quantities of a kind of result; for parts of other kinds a link to these."""
+    links: dict[str, list[str]] = {}
+    for name, declaration in declarations(kind) if kind is Study else ():
+        names = [record.__name__ for record in records_in(kind, name) if record.__name__ in KINDS]
+        if declaration.role == "rows" and names:
+            links[declaration.key or name] = names
     for key, names in sorted(links.items()):
-        listed = " or ".join(f"[{name}](#{name.lower()})" for name in names)
-        yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a {listed}"
+        link_words = " or ".join(f"[{name}](#{name.lower()})" for name in names)
+        yield f"{key}.*" if key == "motions" else f"{key}[i]", "–", f"a {link_words}"
     for path, entry in paths_of(tree_of_answers(kind)):
         if path.partition(".")[0].partition("[")[0] not in links:
             yield path, entry.unit, entry.words.replace("|", "\\|")

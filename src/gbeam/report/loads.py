@@ -32,33 +32,39 @@ def several(motion: Facts) -> bool:
 
 
 def by_body(motions: Facts) -> tuple[str, Facts]:
-    """Return the head of a column, and bodies by their names in it, each with its name as `body` and its motion as
-    `of`: the motion where one body is all that there is, the body of one motion, or both.
+    """Return the bodies of all motions by the name of their row, and the head of the column of these names.
+
+    A name is the motion where it has one body, the body where there is one motion, or both. Each body also has its name
+    as `body` and its motion as `of`.
     """
-    rows = [(name, body, {**each, "body": body, "of": motion}) for name, motion in motions.items()
-            for body, each in motion.get("bodies", {}).items()]  # fmt: skip
+    rows = []
+    for name, motion in motions.items():
+        for body, facts in motion.get("bodies", {}).items():
+            rows.append((name, body, {**facts, "body": body, "of": motion}))
     if not any(map(several, motions.values())):
-        return "motion", {name: each for name, _, each in rows}
+        return "motion", {name: facts for name, _, facts in rows}
     if len(motions) == 1:
-        return "body", {body: each for _, body, each in rows}
-    return "motion and body", {f"{name}, {body}": each for name, body, each in rows}
+        return "body", {body: facts for _, body, facts in rows}
+    return "motion and body", {f"{name}, {body}": facts for name, body, facts in rows}
 
 
 def resting_loads(loads: Facts, row_of: str = "motion") -> Block:
-    """Table of root loads and stress at rest, a row for every `row_of`: motion, body or both."""
+    """Table of root loads and stress at rest. `row_of` says what a row is: a motion, a body or both."""
     cells = {row_of: "name", "force, N": "force", "moment, N m": "moment"}
     cells |= {"stress, MPa": "stress", "largest in": "place"}
     cells |= {"margin on yield": "least", "torque about the axis, N m": "beam_torque"}
-    rows = [_at_rest(each) for each in named(loads)]
-    stressed = any(each["stress"] for each in rows)
+    rows = [_at_rest(body_loads) for body_loads in named(loads)]
+    stressed = any(row["stress"] for row in rows)
     caption = f"Of the base on the root, base axes{'; largest stress anywhere' if stressed else ''}"
     return table(rows, cells, caption, optional=tuple(cells)[3:])
 
 
 def _at_rest(loads: Facts) -> Facts:
-    """Row of loads at rest: root force and moment, where rounding errors are zero, and the extreme stress in words."""
-    low, high = (np.array(loads[key], dtype=float) for key in ("stress_compression", "stress_tension"))
-    force, moment = (float(np.abs(list(loads[key].values())).max()) for key in ("section_force", "section_moment"))
+    """Row of loads at rest: root force and moment, with rounding errors as zero, and the extreme stress in words."""
+    low = np.array(loads["stress_compression"], dtype=float)
+    high = np.array(loads["stress_tension"], dtype=float)
+    force = float(np.abs(list(loads["section_force"].values())).max())
+    moment = float(np.abs(list(loads["section_moment"].values())).max())
     sizes = {"force": force, "moment": max(moment, force * loads["stations"][-1])}
     row = {**loads}
     for key, size in sizes.items():
@@ -75,8 +81,8 @@ def _at_rest(loads: Facts) -> Facts:
 
 
 def loads_table(bodies: Facts, row_of: str) -> Block:
-    """Table of the largest root loads and stress, a row for every `row_of`: motion, body or both."""
-    rows = [{"name": name, **each["loads"]} for name, each in bodies.items() if "loads" in each]
+    """Table of the largest root loads and stress. `row_of` says what a row is: a motion, a body or both."""
+    rows = [{"name": name, **body["loads"]} for name, body in bodies.items() if "loads" in body]
     cells: Columns = {
         row_of: "name",
         "root force, N": "root_force.size.max_abs",
@@ -85,9 +91,9 @@ def loads_table(bodies: Facts, row_of: str) -> Block:
         "at, s ": "root_moment.size.time_of_max",
         "stress, MPa": "stress.max",
         "at, s  ": "stress.time_of_max",
-        "margin on yield": lambda each: margin(each.get("margin", {}).get("min")),
+        "margin on yield": lambda body: margin(body.get("margin", {}).get("min")),
     }
-    stressed = any(known(each.get("stress", {}).get("max")) > 0 for each in rows)  # of extreme fibres
+    stressed = any(known(body.get("stress", {}).get("max")) > 0 for body in rows)  # of extreme fibres
     caption = f"Largest loads of the root{', and stress anywhere' if stressed else ''}"
     return table(rows, cells, caption, optional=tuple(cells)[5:], detail=True)
 
@@ -113,25 +119,26 @@ def parts_tables(bodies: Facts, row_of: str) -> tuple[Block, ...]:
 
 
 def _stress_table(solids: Facts, row_of: str) -> Blocks:
-    """Tables of the largest von Mises stress of meshes, its place and the least margin, and what is left out of it."""
+    """Tables of the largest von Mises stress of meshes, its place and least margin, and remarks on what is left out."""
     cells: Columns = {
         row_of: "name",
         "von Mises, MPa": "worst.von_mises",
         **_place("worst.place"),
         "node": "worst.node",
         "at, s": "worst.time:.4g",
-        "material": lambda each: each["worst"]["material"] or "–",
-        "elements differ by": lambda each: percent(each["worst"]["spread"] or math.nan),  # none of one element
-        "least margin on yield": lambda each: (
-            margin(each["nearest_yield"]["margin"]) if each.get("nearest_yield") else "not known"
+        "material": lambda solid: solid["worst"]["material"] or "–",
+        "elements differ by": lambda solid: percent(solid["worst"]["spread"] or math.nan),  # none of one element
+        "least margin on yield": lambda solid: (
+            margin(solid["nearest_yield"]["margin"]) if solid.get("nearest_yield") else "not known"
         ),
     }
-    judged = {name: each for name, each in solids.items() if each.get("known", True)}
+    judged = {name: solid for name, solid in solids.items() if solid.get("known", True)}
     yield table(named(judged), cells, "Largest stress, and where it is", optional=("node",))
-    remarks = {name: each["left_out"] for name, each in solids.items() if each.get("left_out")}
-    alike = len(remarks) == len(solids) and len(set(remarks.values())) == 1
-    if remarks:
-        yield Items(tuple(set(remarks.values()) if alike else (f"{name}: {each}" for name, each in remarks.items())))
+    remarks = {name: solid["left_out"] for name, solid in solids.items() if solid.get("left_out")}
+    if len(remarks) == len(solids) and len(set(remarks.values())) == 1:  # the same of all
+        yield Items(tuple(set(remarks.values())))
+    elif remarks:
+        yield Items(tuple(f"{name}: {remark}" for name, remark in remarks.items()))
 
 
 _READ: Columns = {
@@ -158,14 +165,14 @@ def points_table(motion: Facts) -> Block:
 
 
 def stations_table(bodies: Facts) -> Block:
-    """Table of the largest values at named stations, by motion; empty if there is only a tip, without a sensor."""
+    """Table of the largest values at named stations, by motion. It is empty if there is only a tip without a sensor."""
     rows = [
-        {"motion": name, **station, **_read(each["of"], each["body"], station["name"])}
-        for name, each in bodies.items()
-        for station in each["stations"]
+        {"motion": name, **station, **_read(body["of"], body["body"], station["name"])}
+        for name, body in bodies.items()
+        for station in body["stations"]
         if station.get("name")
     ]
-    rigid = any("specimen" in each for each in bodies.values())
+    rigid = any("specimen" in body for body in bodies.values())
     rows = [row for row in rows if row["sensor"] or not rigid]
     if all(row["name"] == "tip" and not row["sensor"] for row in rows):
         return Items(())
@@ -182,10 +189,10 @@ def _place(path: str) -> Columns:
 def _specimen_tables(rigid: Facts, row_of: str) -> Blocks:
     """Tables of the loads of rigid specimens: at the corners, on the fixture and on the bolts."""
 
-    def spread(each: Facts) -> Value:
+    def spread(specimen: Facts) -> Value:
         verdicts = {True: (", PASS", "good"), False: (", NOT ACCEPTED", "bad"), None: ("", "")}
-        words, tone = verdicts[each.get("within_limit")]
-        return Cell(f"{100 * known(each['spread']):.3g} %{words}", tone)
+        words, tone = verdicts[specimen.get("within_limit")]
+        return Cell(f"{100 * known(specimen['spread']):.3g} %{words}", tone)
 
     corners: Columns = {
         row_of: "name",
@@ -198,31 +205,32 @@ def _specimen_tables(rigid: Facts, row_of: str) -> Blocks:
         "and, N m": "moment.max_abs",
     }
     yield table(named(rigid), corners, "Load at the corners", optional=("limit",))
-    bolts = [{"name": name, **bolt} for name, each in rigid.items() for bolt in numbered(each["bolts"])]
-    of_bolts: Columns = {row_of: "name", "bolt": "number", **_place("place")}
-    of_bolts |= {f"{name}, N": name for name in ("tension", "compression", "shear")}
-    yield table(bolts, of_bolts, "Largest loads of the bolts, alike and without preload", optional=("compression, N",))
+    bolts = [{"name": name, **bolt} for name, specimen in rigid.items() for bolt in numbered(specimen["bolts"])]
+    bolt_columns: Columns = {row_of: "name", "bolt": "number", **_place("place")}
+    bolt_columns |= {f"{name}, N": name for name in ("tension", "compression", "shear")}
+    yield table(
+        bolts, bolt_columns, "Largest loads of the bolts, alike and without preload", optional=("compression, N",)
+    )
 
 
 def errors(motions: Facts) -> Blocks:
-    """Table of the estimated errors in every motion by their causes, and sentences on what is not estimated. A state of
-    rest takes no steps.
-    """
-    rows = [
-        {"name": name, "of": quantity, **each["errors"][quantity]} | ({} if "steps" in each else {"step": None})
-        for name, each in motions.items()
-        for quantity in _judged(each)
-        if each["errors"][quantity]["total"] is not None
-    ]
+    """Table of the estimated errors in every motion by their causes, and sentences on errors that are not estimated."""
+    rows = []
+    for name, motion in motions.items():
+        no_steps: Facts = {} if "steps" in motion else {"step": None}  # a state of rest takes none
+        for quantity in _judged(motion):
+            estimate = motion["errors"][quantity]
+            if estimate["total"] is not None:
+                rows.append({"name": name, "of": quantity, **estimate, **no_steps})
     names = [name for name, _ in declarations(ErrorEstimate) if name != "slender"]  # for comparisons: files have it
     causes = {name.replace("_", " "): f"{name}:%" for name in names}
     cells = {"motion": "name", "of": "of"} | causes
     yield table(rows, cells, "Estimated errors, of the largest value", optional=causes)
-    if not rows and any("displacement" in _judged(each) for each in motions.values()):
+    if not rows and any("displacement" in _judged(motion) for motion in motions.values()):
         yield Sentence("no error estimate", "faint")
-    for name, each in motions.items():
-        if each["errors"].get("note"):
-            yield Sentence(f"{name}: {each['errors']['note']}", "faint")
+    for name, motion in motions.items():
+        if motion["errors"].get("note"):
+            yield Sentence(f"{name}: {motion['errors']['note']}", "faint")
 
 
 def _judged(motion: Facts) -> tuple[str, ...]:
@@ -235,9 +243,11 @@ def _judged(motion: Facts) -> tuple[str, ...]:
 
 
 def errors_by_body(errors: Facts) -> Block:
-    """Table of the errors that every body brings."""
+    """Table of the share of each body in the estimated errors, of lists with one entry for each body."""
     count = len(errors.get("beams", ()))
-    rows = [{key: each[k] for key, each in errors.items() if isinstance(each, list) and each} for k in range(count)]
+    rows = [
+        {key: values[k] for key, values in errors.items() if isinstance(values, list) and values} for k in range(count)
+    ]
     shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
     shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}

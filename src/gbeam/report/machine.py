@@ -41,14 +41,16 @@ def tracked(driven: Driven) -> str:
 
 
 def followed(facts: Mapping[str, Any]) -> str:
-    """Words for the largest error of the load beside the flight and the target, from the JSON of both errors."""
+    """Words for the largest error of the load, beside the flight and beside the smoothed target, from
+    the JSON of both.
+    """
     error, of_flight = facts["tracking_error"], facts.get("flight_error")
     if error["max"] is None or math.isnan(error["max"]):
         return "the target is the flight's load at no time"
-    said = f"largest error of the load while it is followed: {_size(of_flight or error)}"
+    words = f"largest error of the load while it is followed: {_size(of_flight or error)}"
     if of_flight is None or math.isclose(of_flight["max"], error["max"], rel_tol=1e-6, abs_tol=_EXACT):
-        return said  # the target does not round it
-    return f"{said}; beside the target, which rounds corners: {_size(error)}"
+        return words  # the target does not round it
+    return f"{words}; beside the target, which rounds corners: {_size(error)}"
 
 
 def _size(error: Mapping[str, Any]) -> str:
@@ -66,13 +68,13 @@ def ends_line(time: Floats, axes: AxesResult) -> str:
 
 
 def not_followed_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
-    """Stretches in which the target is not the flight's load, s, those that overlap joined with their reasons."""
+    """Stretches in which the target is not the flight's load: start, end, s, and reason; overlapping ones joined."""
     joined: list[tuple[float, float, str]] = []
     for start, end, reason in sorted(axes.episodes):
         if joined and start <= joined[-1][1]:
             first, last, reasons = joined[-1]
-            both = reasons if reason in reasons else f"{reasons}, {reason}"
-            joined[-1] = first, max(last, end), both
+            all_reasons = reasons if reason in reasons else f"{reasons}, {reason}"
+            joined[-1] = first, max(last, end), all_reasons
         else:
             joined.append((start, end, reason))
     return joined
@@ -86,11 +88,12 @@ SHOWN = 8  # peaks and stretches listed; a rough record has hundreds
 
 
 def judged_lines(judged: Judged) -> Iterator[str]:
-    """Yield the limits that are missed, not known, kept and not judged; then the accounting."""
+    """Yield the limits that are missed, not known and kept, those that are not judged, and then the accounting."""
     part = f" for {judged.part} only" if judged.part else ""
     for heading, passed in (("limits missed", False), ("limits not known", None), ("limits kept", True)):
-        if said := ", ".join(str(each) for each in judged.criteria if each.passed is passed):
-            yield f"{heading}{part}: {said}"
+        criteria = ", ".join(str(criterion) for criterion in judged.criteria if criterion.passed is passed)
+        if criteria:
+            yield f"{heading}{part}: {criteria}"
     if judged.not_judged:
         yield f"limits that need the response, which `gbeam run` has: {', '.join(judged.not_judged)}"
     yield from accounting_lines(judged.accounting)
@@ -142,12 +145,14 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
 
 
 def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
-    """Yield a line on the largest root loads and stress over the flight; none if no ratio is known."""
+    """Yield a line on the largest root loads and stress over the flight, if any ratio of machine and
+    flight is known.
+    """
     words = []
     for name in ("root_force", "root_moment", "stress", STRESS_AT):
         pair, (quantity, _, unit) = peaks.get(name, PeakPair()), QUANTITIES[name]
         if math.isfinite(pair.ratio):
-            flight, machine = (f"{factor(unit) * each:.4g} {unit}" for each in (pair.flight, pair.machine))
+            flight, machine = (f"{factor(unit) * value:.4g} {unit}" for value in (pair.flight, pair.machine))
             quantity = quantity.replace("the point", pair.place_flight)
             words.append(f"{quantity} {flight} in flight, {machine} ({change(pair.ratio)})")
     if words:
@@ -155,7 +160,7 @@ def peak_lines(peaks: Mapping[str, PeakPair]) -> Iterator[str]:
 
 
 def machine_plan(facts: Facts) -> Blocks:
-    """Plan of every machine: limits, tracking, stretches without a target, and the verdict."""
+    """Plan of every machine: its limits, tracking, stretches that it cannot follow, and the verdict."""
     for name, plan in facts["motions"].items():
         tracks = f", tracks {plan['tracks']}" if plan["tracks"] else ""
         title = f"{name} ({plan['arm']:g} m{tracks}): {plan['state']}"
@@ -169,20 +174,20 @@ def machine_plan(facts: Facts) -> Blocks:
 
 
 def _planned(plan: Facts) -> Blocks:
-    """Limits, tracking, stretches in which the target is another, and loads out of reach, of one plan."""
+    """Limits, tracking, stretches in which the target is not the flight's load, and loads out of reach, of one plan."""
     yield limits(plan)
     yield Sentence(followed(plan))
     yield held(plan)
-    shortfalls = tuple(str(Shortfall(**each)) for each in plan["shortfalls"])
+    shortfalls = tuple(str(Shortfall(**row)) for row in plan["shortfalls"])
     yield Items(shortfalls[:SHOWN], "warning")
     if len(shortfalls) > SHOWN:
         yield Sentence(f"and {len(shortfalls) - SHOWN} more: see --json")
 
 
 def limits(machine: Facts) -> Block:
-    """Table of the largest use of each limit, its time, and its share of the limit."""
+    """Table of the largest use of each limit: its time, and its share of the limit."""
 
-    def used(use: Facts) -> Value:
+    def share_cell(use: Facts) -> Value:
         if use["allowed"] is None or not math.isfinite(use["allowed"]):
             return "no limit"
         return Cell(f"{use['share']:.0%}".replace("%", " %"), "bad" if use["exceeded"] else "", use["share"])
@@ -191,7 +196,7 @@ def limits(machine: Facts) -> Block:
         "machine": lambda use: f"{use['axis']} {use['quantity']}",
         "used": "used",
         "allowed": "allowed",
-        "share": used,
+        "share": share_cell,
         "at, s": lambda use: f"{use['time']:.3f}" if use["used"] else "–",
         "unit": lambda use: raised(use["unit"]),
     }
@@ -231,23 +236,25 @@ def said(judged: Facts, name: str = "") -> Blocks:
 
 
 def _criteria(judged: Facts) -> Block:
-    """Table of the limits of acceptance and their values, and of limits that need a response."""
+    """Table of the limits of acceptance with their values, and of the limits that need a response."""
 
-    def limit(each: Facts) -> Value:
-        if "limit" not in each:
+    def limit(criterion: Facts) -> Value:
+        if "limit" not in criterion:
             return None
-        bounds = tuple(each["limit"]) if isinstance(each["limit"], list) else each["limit"]
-        return RULES[each["name"]].limit_written(bounds).removeprefix("limit ")
+        bounds = tuple(criterion["limit"]) if isinstance(criterion["limit"], list) else criterion["limit"]
+        return RULES[criterion["name"]].limit_written(bounds).removeprefix("limit ")
 
-    def kept(each: Facts) -> Value:
-        if "limit" not in each:
+    def kept(criterion: Facts) -> Value:
+        if "limit" not in criterion:
             return "needs the response: gbeam run"
         words = {True: ("kept", "good"), False: ("not kept", "bad"), None: ("not known", "bad")}
-        return Cell(*words[each["passed"]])
+        return Cell(*words[criterion["passed"]])
 
     cells: Columns = {
-        "limit on": lambda each: each["name"].replace("_", " "),
-        "value": lambda each: RULES[each["name"]].written(known(each["value"])) if "limit" in each else None,
+        "limit on": lambda criterion: criterion["name"].replace("_", " "),
+        "value": lambda criterion: (
+            RULES[criterion["name"]].written(known(criterion["value"])) if "limit" in criterion else None
+        ),
         "where": "where",
         "limit": limit,
         "": kept,
@@ -257,8 +264,8 @@ def _criteria(judged: Facts) -> Block:
 
 
 def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
-    """Table of the largest sizes over the whole flight, in flight and on the machine; loads over the machine's whole
-    run.
+    """Table of the largest sizes in flight and on the machine, over the flight; loads are over the
+    machine's whole run.
     """
 
     def size(key: str) -> Column:
@@ -279,7 +286,7 @@ def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
 
 
 def _load_peaks(judged: Facts) -> Block:
-    """Table of the peaks of flight's load, with the machine's load at each."""
+    """Table of the peaks of the flight's load, with the machine's load at each."""
     cells: Columns = {
         "at, s": "time",
         "flight, g": "load",
@@ -294,7 +301,7 @@ def _load_peaks(judged: Facts) -> Block:
 
 
 def _not_followed(judged: Facts) -> Block:
-    """Table of the stretches that are not followed, folded on a page if there are many."""
+    """Table of the stretches that are not followed. A page folds it if they are many."""
     accounting = judged["accounting"]
     rows, share = accounting["not_followed"], known(accounting["followed_share"])
     reference = "load at the time" if accounting["tolerance_of"] == "instant" else "largest load"

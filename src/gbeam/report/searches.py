@@ -31,10 +31,10 @@ from gbeam.results.searches import COMMANDS, GOALS
 
 
 def sensitivity(facts: Facts) -> Blocks:
-    """A table for each measure, with the parameters that change it most first."""
+    """Report of sensitivities: a table for each measure, with the parameters that change it most first."""
     for name, measure in facts["measures"].items():
         yield Section(f"{name} = {_with_unit(measure)}", (_effects(measure),), titled=True)
-    methods = [each["method"] for each in next(iter(facts["measures"].values()))["parameters"]]
+    methods = [row["method"] for row in next(iter(facts["measures"].values()))["parameters"]]
     exact = methods.count("exact")
     error = known(facts["run_error"])
     of_run = f"; the run's own estimated error: {percent(error)}" if math.isfinite(error) else ""
@@ -45,24 +45,26 @@ def sensitivity(facts: Facts) -> Blocks:
         )
     if exact < len(methods):
         notes.append("± is how far the differences of second and fourth order are apart.")
-    yield Section("", (FIGURES, Items((*notes, *(f"not varied: {each}" for each in facts["not_varied"])))))
+    yield Section("", (FIGURES, Items((*notes, *(f"not varied: {path}" for path in facts["not_varied"])))))
 
 
 def _effects(measure: Facts) -> Block:
     """Table of the effect of each parameter on a measure."""
 
-    def change(each: Facts) -> Value:
+    def change(parameter: Facts) -> Value:
         # A figure without a unit is a ratio, and its change one too.
-        df, size = 0.01 * known(each["derivative"]) * known(each["value"]), known(measure["value"])
+        df, size = 0.01 * known(parameter["derivative"]) * known(parameter["value"]), known(measure["value"])
         return percent(df / size) if measure["unit"] and size else f"{number(df)} {raised(measure['unit'])}".rstrip()
 
     columns: Columns = {
         "of": "path",
-        "value": lambda each: f"{known(each['value']):.6g} {raised(each['unit'])}".rstrip(),
+        "value": lambda parameter: f"{known(parameter['value']):.6g} {raised(parameter['unit'])}".rstrip(),
         "+1 % changes it by": change,
-        "derivative, SI": lambda each: number(known(each["derivative"])),  # of many units: each has its own size
-        "±": lambda each: number(known(each["error"]), 1),
-        "by": lambda each: f"{each['method']}{' kink' if each['kink'] else ''}",
+        "derivative, SI": lambda parameter: number(
+            known(parameter["derivative"])
+        ),  # of many units: each has its own size
+        "±": lambda parameter: number(known(parameter["error"]), 1),
+        "by": lambda parameter: f"{parameter['method']}{' kink' if parameter['kink'] else ''}",
     }
     return table(measure["parameters"], columns, optional=("±",))
 
@@ -85,29 +87,33 @@ _UNIT: Columns = {"unit": lambda each: raised(each["unit"])}
 
 
 def fit(facts: Facts) -> Blocks:
-    """A row for each value, its correlation with the others, and what the data leave."""
-    sigma: Columns = {"one sigma": lambda each: f"± {number(known(each['error']), 2)}"}
+    """Report of a fit: a row for each value, correlations of their errors, and the residuals."""
+    sigma: Columns = {"one sigma": lambda value: f"± {number(known(value['error']), 2)}"}
     paths = list(facts["parameters"])
-    correlated = [
-        (f"{paths[j]} and {path}", f"{facts['correlation'][k][j]:+.4f}")
-        for k, path in enumerate(paths)
-        for j in range(k)
-        if facts["correlation"][k][j] is not None
-    ]
+    correlations = []
+    for k, path in enumerate(paths):
+        for j in range(k):
+            correlation = facts["correlation"][k][j]
+            if correlation is not None:
+                correlations.append((f"{paths[j]} and {path}", f"{correlation:+.4f}"))
     values = table(named(facts["parameters"]), _VALUE | sigma | {"95 %": _interval("interval")} | _UNIT)
     residuals = {"column": "name", "residual": "noise", "data": "data"}
     yield Section("Values", (Sentence(f"fitted to {facts['data']}", "faint"), values))
-    yield pairs(correlated, "correlation of the errors of")
+    yield pairs(correlations, "correlation of the errors of")
     yield table(named(facts["columns"]), residuals | _UNIT, "standard deviation of the residual")
     yield Section("", (_searches(facts),))
     yield Section("Data and fit", (FIGURES,))
 
 
 def optimum(facts: Facts) -> Blocks:
-    """The figure before and after, the values, the requirements, and the way to them."""
+    """Report of an optimum: the figure before and after, the values, the requirements, and the steps of the search."""
 
-    def kept(each: Facts) -> Value:
-        return Cell("decides" if each["active"] else "kept", "good") if each["kept"] else Cell("NOT KEPT", "bad")
+    def kept(requirement: Facts) -> Value:
+        return (
+            Cell("decides" if requirement["active"] else "kept", "good")
+            if requirement["kept"]
+            else Cell("NOT KEPT", "bad")
+        )
 
     goal = facts["minimise"]
     requirements: Columns = {
@@ -135,7 +141,7 @@ def _searches(facts: Facts, more: str = "") -> Block:
 
 
 def shaped_command(facts: Facts) -> Blocks:
-    """Vibration that each command leaves, the shaped one first."""
+    """Table of the vibration that each command leaves, the shaped one first."""
     ((goal, size),) = facts["goal"].items()
     span = f", for frequencies wrong by up to {percent(facts['robust'])}" if facts["robust"] else ""
     words = f"{facts['kind']} {GOALS[goal].format(size)} in {number(facts['duration'])} s"
@@ -155,20 +161,25 @@ _LISTED = 12  # options in a terminal
 
 
 def placement(facts: Facts) -> Blocks:
-    """The best placement and how to apply it, every measure before and after, the simulations, the other options."""
+    """Report of a placement: the best one, how to apply it, measures before and after, simulations, and options."""
     weights = facts["measure"]
-    weighted = (f"{weight:g} × {name}" for name, weight in weights.items())
-    measure = " + ".join(weighted if len(weights) > 1 else weights)
-    measure += f" of {facts['point']}" if facts["point"] and {"tip", "vibration"} & weights.keys() else ""
+    terms = list(weights)
+    if len(weights) > 1:
+        terms = [f"{weight:g} × {name}" for name, weight in weights.items()]
+    measure = " + ".join(terms)
+    if facts["point"] and {"tip", "vibration"} & weights.keys():
+        measure += f" of {facts['point']}"
     nearest = "" if facts["outcome"] == "done" else " (nearest to the limits, which none keeps)"
     yield Sentence(f"{facts['centrifuge']}, tracking {facts['flight']}: least {measure}{nearest}", "verdict")
     yield Section("Placement", (pairs(_best(facts)),))
     if facts["set"]:
-        flags = " ".join(f'--set "{each}"' for each in facts["set"])
-        kept = f"it is written to {facts['written']}" if facts.get("written") else "or place again with --write"
+        flags = " ".join(f'--set "{change}"' for change in facts["set"])
+        written_words = (
+            f"it is written to {facts['written']}" if facts.get("written") else "or place again with --write"
+        )
         yield Sentence("to apply it, add to the command line:")
         yield Verbatim(flags)
-        yield Sentence(kept, "faint")
+        yield Sentence(written_words, "faint")
     if facts["message"]:
         yield Sentence(facts["message"], "" if facts["outcome"] == "done" else "bad")
     places = _PLACES if facts["fraction_of_length"] else _PLACES | {"middle": "mid-way"}
@@ -178,16 +189,16 @@ def placement(facts: Facts) -> Blocks:
     ):
         yield _measures(facts[key], places, title)
     yield from _verified(facts, places)
-    refused = Items(tuple(f"cannot: {each}" for each in facts["refused"]))
+    refused = Items(tuple(f"cannot: {reason}" for reason in facts["refused"]))
     yield Section("Options", (_options(facts["options"], measure), refused))
 
 
 def _best(facts: Facts) -> Iterator[tuple[str, Value]]:
-    """Rows of the best placement: control point, largest load, mounting and smoothing, beside those now."""
-    share, before, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
-    now = _point(before) if before else f"{number(1e3 * facts['current_control_point'])} mm"
-    length = f", {share:.4f} of the length" if share else ""
-    yield "control point", f"{_point(facts)} from the root{length} (now {now})"
+    """Rows of the best placement (control point, largest load, mounting, smoothing), beside the present one."""
+    length_share, before, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
+    present_point = _point(before) if before else f"{number(1e3 * facts['current_control_point'])} mm"
+    length = f", {length_share:.4f} of the length" if length_share else ""
+    yield "control point", f"{_point(facts)} from the root{length} (now {present_point})"
     yield "largest load", _largest(best["largest_load"], before and before["largest_load"])
     yield "mounting", facts["mounting"] + _turned(facts)
     yield "smoothing", f"{number(1e3 * facts['smoothing'])} ms{_range(facts)}"
@@ -207,23 +218,23 @@ def _load(load: Facts) -> str:
 
 
 def _range(facts: Facts) -> str:
-    """Range of smoothing that was searched, and whether the best lies at its end; empty if only one was."""
+    """Range of smoothing that was searched, and a remark if the best lies at its end; empty if only one was tried."""
     low, high = facts["smoothing_range"]
     if low == high:
         return ""
-    searched = f", of {1e3 * low:.4g} to {1e3 * high:.4g} ms"
+    range_words = f", of {1e3 * low:.4g} to {1e3 * high:.4g} ms"
     if facts["smoothing"] > low * (1 + 1e-6):
-        return searched + (": the widest tried" if facts["smoothing"] > high * (1 - 1e-6) else "")
+        return range_words + (": the widest tried" if facts["smoothing"] > high * (1 - 1e-6) else "")
     share = known(facts["options"][0]["share"])
     unlimited = "; no limit of the machine forbids less" if share < 1 else ""
-    return f"{searched}: the least tried{unlimited}"
+    return f"{range_words}: the least tried{unlimited}"
 
 
 def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
-    """Table of every measure at every place, as a share of flight's peak."""
+    """Table of every measure at every place, as a share of the flight's peak."""
 
     def at(place: str) -> Column:
-        return lambda name: _of_peak(values.get(place, {}).get(name))
+        return lambda name: _peak_share(values.get(place, {}).get(name))
 
     cells: Columns = {"of flight's peak": lambda name: name}
     cells |= {words: at(place) for place, words in places.items()}
@@ -231,7 +242,7 @@ def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
 
 
 def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
-    """Table of simulated differences at each control point, and the factor by which the best vibrates less."""
+    """Table of simulated differences at each control point, and the factor by which the best one vibrates less."""
     checks = facts["verifications"]
     cells = {
         "control point": "name",
@@ -249,33 +260,33 @@ def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
 
 
 def _options(options: Sequence[Facts], measure: str) -> Block:
-    """Table of the options, the best first, each with its share of a limit or the limits that it exceeds."""
+    """Table of the options, best first, each with its share of a limit or the limits that it exceeds."""
 
-    def limits(each: Facts) -> Value:
+    def limits(option: Facts) -> Value:
         words = "; ".join(
             f"{use['axis']} {use['quantity']} {number(use['used'])} of {number(use['allowed'])} {use['unit']}"
-            for use in each["exceeded"]
+            for use in option["exceeded"]
         )
         if words:
             return Cell(f"exceeds {words}", "bad")
-        return f"{100 * each['share']:.0f} % of a limit" if each["share"] else ""
+        return f"{100 * option['share']:.0f} % of a limit" if option["share"] else ""
 
     cells: Columns = {
-        "mounting": lambda each: each["mounting"] + _turned(each),
+        "mounting": lambda option: option["mounting"] + _turned(option),
         "smoothing, ms": "smoothing",
-        "control point, mm": lambda each: _point(each).removesuffix(" mm"),
-        "error": lambda each: _of_peak(each["total_error"]),
+        "control point, mm": lambda option: _point(option).removesuffix(" mm"),
+        "error": lambda option: _peak_share(option["total_error"]),
         "largest load, g": "largest_load.machine",
-        "at": lambda each: each["largest_load"].get("place_machine", "").removeprefix("the "),
-        "of axes 1, 2, 3, rad/s²": lambda each: ", ".join(f"{known(peak):.3g}" for peak in each["accelerations"]),
+        "at": lambda option: option["largest_load"].get("place_machine", "").removeprefix("the "),
+        "of axes 1, 2, 3, rad/s²": lambda option: ", ".join(f"{known(peak):.3g}" for peak in option["accelerations"]),
         "limits": limits,
     }
     caption = f"Options, best first by {measure}, with the errors of smoothing and tracking"
     return table(options, cells, caption, optional=("largest load, g", "at", "limits"), most=_LISTED)
 
 
-def _of_peak(share: float | None) -> str:
-    """Write a share of flight's peak: 0 below 1e-8, which is rounding; above 1e8 flight's peak is that."""
+def _peak_share(share: float | None) -> str:
+    """Write a share of the flight's peak: 0 below 1e-8, which is rounding; above 1e8 that peak is rounding."""
     if share is None:
         return "–"
     if share > 1e8:

@@ -40,72 +40,73 @@ ROUNDING = 1e-10  # a damping ratio smaller than this is none
 
 
 def rest(facts: Facts) -> Blocks:
-    """Displacements of bodies and points in every motion, loads of bodies and of the ground, stress, and the errors."""
+    """Report of states of rest: displacements of bodies and points in every motion, loads, stress, and the errors."""
     motions = facts["motions"]
-    apart = {name: each for name, each in motions.items() if several(each)}
+    of_systems = {name: motion for name, motion in motions.items() if several(motion)}
     head, bodies = by_body(motions)
-    yield Items(tuple(f"motion {name}: {each['message']}" for name, each in motions.items() if each["message"]), "bad")
-    for each in motions.values():
-        yield from evenly(each)
+    messages = (f"motion {name}: {motion['message']}" for name, motion in motions.items() if motion["message"])
+    yield Items(tuple(messages), "bad")
+    for motion in motions.values():
+        yield from evenly(motion)
     yield Section("View", (Place("viewer"),))
     tips: Columns = {head: "name", "at, s": "of.time", "model": "model"}
     tips |= {f"{axis}, mm": f"tip.{axis}" for axis in "xyz"}
-    bending = [each for each in named(bodies) if "specimen" not in each]
-    yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(apart)))
-    loads = {name: each["loads"] for name, each in bodies.items() if "loads" in each}
-    yield Section("Loads", (resting_loads(loads, head), *parts_tables(bodies, head), *_on_ground(apart)))
+    bending = [body for body in named(bodies) if "specimen" not in body]
+    yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(of_systems)))
+    loads = {name: body["loads"] for name, body in bodies.items() if "loads" in body}
+    yield Section("Loads", (resting_loads(loads, head), *parts_tables(bodies, head), *_on_ground(of_systems)))
     if bodies:
-        by_bodies = (errors_by_body(each["errors"]) for each in apart.values())
+        by_bodies = (errors_by_body(motion["errors"]) for motion in of_systems.values())
         yield Section("Accuracy", (*errors(motions), *by_bodies))
     yield Section("Figures", (FIGURES,))
 
 
 def _points(motions: Facts) -> Blocks:
-    """Tables of the displacements of points, and on a page of all coordinates and drives."""
-    rows = [{"motion": name, **each} for name, rest in motions.items() for each in named(rest["points"])]
-    of_motion: Columns = {"motion": "motion"} if len(motions) > 1 else {}
-    cells: Columns = {**of_motion, "point": "name", **{f"{axis}, mm": f"displacement.{axis}" for axis in "xyz"}}
-    places = (abs(each) for row in rows for each in row["place"].values())
-    yield table(
-        rows, cells, "Displacement of points from the start, axes of the ground", scale=max(places, default=0.0)
-    )
-    coordinates: Columns = of_motion | {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
-    rows = [{"motion": name, **each} for name, rest in motions.items() for each in named(rest["coordinates"])]
+    """Tables of the displacements of points and, on a page, of all coordinates and drives."""
+    rows = [{"motion": name, **point} for name, rest in motions.items() for point in named(rest["points"])]
+    motion_column: Columns = {"motion": "motion"} if len(motions) > 1 else {}
+    cells: Columns = {**motion_column, "point": "name", **{f"{axis}, mm": f"displacement.{axis}" for axis in "xyz"}}
+    scale = max((abs(component) for row in rows for component in row["place"].values()), default=0.0)
+    yield table(rows, cells, "Displacement of points from the start, axes of the ground", scale=scale)
+    coordinates: Columns = motion_column | {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
+    rows = [{"motion": name, **row} for name, rest in motions.items() for row in named(rest["coordinates"])]
     yield table(rows, coordinates, "Coordinates", detail=True)
 
 
 def _on_ground(motions: Facts) -> Blocks:
-    """Sentences on the force and the moment on the ground."""
-    for name, each in motions.items():
-        force, moment = ([*each[key].values()] for key in ("ground_force", "ground_moment"))
+    """Sentences on the force and the moment that act on the ground in every motion."""
+    for name, motion in motions.items():
+        force, moment = [*motion["ground_force"].values()], [*motion["ground_moment"].values()]
         largest = max(map(abs, force + moment))
-        pair = (", ".join(map(number, tidy(vector, largest))) for vector in (force, moment))
-        before = f"motion {name}: " if len(motions) > 1 else ""
-        yield Sentence("{}on the ground: force ({}) N, moment ({}) N m".format(before, *pair))
+        force_words, moment_words = (", ".join(map(number, tidy(vector, largest))) for vector in (force, moment))
+        prefix = f"motion {name}: " if len(motions) > 1 else ""
+        yield Sentence(f"{prefix}on the ground: force ({force_words}) N, moment ({moment_words}) N m")
 
 
 def modes(facts: Facts) -> Blocks:
-    """Frequencies, damping and errors, what moves most and the bodies' shares, and the shapes as they move."""
+    """Report of modes: frequencies, damping and errors, the direction of motion and the bodies' shares,
+    and the shapes.
+    """
     bodies, several = facts.get("bodies", {}), len(facts["body_names"]) > 1
 
-    def shares(each: Facts) -> Value:
-        pairs = zip(facts["body_names"], each["share"], strict=True)
+    def shares(mode: Facts) -> Value:
+        pairs = zip(facts["body_names"], mode["share"], strict=True)
         # Bodies of equal shares in their own order, whatever the last digits say.
         ranked = sorted(pairs, key=lambda pair: -round(pair[1], 2))
         return ", ".join(f"{body} {100 * share:.0f} %" for body, share in ranked if share > 0.005) if several else None
 
-    rates = [np.linalg.norm([*each["base"]["angular_velocity"].values()]) for each in bodies.values()]
+    rates = [np.linalg.norm([*body["base"]["angular_velocity"].values()]) for body in bodies.values()]
     rate = float(max(rates, default=0.0))
     turning = [f"turning at {number(rate)} rad/s"] if rate > RESTING else []
     coupling = [] if facts["gyroscopic"] else ["Coriolis coupling left out"]
     yield where(facts, f"at {number(facts['time'])} s", *turning, *coupling)
     yield from evenly(facts)
-    yield growing(facts, lambda each: f" {along(each['direction'])}")
+    yield growing(facts, lambda mode: f" {along(mode['direction'])}")
     yield modes_table(facts, {"along": "direction"} | ERROR | {"kinetic energy": shares})
     reached = known(facts["reached"])
-    if any(each["frequency"] > reached for each in facts["modes"]):
+    if any(mode["frequency"] > reached for mode in facts["modes"]):
         yield Sentence(f"above {reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
-    undamped = [f"{name}.damping_ratio" for name, each in bodies.items() if not each["damping_given"]]
+    undamped = [f"{name}.damping_ratio" for name, body in bodies.items() if not body["damping_given"]]
     if undamped:
         yield Sentence(f"undamped: {', '.join(undamped)} {'is' if len(undamped) == 1 else 'are'} not given", "faint")
     if facts["rigid"]:
@@ -126,10 +127,10 @@ ERROR: Columns = {"estimated error": "error_estimate:%"}
 
 
 def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
-    """Table of frequency, damping and `more` columns of every mode, and a note on what is not estimated."""
+    """Table of the frequency, damping and `more` columns of every mode, and a note on errors that are not estimated."""
 
-    def damping(each: Facts) -> Value:
-        return f"{each['damping_ratio'] if abs(each['damping_ratio']) > ROUNDING else 0.0:.4g}"
+    def damping(mode: Facts) -> Value:
+        return f"{mode['damping_ratio'] if abs(mode['damping_ratio']) > ROUNDING else 0.0:.4g}"
 
     cells: Columns = {"mode": "number", "frequency, Hz": "frequency", GROUND: "ground_frequency"}
     cells |= {"damping ratio": damping, **more}
@@ -138,10 +139,10 @@ def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
 
 
 def evenly(facts: Facts) -> Blocks:
-    """Name the coordinates that a steady state accelerates: translations (m/s²), then rotations (rad/s²)."""
+    """Sentence on the coordinates that a steady state accelerates: translations (m/s²), then rotations (rad/s²)."""
     accelerated = [Accelerated(**row) for row in facts.get("accelerated", ())]
-    slides = ", ".join(str(each) for each in accelerated if not math.isnan(each.acceleration))
-    turns = ", ".join(str(each) for each in accelerated if math.isnan(each.acceleration))
+    slides = ", ".join(str(coordinate) for coordinate in accelerated if not math.isnan(coordinate.acceleration))
+    turns = ", ".join(str(coordinate) for coordinate in accelerated if math.isnan(coordinate.acceleration))
     parts = [f"in axes of the ground: {slides}"] if slides else []
     parts += [f"about axes of its root: {turns}"] if turns else []
     if parts:
@@ -158,12 +159,14 @@ def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:
 
 
 def noted(facts: Facts) -> list[Block]:
-    """Sentence on what the errors of frequencies leave out, or why there are none."""
+    """Sentence on what the errors of frequencies leave out, or on why there are no errors."""
     note = facts.get("error_note")
     rows = facts.get("modes", facts.get("tracks", facts.get("poles", [])))
-    judged, bent = (any(each.get("errors", {}).get(name) is not None for each in rows) for name in ("total", "model"))
-    judged |= any(each.get("modulus_error") is not None for each in facts.get("margins", ()))
-    words = f"errors are of modes left out{' and of the bend' * bent}" if judged else "no error estimate"
+    errors = [row.get("errors", {}) for row in rows]
+    judged = any(row_errors.get("total") is not None for row_errors in errors)
+    has_bend = any(row_errors.get("model") is not None for row_errors in errors)
+    judged |= any(margin.get("modulus_error") is not None for margin in facts.get("margins", ()))
+    words = f"errors are of modes left out{' and of the bend' * has_bend}" if judged else "no error estimate"
     return [Sentence(f"{words}: {note}", "faint")] if note else []
 
 
@@ -171,25 +174,26 @@ _SPEEDS = {"rad/s": 1.0, "rpm": 30 / np.pi}
 
 
 def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
-    """First and last frequency of each mode, crossings with multiples of the speed, and a critical speed.
+    """Report of a Campbell diagram: ends of each mode, crossings with multiples of the speed, and a critical speed.
 
     `speeds` are the units of speed, with their number in 1 rad/s.
     """
 
     def speed(factor: float) -> Column:
-        return lambda each: factor * each["speed"]
+        return lambda row: factor * row["speed"]
 
     low, high = facts["speed"][0], facts["speed"][-1]
     span = where(facts, *(f"{factor * low:.4g} to {factor * high:.4g} {unit}" for unit, factor in speeds.items()))
     yield Section("Campbell diagram", (span, FIGURES))
     if facts["critical_speed"] is not None:
-        lost_at = ", ".join(f"{number(factor * facts['critical_speed'])} {unit}" for unit, factor in speeds.items())
+        critical = ", ".join(f"{number(factor * facts['critical_speed'])} {unit}" for unit, factor in speeds.items())
         reason = f" ({facts['critical_speed_reason']})" if facts.get("critical_speed_reason") else ""
         error = _stated(facts.get("critical_speed_errors", {}))
-        on = high > facts["critical_speed"]
-        after = "" if not on or facts["unstable"] else "; stable beyond"
-        yield Sentence(f"{'critical' if on else 'the equilibrium is lost'} at {lost_at}{reason}{error}{after}", "bad")
-    yield Items(tuple(_stretch(each, speeds) for each in facts["unstable"]), "bad")
+        goes_on = high > facts["critical_speed"]
+        beyond = "; stable beyond" if goes_on and not facts["unstable"] else ""
+        event = "critical" if goes_on else "the equilibrium is lost"
+        yield Sentence(f"{event} at {critical}{reason}{error}{beyond}", "bad")
+    yield Items(tuple(_stretch(stretch, speeds) for stretch in facts["unstable"]), "bad")
     (unit, factor), *_ = speeds.items()
     ends: Columns = {
         f"at {factor * rate:.4g} {raised(unit)}, Hz{' ' * k}": f"frequency.{k - 1}" for k, rate in ((1, low), (0, high))
@@ -199,8 +203,8 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     tracks = table(numbered(facts["tracks"]), cells, optional=(GROUND,))
     yield Section("Modes", (tracks, *framed(facts), *noted(facts)))
     crossings: Columns = {
-        "mode": lambda each: each["track"] + 1,
-        "multiple": lambda each: f"{each['order']} ×",
+        "mode": lambda row: row["track"] + 1,
+        "multiple": lambda row: f"{row['order']} ×",
         **{f"speed, {raised(unit)}": speed(factor) for unit, factor in speeds.items()},
         "frequency, Hz": "frequency",
         **ERROR,
@@ -225,7 +229,7 @@ def framed(facts: Facts) -> list[Block]:
 
 
 def critical(facts: Facts) -> Blocks:
-    """The value at which the equilibrium is lost, or that there is none up to the end of the search."""
+    """Report of a search: the value at which the equilibrium is lost, or that none was found."""
     value = next((facts[key] for key in facts if key.startswith("critical_")), None)
     unit = f", {raised(facts['unit'])}" if facts["unit"] else ""
     note = f"; {facts['error_note']}" if facts.get("error_note") else ""
@@ -250,17 +254,16 @@ def _stated(errors: Facts) -> str:
 
 
 def critical_map(facts: Facts) -> Blocks:
-    """Hub rates at which the equilibrium is lost, against one more mass and where it sits."""
-    speed, errors_of = facts["critical_speed"], facts.get("errors", {})
+    """Table of the hub rates at which the equilibrium is lost, by the size and the position of one more mass."""
+    speed, errors_by_source = facts["critical_speed"], facts.get("errors", {})
     masses = {f"{mass:.4g} kg": f"{k}:.5f" for k, mass in enumerate(facts["mass"], 1)}
     yield where(facts)
     rows = zip(facts["position"], *speed, strict=True)
     yield table(rows, {"at, m": "0:.4g"} | masses, "Critical hub rate, rad/s, with one more mass")
-    if any(None in each for each in speed):
+    if any(None in rates for rates in speed):
         yield Sentence(f"–: none up to {facts['searched_to']:.4g} rad/s")
-    shapes, total = (
-        np.nanmax(np.array(errors_of.get(key, 0.0), dtype=float), initial=0.0) for key in ("shapes", "total")
-    )
+    shapes = np.nanmax(np.array(errors_by_source.get("shapes", 0.0), dtype=float), initial=0.0)
+    total = np.nanmax(np.array(errors_by_source.get("total", 0.0), dtype=float), initial=0.0)
     if shapes:
         in_all = f", {percent(total)} in all" if total else ""
         yield Sentence(f"largest estimated error {percent(shapes)} from too few shapes{in_all}")
@@ -271,7 +274,9 @@ SLOWEST = 4  # poles of a loop that are named
 
 
 def state_space(facts: Facts) -> Blocks:
-    """Signals with their units, the accuracy of the poles, margins of a loop, and what a smaller model leaves out."""
+    """Report of a state space: its signals, accuracy of the poles, a loop's margins, and what a
+    reduction leaves out.
+    """
     yield where(facts, f"{len(facts['states'])} states")
     yield from evenly(facts)
     signals = ("states", "inputs", "outputs")
@@ -312,13 +317,13 @@ def _station(at: float | str) -> str:
 
 
 def _accuracy(facts: Facts) -> Blocks:
-    """Sentence on up to which frequency the poles are accurate, how far off the others are, and by what model."""
-    totals = np.array([each.get("errors", {}).get("total") for each in facts["poles"]], dtype=float)
-    models = [each.get("errors", {}).get("model") for each in facts["poles"]]
+    """Sentence on the frequency up to which poles are accurate, the others' errors, and the model they come from."""
+    errors = [pole.get("errors", {}) for pole in facts["poles"]]
+    totals = np.array([pole_errors.get("total") for pole_errors in errors], dtype=float)
     if not np.isfinite(totals).any():
         yield from noted(facts)
         return
-    accurate = int(np.append(np.flatnonzero(~(totals <= ACCURATE)), len(totals))[0])
+    accurate = int(np.append(np.flatnonzero(~(totals <= ACCURATE)), len(totals))[0])  # poles before the first other
     words = []
     if accurate:
         worst, end = percent(float(totals[:accurate].max())), facts["accurate_to"]
@@ -327,13 +332,13 @@ def _accuracy(facts: Facts) -> Blocks:
         beyond = totals[accurate:][np.isfinite(totals[accurate:])]
         error = f"up to {percent(float(beyond.max()))} off" if len(beyond) else "not judged"
         words.append(f"{'higher ones' if accurate else 'frequencies'} {error}")
-    by = "the model with more modes"
-    if any(each.get("errors", {}).get("beam_theory") is not None for each in facts["poles"]):
-        by = "the exact model with more shapes and the theory of thick beams"
-    elif any(each is not None for each in models):
-        by += " and forces of higher order"
+    reference = "the model with more modes"
+    if any(pole_errors.get("beam_theory") is not None for pole_errors in errors):
+        reference = "the exact model with more shapes and the theory of thick beams"
+    elif any(pole_errors.get("model") is not None for pole_errors in errors):
+        reference += " and forces of higher order"
     note = f"; {facts['error_note']}" if facts.get("error_note") else ""
-    yield Sentence(f"{'; '.join(words)}, by {by}{note}")
+    yield Sentence(f"{'; '.join(words)}, by {reference}{note}")
 
 
 MARGINS = {
@@ -346,7 +351,7 @@ MARGINS = {
 
 
 def _in_steps(facts: Facts) -> Blocks:
-    """Slowest decay of a loop in steps, and its margins, with their errors."""
+    """Tables of a loop in steps: its slowest decays, and its margins of gain, phase and delay, with their errors."""
     keys = "eigenvalue", "eigenvalue_imaginary", "decay_error", "oscillation_error"
     poles = zip_longest(*(facts.get(key, ()) for key in keys))
     slowest = [pole for pole in poles if pole[1] >= 0 and pole[0] > -math.pi / facts["step"]][:SLOWEST]
@@ -358,12 +363,12 @@ def _in_steps(facts: Facts) -> Blocks:
     }
     errors = "error", "error "
     yield table(slowest, decays, f"in steps of {1e3 * facts['step']:.4g} ms; slowest to decay", optional=errors)
-    rows = [(each, kind) for each in facts.get("margins", ()) for kind in MARGINS]
+    rows = [(loop, kind) for loop in facts.get("margins", ()) for kind in MARGINS]
     margins: Columns = {
         "drive": lambda row: row[0]["drive"] if row[1] == "gain" else "",
         "margin": lambda row: MARGINS[row[1]],
         "": _margin,
-        "error": lambda row: None if (error := row[0][f"{row[1]}_error"]) is None else percent(error),
+        "error": lambda row: None if row[0][f"{row[1]}_error"] is None else percent(row[0][f"{row[1]}_error"]),
         "at, Hz": lambda row: row[0].get(f"{row[1]}_frequency"),
     }
     yield table(rows, margins, "Margins", optional=("error",))
@@ -378,7 +383,7 @@ def _margin(row: tuple[Facts, str]) -> Value:
 
 
 def _left_out(facts: Facts, left_out: Facts) -> Blocks:
-    """States left out, their share, and of a balanced truncation the bound of the error."""
+    """Sentences on the states that a reduction leaves out, their share of the gain, and a bound of the error."""
     shares, states = np.array(left_out["share"], dtype=float), left_out["states_left_out"]
     words = f"{left_out['method']} truncation leaves out {states} of {states + len(facts['states'])} states"
     if shares.size:
@@ -394,7 +399,7 @@ def _left_out(facts: Facts, left_out: Facts) -> Blocks:
 
 
 def map_csv(critical: CriticalMap) -> str:
-    """Return a map as CSV: a row per position, a column per mass, nan where there is none; then columns of errors."""
+    """Return a map as CSV: a row a position, a column a mass, then columns of errors; nan where nothing is known."""
     heads = ["position_m", *(f"critical_rad_per_s_with_{m:g}_kg" for m in critical.mass)]
     columns = [critical.position, *critical.speed]
     if critical.errors is not None:

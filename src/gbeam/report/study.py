@@ -65,13 +65,13 @@ SHORTFALLS = 2
 
 
 def response_lines(response: Response) -> Iterator[str]:
-    """Yield sentences on accuracy, start, joints, controllers, loads, stress, hub, energy, samples and machine."""
+    """Yield sentences on a response: accuracy, start, joints, controllers, loads, hub, energy, samples, machine."""
     if response.coordinates:
         yield _accuracy(response)
         if response.initial:
             yield response.initial
-    turning = response.hub is not None and response.base is None  # freely: the hub's line has its coordinate
-    joints = {} if turning else named_histories(response)
+    free_hub = response.hub is not None and response.base is None  # freely: the hub's line has its coordinate
+    joints = {} if free_hub else named_histories(response)
     if joints:
         yield f"at the end {_at_end(response, joints)}"
     if response.loop is not None:
@@ -84,12 +84,12 @@ def response_lines(response: Response) -> Iterator[str]:
             f"{number(float(moment.value))} N m at {float(moment.time):.4g} s"
         )
     for name, body in response.bodies.items():
-        before = f"{name}: " if len(response.bodies) > 1 else ""
-        yield from (f"{before}{line}" for line in _body_lines(body))
+        prefix = f"{name}: " if len(response.bodies) > 1 else ""
+        yield from (f"{prefix}{line}" for line in _body_lines(body))
     if response.hub is not None:
         angle, rate = response.hub.angle_end, response.hub.rate_max
         yield f"{response.environment}: angle at the end {number(angle)} rad, largest rate {number(rate)} rad/s"
-        if turning and np.any(response.body.damping_ratio):
+        if free_hub and np.any(response.body.damping_ratio):
             yield _damping(response.body)
     if response.invariants is not None:
         energy = response.invariants.energy
@@ -105,7 +105,7 @@ def response_lines(response: Response) -> Iterator[str]:
 
 
 def _at_end(response: Response, joints: Mapping[str, tuple[Floats, str, Floats]]) -> str:
-    """Coordinates of joints at the end, with their units, where rounding errors are zero."""
+    """Coordinates of joints at the end, with their units. Rounding errors are shown as zero."""
     size = max(float(np.abs(history).max()) for history, *_ in joints.values())
     at_end = [float(history[-1]) for history, *_ in joints.values()]
     scale = float(np.abs(response.place).max(initial=0.0))
@@ -126,26 +126,26 @@ def _body_lines(body: BodyResponse) -> Iterator[str]:
 
 
 def _accuracy(response: Response) -> str:
-    """Sentence on the models, the time steps, and the estimated errors, with what they leave out."""
+    """Sentence on the models, the time steps and the estimated errors, with what the errors leave out."""
     errors, total = response.errors, response.errors.displacement.total
     if math.isnan(response.error_estimate) or response.outcome != "done":
         error = "no error estimate"
     else:
         largest = "a body's largest deflection" if len(response.bodies) > 1 else "the largest displacement"
-        shares = (
-            percent(response.error_estimate) if math.isnan(total) else errors_in_words(facts_of(errors.displacement))
-        )
+        shares = percent(response.error_estimate)
+        if not math.isnan(total):
+            shares = errors_in_words(facts_of(errors.displacement))
         error = f"estimated error {shares} of {largest}"
         if response.several and response.bodies and math.isfinite(errors.place.total):
             error += f", {percent(errors.place.total)} of places"
         if math.isfinite(errors.loads.total):
             error += f", {_of_largest(errors.loads, 'root load')}"
-        if math.isfinite(errors.stress.total) and any(each.solid is not None for each in response.bodies.values()):
+        if math.isfinite(errors.stress.total) and any(body.solid is not None for body in response.bodies.values()):
             error += f", {_of_largest(errors.stress, 'stress')}"
         if errors.note:
             link = ", of the time step alone: " if math.isnan(errors.displacement.shapes) else "; "
             error += f"{link}{errors.note}"
-    models = dict.fromkeys(each.model for each in response.bodies.values())
+    models = dict.fromkeys(body.model for body in response.bodies.values())
     return f"{', '.join([*models, response.integrator, response.steps_in_words])}; {error}"
 
 
@@ -164,7 +164,7 @@ def _damping(body: BodyResponse) -> str:
 
 
 def _machine_lines(response: Response) -> Iterator[str]:
-    """Sentences on how a centrifuge begins and ends, follows the load, and where it does not."""
+    """Sentences on how a centrifuge begins, follows the load and ends, and on where it does not follow."""
     axes = response.axes
     if axes is None:
         return
@@ -176,9 +176,12 @@ def _machine_lines(response: Response) -> Iterator[str]:
     if len(stretches) > EPISODES:
         yield f"target is not the flight's load {len(stretches) - EPISODES} times more: see the result file"
     # Stretches in which the target is held are listed above; a load that is followed and yet out of reach is news.
-    not_held = [each for each in axes.shortfalls if not any(start <= each.time <= end for start, end, _ in stretches)]
-    for each in not_held[:SHORTFALLS]:
-        yield f"warning: {each}"
+    not_held = []
+    for shortfall in axes.shortfalls:
+        if not any(start <= shortfall.time <= end for start, end, _ in stretches):
+            not_held.append(shortfall)
+    for shortfall in not_held[:SHORTFALLS]:
+        yield f"warning: {shortfall}"
     if len(not_held) > SHORTFALLS:
         yield f"warning: and {len(not_held) - SHORTFALLS} more: see `gbeam plan`"
 
@@ -237,20 +240,20 @@ HINT = "Drag across a plot to zoom all of them, double-click to see all again, c
 
 
 def study(facts: Facts) -> Blocks:
-    """The verdicts on centrifuges, the largest displacements and loads, the machines, the errors, and all in words."""
+    """Report of a study: verdicts on centrifuges, largest displacements and loads, machines, errors, sentences."""
     motions = {name: motion for name, motion in facts["motions"].items() if "environment" in motion}
     head, bodies = by_body(motions)
     yield from verdicts(facts)
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
     yield Section("Arm", (levels(motions), balance(motions)))
-    alone = {name: each for name, each in bodies.items() if not several(each["of"])}
+    alone = {name: body for name, body in bodies.items() if not several(body["of"])}
     response = _tips(bodies, head), stations_table(alone), loads_table(bodies, head), *parts_tables(bodies, head)
     yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))
     for name, motion in motions.items():
         if several(motion):
-            told = points_table(motion), errors_by_body(motion["errors"]), *_of_joints(motion, units_in(facts))
-            yield Section(f"motion {name}", told, titled=True, verbose=name in compared_in(facts))
+            tables = points_table(motion), errors_by_body(motion["errors"]), *_of_joints(motion, units_in(facts))
+            yield Section(f"motion {name}", tables, titled=True, verbose=name in compared_in(facts))
     for name, motion in motions.items():
         if "limits" in motion:
             yield Section(f"Machine: {name}", (limits(motion), Sentence(followed(motion))), titled=True, detail=True)
@@ -274,10 +277,12 @@ def _of_joints(motion: Facts, units: dict[str, str]) -> Blocks:
 
 
 def verdicts(facts: Facts) -> Blocks:
-    """Runs that went wrong, and how well each centrifuge imitates its flight."""
-    wrong = [(name, each) for name, each in facts["motions"].items() if each["outcome"] != "done"]
-    lines = tuple(Sentence(f"motion {name} {each['outcome']}: {each['message']}", "bad") for name, each in wrong)
-    yield Section("Outcome", lines, detail=True)
+    """Runs that went wrong, and the verdict on how each centrifuge imitates its flight."""
+    lines = []
+    for name, run in facts["motions"].items():
+        if run["outcome"] != "done":
+            lines.append(Sentence(f"motion {name} {run['outcome']}: {run['message']}", "bad"))
+    yield Section("Outcome", tuple(lines), detail=True)
     several = len(facts["comparisons"]) > 1
     if several:
         yield Section("Verdicts", (_of_records(facts),), detail=True)
@@ -287,16 +292,17 @@ def verdicts(facts: Facts) -> Blocks:
 
 
 def _of_records(facts: Facts) -> Block:
-    """Table of the verdicts on several imitations, with the file of the flight's record if it has one."""
-    files = {each["motion"]: Path(each["file"]).name for each in facts.get("provenance", {}).get("records", ())}
+    """Table of the verdicts on several imitations, with the file of each flight's record."""
+    records = facts.get("provenance", {}).get("records", ())
+    files = {record["motion"]: Path(record["file"]).name for record in records}
 
     def verdict_of(compared: Facts) -> Cell:
-        kept = all(each["passed"] for each in compared["criteria"])
+        kept = all(criterion["passed"] for criterion in compared["criteria"])
         return Cell(compared["verdict"], ("good" if compared["criteria"] else "") if kept else "bad")
 
     cells: Columns = {
-        "flight": lambda each: level_words(each["flight"], each.get("scale")),
-        "record": lambda each: files.get(each["flight"], ""),
+        "flight": lambda comparison: level_words(comparison["flight"], comparison.get("scale")),
+        "record": lambda comparison: files.get(comparison["flight"], ""),
         "machine": "centrifuge",
         "verdict": verdict_of,
     }
@@ -322,19 +328,19 @@ def in_words_of(facts: Facts) -> Blocks:
         blocks, verbose = (*message, *limits_used, lines), name in compared and run["outcome"] == "done"
         yield Section(title, blocks, titled=True, folded=folded, tone=tone, verbose=verbose)
     several = len(facts["comparisons"]) > 1
-    for each in facts["comparisons"]:
-        yield from said(each, each["centrifuge"] if several else "")
+    for comparison in facts["comparisons"]:
+        yield from said(comparison, comparison["centrifuge"] if several else "")
 
 
 def _tips(bodies: Facts, head: str) -> Block:
-    """Largest displacements of tips along the axes in which they move, a row for every `head` and axis."""
+    """Table of the largest displacements of tips: a row for every `head` (motion, body or both) and moving axis."""
     rows = []
     for name, body in bodies.items():
         sizes = {axis: known(peak["max_abs"]) for axis, peak in body["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
         axes = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
-        shown = [axis for axis in axes if axis != "size" or len(axes) > 2]
-        rows += [{"name": name, "axis": axis, **body["tip"][axis]} for axis in shown]
+        shown_axes = [axis for axis in axes if axis != "size" or len(axes) > 2]
+        rows += [{"name": name, "axis": axis, **body["tip"][axis]} for axis in shown_axes]
     cells: Columns = {
         head: "name",
         "tip along": "axis",
@@ -347,7 +353,7 @@ def _tips(bodies: Facts, head: str) -> Block:
 
 
 def model_study(facts: Facts) -> Blocks:
-    """A row per motion and model, then why a row has no answer or may be doubted."""
+    """Table with a row for each motion and model, and remarks on rows that have no answer or may be doubted."""
 
     def written(key: str, form: str, scale: float = 1.0) -> Column:
         return lambda row: "–" if row[key] is None else _signed(format(scale * row[key], form))
@@ -370,7 +376,7 @@ def model_study(facts: Facts) -> Blocks:
         if row["message"]:
             remarks.append(f"{row_name} {row['outcome']}: {row['message']}")
         # To check with exact is what this study has just done.
-        remarks += [f"{row_name}: {each}" for each in row["warnings"] if "check with model.kind" not in each]
+        remarks += [f"{row_name}: {warning}" for warning in row["warnings"] if "check with model.kind" not in warning]
     yield Items(tuple(remarks))
     yield Section("Figures", (FIGURES,))
 

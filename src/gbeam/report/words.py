@@ -30,13 +30,13 @@ def as_json(value: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON has it, with None for what is not finite."""
+    """Return a value as JSON has it: None for what is not finite, and functions called for their value."""
     if callable(value):  # what takes time to find, and is not always printed
         return plain(value())
     if isinstance(value, Mapping):
-        return {key: plain(each) for key, each in value.items()}
+        return {key: plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(each) for each in value]
+        return [plain(entry) for entry in value]
     if isinstance(value, float):  # numpy's float64 is one
         return float(value) if math.isfinite(value) else None
     return value
@@ -53,17 +53,18 @@ def known(value: float | None) -> float:
 
 
 def columns(heads: list[str], rows: list[list[str]], left: Collection[int] = (0,)) -> list[str]:
-    """Return the lines of a table, columns flush right but for those `left`; if the terminal is narrow, a line per
-    cell.
+    """Return the lines of a table. Columns are flush right, except those of the indices `left`.
+
+    If the terminal is narrow, each cell has a line of its own.
     """
     widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
     room = terminal_width()
     if 0 < room < sum(widths) + 2 * len(widths):
-        beside = max(map(len, heads))
+        head_width = max(map(len, heads))
         folded: list[str] = []
         for first, *others in rows:
             cells = zip(heads[1:], others, strict=True)
-            folded += [first, *(f"  {head:<{beside}}  {cell}" for head, cell in cells if cell)]
+            folded += [first, *(f"  {head:<{head_width}}  {cell}" for head, cell in cells if cell)]
         return folded
     return [
         "  ".join(f"{cell:{'<' if k in left else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip()
@@ -104,17 +105,15 @@ def tidy(values: Iterable[float], size: float, scale: float = 0.0) -> list[float
 
 
 def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: float | None) -> str:
-    """Words for the extreme normal stresses (s,) Pa at stations (s,) m, where the larger is, and the margin on yield if
-    known.
-    """
+    """Words for the extreme normal stresses (s,), Pa, at stations (s,), m: range, place of the largest, and margin."""
     sizes = [max(high, -low) for high, low in zip(tension, compression, strict=True)]
     stress = float(max(sizes))
-    worst = sizes.index(stress)
-    sign = "tension" if tension[worst] >= -compression[worst] else "compression"
-    low, high = (number(1e-6 * each) for each in tidy((min(compression), max(tension)), 0.0))
+    largest = sizes.index(stress)
+    sign = "tension" if tension[largest] >= -compression[largest] else "compression"
+    low, high = (number(1e-6 * extreme) for extreme in tidy((min(compression), max(tension)), 0.0))
     if low == high == "0":
         return "no stress"
-    words = f"stress {low} to {high} MPa, largest in {sign} at {number(float(stations[worst]))} m"
+    words = f"stress {low} to {high} MPa, largest in {sign} at {number(float(stations[largest]))} m"
     if yield_strength is None:
         return words
     from gbeam.results.parts import margin_words, yield_margin
@@ -123,8 +122,8 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
 
 
 def largest_loads(peaks: LoadPeaks) -> str:
-    """Largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
-    force, moment = (float(each[0].size.value) for each in (peaks.force, peaks.moment))
+    """Words for the largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
+    force, moment = float(peaks.force[0].size.value), float(peaks.moment[0].size.value)
     words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
     if np.isfinite(peaks.tension.value).all():
         extremes = peaks.tension.value, peaks.compression.value

@@ -53,19 +53,19 @@ def html(
     origin: Mapping[str, Any] | None = None,
     figures: Mapping[str, Describe] | None = None,
 ) -> str:
-    """Return a whole page; `figures` are read from `facts` and `variables` where they are not given."""
+    """Return a whole page. `figures` are read from `facts` and `variables` if they are not given."""
     facts = json.loads(as_json(facts))  # what is not finite is null, as in a file
     kind = facts.get("form", {}).get("kind", "")
     if not kind:
         fix = f"give the result of {', '.join(dict.fromkeys(f'gbeam {verb}' for verb in VERBS.values()))}"
         raise InputError("result", "is of a kind that has no report", fix)
     origin = facts.get("provenance") or origin or {}
-    described = figures_in(kind, facts, variables or {}) if figures is None else figures
+    descriptions = figures_in(kind, facts, variables or {}) if figures is None else figures
     verb = VERBS.get(kind) or (origin.get("command") or kind).removeprefix("gbeam ").split()[0]
-    warned, noted = remarks_of(facts)
-    blocks = [Section("Warnings", (warned,)), Section("Notes", (noted,)), *blocks_of(kind, facts)]
+    warnings, notes = remarks_of(facts)
+    blocks = [Section("Warnings", (warnings,)), Section("Notes", (notes,)), *blocks_of(kind, facts)]
     state, title = facts.get("state", facts["outcome"]), facts.get("title") or _title(origin) or f"gbeam {verb}"
-    return assembled(title, state, verb, blocks, origin, described, partial(viewer, kind, facts, variables or {}))
+    return assembled(title, state, verb, blocks, origin, descriptions, partial(viewer, kind, facts, variables or {}))
 
 
 def assembled(
@@ -77,10 +77,13 @@ def assembled(
     figures: Mapping[str, Describe],
     view: Callable[[Numbers], Mapping[str, Any]] = lambda _: {},
 ) -> str:
-    """Return a whole page of blocks and figures, and of what the viewer shows, which may add to the page's numbers."""
+    """Return a whole page of blocks and figures.
+
+    `view` returns what the viewer shows, and may add to the page's numbers.
+    """
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
-    plots = drawn((each() for each in figures.values()), numbers, header)
+    plots = drawn((describe() for describe in figures.values()), numbers, header)
     header |= view(numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
     body = drawn_blocks([*blocks, *_origin(origin)], viewer_place, plots)
@@ -97,15 +100,15 @@ def description_page(words: str, origin: Mapping[str, Any], figures: Mapping[str
 def viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
-    """Return what the viewer shows, as ``modes`` or ``scene``, from JSON and variables; empty where nothing moves."""
+    """Return what the viewer shows, as ``modes`` or ``scene``, from JSON and variables; empty if nothing moves."""
     if kind == "Modes" and facts["modes"] and "hangs_on" in variables:
         return {"modes": shapes(facts, variables, numbers)}
     motions = facts["motions"] if kind == "Study" else {}
     if kind == "Rest":
         motions = {name: {"environment": "rest"} for name in facts["motions"]}
-    environments = {name: each["environment"] for name, each in motions.items() if "environment" in each}
-    shown = scene(environments, variables, numbers)
-    return {} if shown is None else {"scene": shown}
+    environments = {name: motion["environment"] for name, motion in motions.items() if "environment" in motion}
+    moving = scene(environments, variables, numbers)
+    return {} if moving is None else {"scene": moving}
 
 
 def _subject(verb: str, origin: Mapping[str, Any]) -> str:
@@ -139,7 +142,10 @@ def _origin(origin: Mapping[str, Any]) -> Blocks:
     rows = [
         ("date", _date(origin["date"]) if origin.get("date") else ""),
         ("command", origin["command"]),
-        *((f"file of {each['motion']}", f"{each['file']}, SHA-256 {each['sha256']}") for each in origin["records"]),
+        *(
+            (f"file of {record['motion']}", f"{record['file']}, SHA-256 {record['sha256']}")
+            for record in origin["records"]
+        ),
         ("SHA-256 of what it says", origin["scenario_sha256"]),
         ("gbeam", origin["gbeam"]),
         ("Python", origin["python"]),
@@ -152,7 +158,7 @@ def _origin(origin: Mapping[str, Any]) -> Blocks:
 
 
 def _page(title: str, state: str, subject: str, body: str, header: Mapping[str, Any], numbers: Numbers) -> str:
-    """HTML of a whole page; `header` and `numbers` are what its script draws."""
+    """HTML of a whole page. Its script draws `header` and `numbers`; its policy lets nothing else run."""
     assets = files("gbeam.report.page") / "assets"
     script, style = ((assets / name).read_text(encoding="utf-8") for name in ("gbeam.js", "gbeam.css"))
     data = json_printable(json.dumps(header, ensure_ascii=False, allow_nan=False)).replace("<", "\\u003c")

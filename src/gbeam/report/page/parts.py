@@ -38,17 +38,17 @@ def paragraph(text: str, kind: str = "") -> str:
 
 
 def drawn_blocks(blocks: Iterable[Block], viewer: str, figures: str, level: int = 2) -> str:
-    """Return blocks as HTML, with the viewer and the figures at their places, below headings of a level."""
-    drawn = []
+    """Return blocks as HTML, under headings of a level. The viewer and the figures stand at their places."""
+    groups = []
     for are_tables, group in groupby(blocks, lambda block: isinstance(block, Table)):
-        inside = [shown for block in group if (shown := _drawn_block(block, viewer, figures, level))]
-        side_by_side = are_tables and len(inside) > 1
-        drawn.append(f'<div class="gbeam-tables">{"".join(inside)}</div>' if side_by_side else "".join(inside))
-    return "".join(drawn)
+        parts = list(filter(None, (_drawn_block(block, viewer, figures, level) for block in group)))
+        side_by_side = are_tables and len(parts) > 1
+        groups.append(f'<div class="gbeam-tables">{"".join(parts)}</div>' if side_by_side else "".join(parts))
+    return "".join(groups)
 
 
 def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
-    """HTML of one block; empty where it has nothing to show."""
+    """HTML of one block; empty if it has nothing to show."""
     match block:
         case Table():
             return table(block)
@@ -60,8 +60,8 @@ def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
         case Verbatim():
             return f"<pre>{escaped(block.text)}</pre>"
         case Place():
-            shown = viewer if block.of == "viewer" else figures
-            return (paragraph(block.hint, "faint gbeam-screen") if shown and block.hint else "") + shown
+            content = viewer if block.of == "viewer" else figures
+            return (paragraph(block.hint, "faint gbeam-screen") if content and block.hint else "") + content
     inside = drawn_blocks(block.blocks, viewer, figures, level + bool(block.title))
     if not inside:
         return ""
@@ -71,13 +71,13 @@ def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
 
 
 def table(block: Table) -> str:
-    """Return a table as HTML, columns of numbers flush right; empty where it has no row."""
+    """Return a table as HTML, with columns of numbers flush right; empty if it has no rows."""
     if not block.rows:
         return ""
     numeric = [block.numeric(k) for k in range(len(block.heads))]
     top = "".join(
-        f'<th scope="col"{_class("number" if right else "")}>{_breaking(head)}</th>' if head else "<td></td>"
-        for head, right in zip(block.heads, numeric, strict=True)
+        f'<th scope="col"{_class("number" if is_number else "")}>{_breaking(head)}</th>' if head else "<td></td>"
+        for head, is_number in zip(block.heads, numeric, strict=True)
     )
     body = "".join(f"<tr>{''.join(map(_cell, row, numeric))}</tr>" for row in block.rows)
     title = f"<caption>{escaped(block.caption)}</caption>" if block.caption else ""
@@ -125,7 +125,7 @@ class Numbers:
         self._size = 0
 
     def add(self, values: Any) -> Ref:
-        """Add an array and return where it is; equal ones stand once."""
+        """Add an array and return a reference to it. Equal arrays are stored once."""
         part = np.ascontiguousarray(values, dtype="<f4")
         key = hashlib.sha256(part.tobytes()).digest(), part.shape
         if key not in self._known:
@@ -154,7 +154,7 @@ def drawn(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -
 
 
 def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
-    """HTML of a figure, with places for its plots and maps, whose data go into `header` and `numbers`."""
+    """HTML of a figure, with places for its plots and maps. Their data are added to `header` and `numbers`."""
     reasons = dict.fromkeys(reason for panel in figure.panels for *_, reason in panel.spans)
     notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
     parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
@@ -170,23 +170,26 @@ def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
 
 
 def _plot(panel: Panel, subject: str, numbers: Numbers, specs: list[dict[str, Any]]) -> tuple[str, str]:
-    """Add the data of a panel to `specs` and `numbers`, and return the id of its place, and its caption."""
+    """Add the data of a panel to `specs` and `numbers`; return the id of its place in the page, and its caption."""
     place = f"plot-{len(specs)}"
     quantity, _, unit = panel.y.rpartition(", ")
-    quantity, label = quantity or panel.y, panel.y if len(panel.y) <= FITTING else unit
+    quantity = quantity or panel.y
+    label = panel.y if len(panel.y) <= FITTING else unit
     low, high = panel.limits or (-np.inf, np.inf)
-    series = [{**each, "x": numbers.add(x), "y": numbers.add(np.clip(y, low, high))} for each, x, y in _series(panel)]
-    shaded = [[start, end] for start, end, _ in panel.spans] + [[each.value, each.value] for each in panel.marks]
-    levels = [{"label": each.label, "value": each.value} for each in panel.levels]
+    series = []
+    for look, x, y in _series(panel):
+        series.append({**look, "x": numbers.add(x), "y": numbers.add(np.clip(y, low, high))})
+    shaded = [[start, end] for start, end, _ in panel.spans] + [[mark.value, mark.value] for mark in panel.marks]
+    levels = [{"label": level.label, "value": level.value} for level in panel.levels]
     title = f"{subject}: {panel.title or quantity}"
     spec: dict[str, Any] = {"id": place, "title": title, "x": panel.x, "y": label}
     spec |= {"time": panel.x == "time, s", "series": series, "bands": shaded, "levels": levels}
     specs.append(spec | ({"logX": True, "logY": True} if panel.logarithmic else {}))
-    return place, "; ".join([": ".join(filter(None, (quantity, panel.title))), *_said(panel)])
+    return place, "; ".join([": ".join(filter(None, (quantity, panel.title))), *_caption_words(panel)])
 
 
-def _said(panel: Panel) -> Iterator[str]:
-    """Yield in words the marks, texts and ticks that a plot of Matplotlib writes where they are."""
+def _caption_words(panel: Panel) -> Iterator[str]:
+    """Yield, in words, the marks, texts and ticks that Matplotlib would write into the plot."""
     for mark in panel.marks:
         yield f"{mark.label} at {number(mark.value)}"
     named = {line.label.removeprefix("_") for line in panel.lines}
@@ -196,7 +199,7 @@ def _said(panel: Panel) -> Iterator[str]:
 
 
 def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
-    """Yield look, x and y of every line of a panel, the edges of its areas among them."""
+    """Yield look, x and y of every line of a panel, including the edges of its areas."""
     for area in panel.areas:
         edges = {"lower end": area.low, "upper end": area.high} if np.any(area.low) else {"": area.high}
         for end, values in edges.items():
@@ -207,7 +210,7 @@ def _series(panel: Panel) -> Iterator[tuple[dict[str, Any], Floats, Floats]]:
 
 
 def _look(line: Line, quantity: str) -> dict[str, Any]:
-    """Look of a line for the page's script: label, colour, breadth, dash and points."""
+    """Look of a line for the page's script: its label, colour, breadth, dash and points."""
     look: dict[str, Any] = {"label": line.label.removeprefix("_") or quantity, "colour": min(line.colour, REFERENCE)}
     if line.broad:
         look["broad"] = True
@@ -225,8 +228,10 @@ def _ascending(x: Floats) -> Floats:
 
 
 def _table(panel: Panel, bars: Bars) -> str:
-    """Table of bars: a row for each name, with values, their intervals, and bars beside them."""
-    largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in bars.values.values()), default=0.0) or 1.0
+    """Table of bars: a row for each name, with its values, their intervals, and bars beside them."""
+    largest = (
+        max((float(np.nanmax(np.abs(values), initial=0.0)) for values in bars.values.values()), default=0.0) or 1.0
+    )
 
     def cell(label: str, k: int) -> Cell:
         value, words = bars.values[label][k], number(bars.values[label][k])
@@ -239,7 +244,7 @@ def _table(panel: Panel, bars: Bars) -> str:
 
 
 def _map(panel: Panel, cells: Map, numbers: Numbers, maps: list[dict[str, Any]]) -> str:
-    """Add the data of a heat map to `maps` and `numbers`, and return its place."""
+    """Add the data of a heat map to `maps` and `numbers`, and return its place in the page."""
     place = f"map-{len(maps)}"
     title, _, unit = cells.label.rpartition(", ")
     x, y = (

@@ -41,7 +41,10 @@ _NEEDED = {
 
 
 def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]:
-    """Return the functions that describe the figures of a stored result, by name; `variables` are those of its file."""
+    """Return the functions that describe the figures of a stored result, by the figures' names.
+
+    `variables` are those of its file. There are none if the file lacks a variable that the figures need.
+    """
     record, needed = KINDS.get(kind, Result), _NEEDED.get(kind)
     if not issubclass(record, Figured):
         return {}
@@ -49,17 +52,22 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
         study = _study(facts, variables)
         return figures_of(study) if study.responses else {}
     if record.listed_by:
-        answers = [(name, answer, under(f"motions/{name}/", variables)) for name, answer in facts["motions"].items()]
-        drawable = (each for each in answers if needed is None or needed in each[-1])
-        return figures_of(tuple(read(record, answer, v, **{record.listed_by: name}) for name, answer, v in drawable))
-    return figures_of(read(record, facts, variables)) if needed is None or needed in variables else {}
+        answers = []
+        for name, answer in facts["motions"].items():
+            v = under(f"motions/{name}/", variables)
+            if needed is None or needed in v:
+                answers.append(read(record, answer, v, **{record.listed_by: name}))
+        return figures_of(tuple(answers))
+    if needed is not None and needed not in variables:
+        return {}
+    return figures_of(read(record, facts, variables))
 
 
 def read(kind: type[_R], facts: Facts, v: Facts | None = None, pattern: str = "*", /, **more: Any) -> _R:
-    """Return a record with fields from `more`, else from the variables `v` of a file, else from JSON; others are empty.
+    """Return a record. Each field is taken from `more`, else from the variables `v` of a file, else from JSON.
 
-    Only fields that no figure reads are so empty. Variables of a record within another have the `pattern` of
-    :func:`gbeam.io.layout.group_of`.
+    Only fields that no figure reads may be missing in all of these; they are left empty. Variables of a record within
+    another have the `pattern` of :func:`gbeam.io.layout.group_of`.
     """
     by_name = {field.name: field for field in fields(kind)}  # type: ignore[arg-type]
     more = {**_APART.get(kind, _plainly)(facts, v or {}), **more}
@@ -90,16 +98,24 @@ def _is_needed(field: Any) -> bool:
 
 
 def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Facts, pattern: str) -> Any:
-    """Value of a field in the variables of a file; None where the file does not have it."""
+    """Value of a field from the variables of a file; None if the file does not have it.
+
+    A field may be a record or rows of records, a complex variable stored in two parts, a plain variable or coordinate,
+    or two ends.
+    """
     variable, key = name_of(name, declaration, pattern), declaration.key
     inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
     if inner is not None:
-        inner_facts = facts if key == INSIDE else None if key is None else _at(facts, key or name)
-        if declaration.role == "part" and _has(inner, v, within := pattern_of(declaration, pattern)):
-            return read(inner, inner_facts or {}, v, within)
+        inner_facts: Any = None
+        if key is not None:
+            inner_facts = facts if key == INSIDE else _at(facts, key or name)
+        inner_pattern = pattern_of(declaration, pattern)
+        if declaration.role == "part" and _has(inner, v, inner_pattern):
+            return read(inner, inner_facts or {}, v, inner_pattern)
         if declaration.role == "rows" and isinstance(inner_facts, dict):
             shared = {name: v[name] for name in SHARED if name in v}
-            return {row: read(inner, known, shared | under(f"{row}_", v)) for row, known in inner_facts.items()}
+            rows = inner_facts.items()
+            return {row: read(inner, row_facts, shared | under(f"{row}_", v)) for row, row_facts in rows}
     elif f"{variable}_real" in v:
         return v[f"{variable}_real"] + 1j * v[f"{variable}_imag"]
     elif declaration.role == "coordinate" or (declaration.role == "variable" and variable in v):
@@ -116,9 +132,8 @@ def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Fa
 def _has(kind: type, v: Facts, pattern: str) -> bool:
     """True if a file has any of the variables that a record needs."""
     by_name = {field.name: field for field in fields(kind)}
-    needed = ((name, each) for name, each in declarations(kind) if name in by_name and _is_needed(by_name[name]))
-    for name, declaration in needed:
-        if declaration.name is None:
+    for name, declaration in declarations(kind):
+        if name not in by_name or not _is_needed(by_name[name]) or declaration.name is None:
             continue
         inner = record_in(kind, name) if declaration.role == "part" else None
         if _has(inner, v, pattern_of(declaration, pattern)) if inner else name_of(name, declaration, pattern) in v:
@@ -135,7 +150,10 @@ def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any
 
 
 def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: str) -> Any:
-    """Value of a field in JSON at a key, of a complex one the real or the imaginary part."""
+    """Value of a field from JSON, at a key. A complex field has one key each for its real and imaginary parts.
+
+    A field whose dimension is that of rows in JSON is gathered from these rows.
+    """
     hint = annotation(kind, name)
     row_keys: dict[str, str] = {} if key.startswith("/") else getattr(kind, "json_rows", {})
     row_dim = next((dim for dim in declaration.dims if dim in row_keys), None)
@@ -147,12 +165,12 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
         return None
     inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
     if row_dim is not None:
-        listed = rows if isinstance(rows, list) else [rows[place] for place in NAMES.get(row_dim, rows)]
-        cells = [_at(row, key) for row in listed]
+        row_list = rows if isinstance(rows, list) else [rows[place] for place in NAMES.get(row_dim, rows)]
+        cells = [_at(row, key) for row in row_list]
         if inner is not None:  # such as errors: of a record of arrays, what the rows have
             names: Facts = next((cell for cell in cells if cell), {})
             return read(inner, {part: [cell[part] for cell in cells] for part in names}) if names else None
-        if any(get_origin(each) is tuple for each in types_in(hint)):
+        if any(get_origin(kind_of_value) is tuple for kind_of_value in types_in(hint)):
             return tuple(cells)
         if len(declaration.dims) > 1 and all(cell is None for cell in cells):
             return None
@@ -164,7 +182,7 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
     if declaration.role == "part":
         return read(inner, value)
     if isinstance(value, dict):
-        return {str(row): read(inner, known) for row, known in value.items()}
+        return {str(row): read(inner, row_facts) for row, row_facts in value.items()}
     return tuple(read(inner, row) for row in value)
 
 
@@ -175,7 +193,7 @@ def _at(facts: Any, key: str) -> Any:
 
 
 def _bare(value: Any, hint: Any, declaration: Declaration) -> Any:
-    """A value of JSON as a record has it: arrays for lists, vectors for components, NaN for null."""
+    """Value of JSON in the form that a record has: arrays for lists, vectors for components, NaN for null."""
     if isinstance(value, dict) and declaration.dims[-1:] and declaration.dims[-1] in NAMES:
         return _vectors(value)
     if value is not None and not {np.float64, np.complex128}.isdisjoint(types_in(hint)):
@@ -203,7 +221,7 @@ def _vectors(values: Facts) -> Floats:
 
 
 def _study(facts: Facts, variables: Facts) -> Study:
-    """The responses in all environments that have one, and their comparisons."""
+    """Study of the responses in all motions that the file has, and their comparisons."""
     responses: dict[str, Any] = {}
     comparisons = []
     for name, entry in facts["motions"].items():
@@ -240,7 +258,7 @@ def _campbell(facts: Facts, _: Facts) -> Facts:
 
 
 def _sensitivity(facts: Facts, _: Facts) -> Facts:
-    """Fields of a Sensitivity: derivatives (measures, parameters), parameters in the order of the first measure."""
+    """Fields of a Sensitivity: derivatives (measures, parameters), parameters as in the first measure."""
     measures = facts["measures"].values()
     rows = {row["path"]: row for row in next(iter(measures))["parameters"]}
     by_path = [{row["path"]: row["derivative"] for row in measure["parameters"]} for measure in measures]
@@ -252,22 +270,22 @@ def _sensitivity(facts: Facts, _: Facts) -> Facts:
 
 
 def _sweep(facts: Facts, variables: Facts) -> Facts:
-    """Fields of a Sweep; its histories are variables."""
+    """Fields of a Sweep. Its histories come from the file's variables, all others from JSON."""
     named = {key: facts.get(key, {}) for key in ("measures", "histories")}
     parameters = [
-        Parameter(each["path"], np.array(each["values"]), each["unit"], each["distribution"] or "")
-        for each in facts["parameters"]
+        Parameter(row["path"], np.array(row["values"]), row["unit"], row["distribution"] or "")
+        for row in facts["parameters"]
     ]
     return {
         "parameters": tuple(parameters), "outcome": np.array(facts["outcomes"], dtype=object),
         "message": np.array(facts["messages"], dtype=object), "time": _array(facts.get("time", [])),
-        "measures": {name: _array(each["values"]) for name, each in named["measures"].items()},
-        "units": {name: each["unit"] for key in named for name, each in named[key].items()},
+        "measures": {name: _array(measure["values"]) for name, measure in named["measures"].items()},
+        "units": {name: quantity["unit"] for quantities in named.values() for name, quantity in quantities.items()},
         "histories": {
             name: variables[f"{name} history"] for name in named["histories"] if f"{name} history" in variables
         },
-        "statistics": {name: _statistics(each) for name, each in facts["statistics"].items()},
-        "indices": {name: _indices(each) for name, each in facts["indices"].items()},
+        "statistics": {name: _statistics(bounds) for name, bounds in facts["statistics"].items()},
+        "indices": {name: _indices(shares) for name, shares in facts["indices"].items()},
     }  # fmt: skip
 
 
@@ -288,7 +306,7 @@ def _indices(facts: Facts) -> Indices:
 
 
 def _fit(facts: Facts, v: Facts) -> Facts:
-    """Fields of a Fit: columns and abscissa from variables."""
+    """Fields of a Fit. The columns' values and their abscissa, time or mode, come from the file's variables."""
     abscissa = "time" if "time" in v else "mode"
     names = ("measured", "fitted", "computed_before")
     columns = [
@@ -299,7 +317,7 @@ def _fit(facts: Facts, v: Facts) -> Facts:
 
 
 def _shaped(facts: Facts, v: Facts) -> Facts:
-    """Fields of a ShapedCommand: goal and runs."""
+    """Fields of a ShapedCommand: its goal and its runs."""
     ((goal, size),) = facts["goal"].items()
     runs = []
     for k, (name, command) in enumerate(facts["commands"].items()):

@@ -33,30 +33,37 @@ _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another ve
 def report_of(
     result: Any, known: Mapping[str, Any] | None = None, figures: Mapping[str, Describe] | None = None
 ) -> str:
-    """Return the page of a result, or of several of one kind, from its JSON `known` and figures, or computing both."""
+    """Return the page of a result, or of several of one kind.
+
+    Its JSON `known` and figures are computed unless they are given.
+    """
     if known is None:
         known = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
         figures = figures_of(whole(result))
-    results = result if isinstance(result, tuple) else (result,)
-    variables = {key: value for each in results if isinstance(each, SHOWN) for key, value in variables_of(each).items()}
+    variables: dict[str, Any] = {}
+    for answer in result if isinstance(result, tuple) else (result,):
+        if isinstance(answer, SHOWN):
+            variables |= variables_of(answer)
     return html(known, variables, figures=figures)
 
 
 def variables_of(result: Result) -> dict[str, Any]:
-    """Return the arrays of the file of a result by path; those of a result listed by motion stand under that motion."""
+    """Return the arrays of a result's file by path. Those of a result listed by motion stand under that motion."""
     named = whole(result)
     folder = f"motions/{getattr(named, named.listed_by)}" if named.listed_by else ""
     return {
-        f"{path or folder}/{name}" if path or folder else name: each.values
+        f"{path or folder}/{name}" if path or folder else name: variable.values
         for path, group in groups_of(named).items()
-        for name, each in (group.variables | group.coordinates).items()
+        for name, variable in (group.variables | group.coordinates).items()
     }
 
 
 def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
-    """Scene of a result in the viewer: its header, and the numbers."""
-    numbers, known = Numbers(), facts(result)
-    view = viewer(known["form"]["kind"], known, variables_of(result) if isinstance(result, SHOWN) else {}, numbers)
+    """Header and numbers of a result in the viewer; InputError if it has nothing to show."""
+    numbers, facts_json = Numbers(), facts(result)
+    view = viewer(
+        facts_json["form"]["kind"], facts_json, variables_of(result) if isinstance(result, SHOWN) else {}, numbers
+    )
     if not view:
         kind = type(result).__name__
         problem = (
@@ -85,7 +92,7 @@ def report_of_file(path: Path) -> str:
 
 
 def _page_of(file: Path) -> str:
-    """HTML of the page of a JSON or netCDF file."""
+    """Page of a JSON or netCDF file, as HTML."""
     if file.suffix == ".json":
         return html(read_json(file, _FIX))
     stored = read_stored(file)
@@ -93,10 +100,9 @@ def _page_of(file: Path) -> str:
     if not isinstance(text, str):
         raise InputError(str(file), "holds no figures of a result that has a report", _FIX)
     facts, variables = parse_json(text), stored.variables
-    if (
-        variables.keys() & {"time", "hangs_on"} and len(facts.get("motions", ())) == 1
-    ):  # of one motion, which is the file's root
-        variables = {f"motions/{name}/{key}": each for name in facts["motions"] for key, each in variables.items()}
+    if variables.keys() & {"time", "hangs_on"} and len(facts.get("motions", ())) == 1:  # the root is the motion
+        (name,) = facts["motions"]
+        variables = {f"motions/{name}/{key}": values for key, values in variables.items()}
     return html(facts, variables, origin_json(stored.provenance))
 
 

@@ -32,18 +32,20 @@ WIDE, THICK = 0.03, 0.012  # of the length: of a body whose section is not known
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
-    """Return the motions that can be shown, and the time at which the first deflects most; None if there are none."""
-    shown = []
+    """Return the motions that can be shown, and the time at which the first one deflects most; None if
+    there are none.
+    """
+    motion_scenes = []
     for name, environment in motions.items():
         v = under(f"motions/{name}/", variables)
         if "hangs_on" in v:
-            seen = _at_once(v) if v["place"].ndim == 2 else _on_hub(v)
-            shown.append(motion(name, environment, seen, numbers))
-    if not shown:
+            moving = _at_once(v) if v["place"].ndim == 2 else _on_hub(v)
+            motion_scenes.append(motion(name, environment, moving, numbers))
+    if not motion_scenes:
         return None
-    _, time, displacement = shown[0]
+    _, time, displacement = motion_scenes[0]
     start = float(time[(displacement[:, -1] ** 2).sum(axis=-1).argmax()])
-    return {"motions": [header for header, *_ in shown], "start": start}
+    return {"motions": [header for header, *_ in motion_scenes], "start": start}
 
 
 def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: float) -> dict[str, Any]:
@@ -57,12 +59,14 @@ def _indices(time: Floats, some: Floats) -> Any:
 
 
 def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
-    """Header of a surface in a few shapes, with the largest judged stress, over time (`stress`, if known) or of the
-    vertices; and the displacement (t, 1, 3) of the vertex that moves farthest.
+    """Header of a surface in a few shapes, with its largest stress, and the displacement (t, 1, 3) of a vertex.
+
+    The stress is the largest over time (`stress`) if known, or else of the vertices that are judged. The vertex is the
+    one that moves farthest.
     """
-    few = surface["sizes"][:: max(1, len(surface["sizes"]) // 100)]
-    displacement = np.einsum("ts,sva->tva", few, surface["shapes"])
-    by_vertex = von_mises(np.einsum("ts,sva->tva", few, surface["stress"])).max(axis=0)
+    sizes = surface["sizes"][:: max(1, len(surface["sizes"]) // 100)]
+    displacement = np.einsum("ts,sva->tva", sizes, surface["shapes"])
+    by_vertex = von_mises(np.einsum("ts,sva->tva", sizes, surface["stress"])).max(axis=0)
     judged = surface["judged"].astype(bool)
     largest = float(by_vertex[judged].max(initial=0.0) if stress is None else np.max(stress))
     vertex = (displacement**2).sum(axis=-1).max(axis=0).argmax()
@@ -72,7 +76,7 @@ def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tup
 
 
 def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
-    """Header of the load of the base, and of the machine, if any, about a specimen over `places` (p, 3)."""
+    """Header of the loads around a specimen over `places` (p, 3): of the base and, if there is one, of the machine."""
     actual = v.get("load_actual")
     load = v.get(GROUND) if actual is None else actual
     header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
@@ -186,7 +190,7 @@ def _length(beam: Variables) -> float:
 
 
 def _carrier(inner: Variables, v: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
-    """Header of the turning of what carries a beam, as its outline has it: its attitude in flight, or the hub's."""
+    """Header of how the frame that carries a beam turns: by its attitude in flight, or with a hub."""
     header: dict[str, Any] = {"attitude": numbers.add(inner["attitude"])} if "attitude" in inner else {}
     if "hub_radius" in inner:
         header |= {"radius": float(inner["hub_radius"]), "mounting": np.ravel(inner["hub_mounting"]).tolist()}
@@ -201,18 +205,18 @@ def _box(size: Floats, centre: Floats, rotation: Floats) -> dict[str, Any]:
 
 
 def _view(place: Floats) -> tuple[Floats, float]:
-    """Middle (1, 3) and radius of the view of points (t, p, 3); a middle (t, 3) that follows them if they go far."""
+    """Centre (1, 3) and radius of the view of points (t, p, 3). The centre follows them, (t, 3), if they go far."""
     low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
-    middle = (place.min(axis=1) + place.max(axis=1)) / 2
-    of_bodies = float(np.linalg.norm(place - middle[:, None], axis=-1).max())
-    whole = float(np.linalg.norm(high - low)) / 2
-    if whole > FAR * of_bodies > 0:
-        return middle, 1.05 * of_bodies
-    return (low + high)[None] / 2, 1.05 * whole or 1.0
+    centre = (place.min(axis=1) + place.max(axis=1)) / 2
+    size = float(np.linalg.norm(place - centre[:, None], axis=-1).max())
+    whole_size = float(np.linalg.norm(high - low)) / 2
+    if whole_size > FAR * size > 0:
+        return centre, 1.05 * size
+    return (low + high)[None] / 2, 1.05 * whole_size or 1.0
 
 
 def shape(points: Floats, width: Floats, thickness: Floats, is_round: Any) -> dict[str, Any]:
-    """Header of the shape of a beam: its points along the axis, and the extents of its section."""
+    """Header of a beam's shape: points along its axis, and the extents of its section."""
     return {
         "points": np.asarray(points).tolist(),
         "width": np.asarray(width).tolist(),
@@ -227,8 +231,9 @@ def _at_once(v: Variables) -> Variables:
 
 
 def _on_hub(v: Variables) -> Variables:
-    """Return the variables of a body on a hub that turns freely as those of the body alone in axes of its root, which
-    turn with the hub; others as they are.
+    """Return the variables of a body on a free hub as those of the body alone, in root axes that turn with it.
+
+    Other variables are returned as they are.
     """
     bodies = [body for body in v["body"] if f"{body}_hub_radius" in v]
     if not bodies or GROUND in v:
@@ -262,7 +267,7 @@ def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str
     meshes = {
         body: {key: v[f"{body}_surface_{key}"] for key in MESH} for body in v["body"] if f"{body}_surface_vertices" in v
     }
-    _, radius = _view(np.concatenate([v["place"], *(_about(v, body) for body in v["body"])])[None])
+    _, radius = _view(np.concatenate([v["place"], *(_surroundings(v, body) for body in v["body"])])[None])
 
     def of_mode(name: str, k: int) -> Any:
         return _complex(v, name)[k]
@@ -293,22 +298,23 @@ def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str
 
 
 def _line(v: Variables, body: str) -> Variables:
-    """Variables of the outline of a body that has none, nor a surface, such as one by matrices: a strip through its
-    stations.
+    """Variables of an outline for a body that has neither one nor a surface, such as one by matrices.
+
+    The outline is a strip through its stations.
     """
     x = v.get(f"{body}_station", np.zeros(0))
     if f"{body}_outline" in v or f"{body}_surface_vertices" in v or not len(x) or np.any(np.diff(x, prepend=0.0) <= 0):
         return {}
-    wide = np.full(len(x) + 1, WIDE * x[-1])
-    known = {"outline_width": wide, "outline_thickness": THICK / WIDE * wide, "outline_round": False}
+    width = np.full(len(x) + 1, WIDE * x[-1])
+    outline = {"outline_width": width, "outline_thickness": THICK / WIDE * width, "outline_round": False}
     for part in ("shape_real", "shape_imag"):
-        known[f"outline_{part}"] = np.pad(v[f"{body}_{part}"], ((0, 0), (1, 0), (0, 0)))
-    known |= {"point": np.append(0.0, x), "outline": np.zeros((1, len(x) + 1, 3))}
-    return {f"{body}_{name}": each for name, each in known.items()}
+        outline[f"outline_{part}"] = np.pad(v[f"{body}_{part}"], ((0, 0), (1, 0), (0, 0)))
+    outline |= {"point": np.append(0.0, x), "outline": np.zeros((1, len(x) + 1, 3))}
+    return {f"{body}_{name}": values for name, values in outline.items()}
 
 
-def _about(v: Variables, body: str) -> Floats:
-    """Places (p, 3) of a body at rest in axes of the ground, about all of it, beside its points."""
+def _surroundings(v: Variables, body: str) -> Floats:
+    """Points (p, 3) around a body at rest, in axes of the ground: the corners of its surface's box, or its outline."""
     if f"{body}_surface_vertices" in v:
         low, size = v[f"{body}_surface_vertices"].min(axis=0), np.ptp(v[f"{body}_surface_vertices"], axis=0)
         places = low + CORNERS * size
