@@ -57,9 +57,7 @@ def _leave_settings_of_plots() -> None:
 
 
 def limited() -> int:
-    """Run the command line on the process's arguments after the first two, which limit it: memory, bytes, and time of
-    the processor, s.
-    """
+    """Run the command line with limits, the process's first two arguments: memory, bytes, and processor time, s."""
     from gbeam.guards.limits import restrict
 
     memory, seconds = (int(sys.argv.pop(1)) for _ in range(2))
@@ -68,7 +66,7 @@ def limited() -> int:
 
 
 def _status(arguments: list[str]) -> int:
-    """Run a verb, and return its exit status; 1 if its output could not be printed."""
+    """Run a verb and return its exit status, 1 if its output could not be printed."""
     from gbeam.cli import process as streams
 
     has_stdout = streams.prepare()

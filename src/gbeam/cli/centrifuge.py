@@ -195,7 +195,7 @@ def place(
 
 
 def _apply(loaded: Input, file: Path, name: str, changes: dict[str, str | list[str]]) -> str:
-    """Write the changes of one centrifuge into the scenario file; return its name."""
+    """Write the changes of one centrifuge into the scenario file, and return the file's name."""
     from gbeam.scenario.text.revise import edited
 
     source = loaded.scenario.source

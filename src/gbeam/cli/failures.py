@@ -27,7 +27,7 @@ LONGEST = 1000  # characters of a message
 
 
 def report(error: GbeamError, as_json: bool) -> int:
-    """Print an error on stderr, with `as_json` also as JSON on stdout; return the exit status."""
+    """Print an error on stderr and, with `as_json`, also as JSON on stdout; return the exit status."""
     if isinstance(error, ComputationError):
         complain(f"{error.outcome}: {error}")
         if as_json:
@@ -42,12 +42,12 @@ def report(error: GbeamError, as_json: bool) -> int:
 
 
 def ended(*answers: Result) -> int:
-    """Print what is not known of answers on stderr; return the exit status."""
+    """Print on stderr why answers are not known, and return the exit status."""
     from gbeam.results.result import Decided
 
-    unknown = [each for each in answers if isinstance(each, Decided) and each.outcome != "done"]
-    for each in unknown:
-        complain(each.message)
+    unknown = [answer for answer in answers if isinstance(answer, Decided) and answer.outcome != "done"]
+    for answer in unknown:
+        complain(answer.message)
     return FAILED if unknown else 0
 
 
@@ -59,7 +59,7 @@ def report_syntax(message: str, as_json: bool) -> int:
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """True if an error, or one that caused it, is a lack of memory, by its type or by words of a loader or thread."""
+    """True if an error, or one that caused it, is a lack of memory, by its type or by a loader's or thread's words."""
     while error is not None:
         if isinstance(error, MemoryError) or (
             isinstance(error, (ImportError, RuntimeError)) and _NO_ROOM.search(str(error))
@@ -113,7 +113,7 @@ def report_defect(error: Exception, arguments: Sequence[str], as_json: bool) -> 
 
 
 def _kept(text: str) -> str | None:
-    """Write a traceback into a new temporary file and return its name; else print it on stderr and return None."""
+    """Write a traceback into a new temporary file and return its name. Else print it on stderr and return None."""
     from tempfile import NamedTemporaryFile
 
     try:
@@ -141,6 +141,7 @@ def _refuse(text: str, diagnostics: list[dict[str, Any]], as_json: bool) -> int:
 
 
 def _diagnostics(error: GbeamError) -> list[dict[str, Any]]:
+    """Diagnostics of an error for JSON: path, message and hint of each."""
     from gbeam.scenario import ScenarioError
 
     if isinstance(error, ScenarioError):

@@ -41,8 +41,8 @@ def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
         description = describe(loaded.case)
     source = loaded.scenario.source
     assert source is not None  # it was read from a file
-    drawn = {path: str(each) for path, each in source.distributions.items()}
-    description = replace(description, distributions=drawn)
+    distributions = {path: str(distribution) for path, distribution in source.distributions.items()}
+    description = replace(description, distributions=distributions)
     facts, words = signed(facts_of(description), loaded.case.provenance), report.text(description)
     on_page = words if output.report else ""
     show(words, facts, output.json)
@@ -55,7 +55,7 @@ def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
 
 
 def _write(folder: Path, description: Description, facts: dict[str, Any], words: str, watch: Watch) -> None:
-    """Write what a scenario means, a page of its `words` unless they are empty, and figures of its records."""
+    """Write a scenario's description as JSON, figures of its records, and a page of its `words` if there are any."""
     from gbeam.figures import figures_of
 
     write_json(folder / "check.json", facts)
@@ -126,10 +126,10 @@ def presets(
     if name is not None:
         show(text_of(name).rstrip("\n"), asdict(preset_of(name)), json)
         return 0
-    known = {each: preset_of(each) for each in PRESETS}
-    widest = max(map(len, known))
-    lines = [f"{each:<{widest}}  {preset.standard}: {preset.title}" for each, preset in known.items()]
-    show("\n".join(lines), {each: asdict(preset) for each, preset in known.items()}, json)
+    by_name = {key: preset_of(key) for key in PRESETS}
+    widest = max(map(len, by_name))
+    lines = [f"{key:<{widest}}  {preset.standard}: {preset.title}" for key, preset in by_name.items()]
+    show("\n".join(lines), {key: asdict(preset) for key, preset in by_name.items()}, json)
     return 0
 
 

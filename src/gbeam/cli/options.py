@@ -129,14 +129,17 @@ def with_options(*verbs: str) -> Callable[[_Function], _Function]:
     words: dict[str, dict[str, list[str]]] = {}
     declared: dict[str, Any] = {}
     for verb in verbs:
-        for name, each in QUESTIONS[verb].options.items():
-            declared.setdefault(name, each)
-            words.setdefault(name, {}).setdefault(each.words, []).append(verb)
+        for name, entry in QUESTIONS[verb].options.items():
+            declared.setdefault(name, entry)
+            words.setdefault(name, {}).setdefault(entry.words, []).append(verb)
     members: list[tuple[str, Any, Any]] = []
-    for name, each in declared.items():
-        texts = [text if len(verbs) == 1 else f"Of {' and '.join(of)}: {text}" for text, of in words[name].items()]
-        kind = str | type(each.default) if each.kind else each.type  # a quantity is given as text
-        members.append((each.argument, Annotated[kind, Parameter(name=each.flag, help=" ".join(texts))], each.default))
+    for name, entry in declared.items():
+        texts = []
+        for text, verbs_with_it in words[name].items():
+            texts.append(text if len(verbs) == 1 else f"Of {' and '.join(verbs_with_it)}: {text}")
+        kind = str | type(entry.default) if entry.kind else entry.type  # a quantity is given as text
+        parameter = Parameter(name=entry.flag, help=" ".join(texts))
+        members.append((entry.argument, Annotated[kind, parameter], entry.default))
     options = make_dataclass("Options", members, frozen=True, namespace={"__module__": __name__})
     record = Parameter(name="*", show=bool(members))(options)
 
@@ -163,7 +166,7 @@ class Input:
 
     @contextmanager
     def placing(self, **options: str) -> Iterator[None]:
-        """Place InputErrors raised inside in the scenario file, or at the option, in `options`, of their argument."""
+        """Place InputErrors raised inside: at an option, of `options` by argument, or else in the scenario file."""
         try:
             yield
         except InputError as error:
@@ -174,7 +177,7 @@ class Input:
             raise placed(self.scenario, [error]) from None
 
     def motion(self, name: str | None, *, kind: str = "") -> tuple[str, Any]:
-        """Name and prepared motion chosen by ``--motion``, or for None the only one, of a kind if one is named."""
+        """Name and prepared motion that ``--motion`` chooses, or else the only one; of a `kind` if one is named."""
         chosen = motion_of(self.case.environments, name, kind)
         try:
             return chosen, prepared(self.case, chosen)
@@ -184,13 +187,13 @@ class Input:
             raise placed(self.scenario, [error.within(f"motion.{chosen}")]) from None
 
     def answer(self, question: Question, motion: str | None, at: str | None, options: Any, needs: Needs) -> Any:
-        """Answer of a question with the options of the command line."""
-        time, chosen = None if at is None else number("--at", at, "time"), question.chosen(asked(options))
-        places = {each.argument.rstrip("_"): each.flag for each in question.options.values()}
+        """Answer of a question with the options of the command line, while a watch shows its progress."""
+        time, chosen_options = None if at is None else number("--at", at, "time"), question.chosen(asked(options))
+        places = {entry.argument.rstrip("_"): entry.flag for entry in question.options.values()}
         with Watch() as watch, self.placing(**places):
             if "progress" in signature(question.answer).parameters:
-                chosen["progress"] = watch
-            return question.answer(self.case, motion, time, needs, **chosen)
+                chosen_options["progress"] = watch
+            return question.answer(self.case, motion, time, needs, **chosen_options)
 
     def time(self, text: str | None, motion: str) -> float:
         """Time of ``--at``, s; for None the start of the response in a motion."""
@@ -198,7 +201,7 @@ class Input:
 
 
 def signed(facts: dict[str, Any], provenance: Provenance | None) -> dict[str, Any]:
-    """Facts of a result for JSON, with a function for those of its provenance, which take a while to find."""
+    """Add the provenance to a result's facts, as a function: to look it up takes a while, and is not always needed."""
 
     def origin() -> dict[str, Any]:
         from gbeam.report.facts import origin_json
@@ -213,7 +216,7 @@ _MOVING = ("run", "place")  # verbs that need the plans of all machines
 
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
-    """Load and build the scenario of a verb; InputError if the verb is of what deforms, and nothing does."""
+    """Load and build the scenario of a verb. InputError if the verb needs a body that deforms and there is none."""
     from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
 
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
@@ -249,7 +252,7 @@ def names(texts: Sequence[str]) -> list[str]:
 
 
 def search_bounds(texts: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Read bounds of the values of a search, each ``PATH=LOW:HIGH``; return them by path."""
+    """Read the bounds of a search's values, each ``PATH=LOW:HIGH``, and return them by path."""
     values = {}
     for text in texts:
         path, equals, ends = text.partition("=")

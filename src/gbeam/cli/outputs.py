@@ -105,7 +105,7 @@ _STYLES = {"good": "green", "bad": "bold red", "warning": "yellow", "faint": "di
 
 
 def show_lines(lines: Iterable[tuple[str, str]]) -> None:
-    """Print lines, each with its tone; on a terminal in colours, wrapped with an indent."""
+    """Print lines, each with its tone. On a terminal they are coloured, and wrapped with an indent."""
     from gbeam.report.words import terminal_width
 
     width = terminal_width()
@@ -124,7 +124,7 @@ def show_lines(lines: Iterable[tuple[str, str]]) -> None:
 
 
 def list_figures(verb: str, json: bool) -> int:
-    """Print every figure of a question, with its unit and what it is."""
+    """Print every figure of a question, with its unit and its words."""
     from gbeam.report.words import terminal_width
     from gbeam.studies.figures import choices
 
@@ -168,7 +168,7 @@ def refuse_changes(write: Path | None, overrides: Sequence[str]) -> None:
 
 
 def write_found(answer: Fit | Optimum, scenario: Path, file: Path | None) -> None:
-    """Write a copy of the scenario, with the values that a search found, to `file` unless that is None."""
+    """Write a copy of the scenario with the values that a search found, unless `file` is None."""
     if file is None:
         return
     from gbeam.studies.parameters import with_values

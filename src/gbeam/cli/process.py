@@ -56,7 +56,7 @@ def cleaned_up(cleanup: Callable[[], object]) -> Iterator[None]:
 
 @contextmanager
 def deferred() -> Iterator[None]:
-    """Let signals wait until the block is done, which must be short and not be interrupted."""
+    """Let signals wait until the block is done. It must be short and not be interrupted."""
     global _deferring
     _deferring += 1
     try:
@@ -77,7 +77,7 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def _exit(number: int) -> None:
-    """Kill child processes, call the cleanups, print one line, and end."""
+    """End the process on a signal: kill its children, call the cleanups, and print one line."""
     processes = sys.modules.get("multiprocessing")
     for child in processes.active_children() if processes else ():  # they would wait for work forever
         child.kill()
@@ -131,7 +131,7 @@ _CACHE = re.compile(r"Error (?:reading|writing) persistent compilation cache ent
 
 
 def prepare() -> bool:
-    """Make standard output and error safe to print on; return true if there is a standard output.
+    """Make standard output and error safe to print on, and return true if there is a standard output.
 
     If one is closed (``gbeam ... >&-``), the next file that is opened would get its number, and be printed into.
     """
@@ -158,7 +158,7 @@ class _Lasting(io.FileIO):
     error: OSError | None = None
 
     def write(self, data: Any, /) -> int:
-        """Write bytes, or discard them."""
+        """Write bytes. After the first error, which is kept, discard them."""
         if self.error is None:
             try:
                 return super().write(data)
@@ -189,13 +189,15 @@ def _widen() -> None:
 
 
 def shorten_warnings() -> None:
-    """Print each warning of a library on one line, without its place in the source, and similar ones only once."""
-    shown: set[str] = set()
+    """Print each warning of a library on one line, without its place in the source. Similar ones are
+    printed only once.
+    """
+    printed: set[str] = set()
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
         text = _CACHE.sub(r"the cache of compiled programs cannot be used, they are compiled again: \1", str(message))
-        if text[:_ALIKE] not in shown:
-            shown.add(text[:_ALIKE])
+        if text[:_ALIKE] not in printed:
+            printed.add(text[:_ALIKE])
             print(f"gbeam: warning: {on_one_line(shortened(text))}", file=sys.stderr)
 
     warnings.showwarning = show

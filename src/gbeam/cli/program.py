@@ -72,7 +72,7 @@ def run(tokens: list[str]) -> int:
 
 
 def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
-    """Function that a command line calls, and its arguments; ValueError if it calls none."""
+    """Function that a command line calls, and its arguments. ValueError if it calls none."""
     try:
         verb, bound, _ = _app(tokens[0] if tokens else "").parse_args(
             _named(tokens), exit_on_error=False, print_error=False
@@ -114,10 +114,10 @@ def _app(chosen: str) -> App:
         help_format="markdown" if chosen in verbs() else "plaintext",  # Markdown takes long to import
         suppress_keyboard_interrupt=False,
     )
-    for verb, about in verbs().items():
+    for verb, summary in verbs().items():
         # The help of the chosen verb is its own docstring, which says more.
         module, _ = _FILES.get(verb, ("questions", ""))
         function_path = f"gbeam.cli.{module}:{verb.replace('-', '_')}"
-        app.command(function_path, name=verb, help=None if verb == chosen else about)
+        app.command(function_path, name=verb, help=None if verb == chosen else summary)
     app.register_install_completion_command(help="Let the shell complete verbs and options: bash, zsh or fish.")
     return app

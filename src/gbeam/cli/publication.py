@@ -22,7 +22,7 @@ _PLOTS = (".png", ".svg")
 
 
 def refuse_unwritable(folder: Path) -> None:
-    """Raise InputError if `folder` can be neither written to nor made, before an hour is spent computing."""
+    """Raise InputError if `folder` can be neither written to nor made, so that no hour is spent computing in vain."""
     try:
         parent = folder.absolute()
         while not parent.exists():
@@ -57,7 +57,7 @@ def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
 
 
 def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
-    """Make files in a hidden folder, then move them into the folder at once."""
+    """Make files in a hidden folder, then move them into the folder at once, and return their paths."""
     new = not folder.exists()
     parent = folder.absolute().parent if new else folder
     parent.mkdir(parents=True, exist_ok=True)
@@ -76,7 +76,7 @@ def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Lock a folder, after waiting for other runs that move files into it, so that files of two runs do not mix."""
+    """Lock a folder, after waiting for other runs that move files into it: files of two runs must not mix."""
     if os.name != "posix":
         yield
         return
@@ -93,7 +93,7 @@ def _alone_in(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def _hidden_in(parent: Path) -> Iterator[Path]:
-    """Make a folder named by computer and process; remove it in the end, unless it was moved."""
+    """Make a hidden folder, named by computer and process. In the end it is removed, unless it was moved."""
     hidden = Path(tempfile.mkdtemp(prefix=f"{_HIDDEN}{_computer()}-{os.getpid()}-", dir=parent))
     remove = partial(shutil.rmtree, hidden, ignore_errors=True)
     with cleaned_up(remove):
@@ -104,13 +104,13 @@ def _hidden_in(parent: Path) -> Iterator[Path]:
 
 
 def _remove_dead(parent: Path) -> None:
-    """Remove hidden folders whose process is dead, or that are old."""
+    """Remove hidden folders whose process has ended, or that are old."""
     of_this_computer = re.compile(rf"{re.escape(_HIDDEN + _computer())}-(\d+)-[^-]+")
     for hidden in parent.glob(f"{_HIDDEN}*"):
         match = of_this_computer.fullmatch(hidden.name)
         with suppress(OSError):
-            dead = not _runs(int(match[1])) if match and os.name == "posix" else False
-            if dead or time.time() - hidden.stat().st_mtime > _DEAD:
+            has_ended = match is not None and os.name == "posix" and not _runs(int(match[1]))
+            if has_ended or time.time() - hidden.stat().st_mtime > _DEAD:
                 shutil.rmtree(hidden, ignore_errors=True)
 
 
@@ -130,7 +130,7 @@ def _runs(process: int) -> bool:
 
 
 def _moved_whole(hidden: Path, folder: Path) -> bool:
-    """Rename the hidden folder; False if another run has made `folder` in the meantime."""
+    """Rename the hidden folder to `folder`. False if another run has made that in the meantime."""
     mask = os.umask(0)
     os.umask(mask)
     os.chmod(hidden, 0o777 & ~mask)  # mkdtemp's are for their owner only
@@ -151,7 +151,7 @@ def _synchronise(folder: Path) -> None:
 
 
 def _remove_plots_before(folder: Path, names: set[str]) -> None:
-    """Remove plots in a folder with the signature of the new ones, `names`, but other names."""
+    """Remove earlier plots from a folder: those with the signature of the new ones, `names`, under other names."""
     if not any(name.endswith(_PLOTS) for name in names):
         return
     from gbeam.plots import signature

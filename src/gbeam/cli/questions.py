@@ -163,7 +163,9 @@ def critical_map(
     folder: Path | None,
     output: Output,
 ) -> int:
-    """Print and write a map of critical speeds; arguments as of :func:`critical_speed`, `upper` in rad/s."""
+    """Print and write a map of critical speeds. Arguments are those of :func:`critical_speed`, with
+    `upper` in rad/s.
+    """
     name, chosen = loaded.motion(motion, kind="hub")
     case = loaded.case
     kilograms = numbers("--masses", masses, "mass")
@@ -273,7 +275,9 @@ def linearize(
 
 
 def _gauges_at(system: System, text: str) -> list[Gauge]:
-    """Gauges of one --strain-at: on two faces of a beam at a position, or along the three axes of a solid's point."""
+    """Gauges of one --strain-at: on two faces of a beam at a position, or along the three axes at a
+    point of a solid.
+    """
     from gbeam.analysis.control.outputs import surface_gauges
     from gbeam.guards.checks import choice, index_of
     from gbeam.results.state_space import Gauge

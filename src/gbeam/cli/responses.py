@@ -57,12 +57,12 @@ def run(
     deliver(answer, "result", folder, output, verb="run", suffix=".nc", page="report")
     for name, failure in answer.unfinished.items():
         complain(f"motion.{name} {failure.outcome}: {failure.message}")
-    for name, which in answer.exceeding.items():
-        complain(f"motion.{name} limits exceeded: {which}" + (" (allowed)" if ignore_limits else ""))
+    for name, limits in answer.exceeding.items():
+        complain(f"motion.{name} limits exceeded: {limits}" + (" (allowed)" if ignore_limits else ""))
     refused = {NOT_ACCEPTED: answer.not_accepted, NOT_DECIDED: answer.not_decided}
     for decision, reasons in refused.items():
-        for name, which in reasons.items():
-            complain(f"motion.{name} {decision}: {which}")
+        for name, reason in reasons.items():
+            complain(f"motion.{name} {decision}: {reason}")
     kept = not any(refused.values()) and (ignore_limits or not answer.exceeding)
     return 0 if answer.outcome == "done" and kept else FAILED
 
@@ -148,10 +148,10 @@ def rerun(
     """
     from gbeam.report import facts as report
 
-    again = answer_again(result) if result.suffix == ".json" else _of_netcdf(result)
-    show(report.reproduction_text(again), report.reproduction_json(again), json)
-    if not again.reproduced:
-        complain(f"not reproduced: {again.beyond} of {again.compared} differ")
+    reproduction = answer_again(result) if result.suffix == ".json" else _of_netcdf(result)
+    show(report.reproduction_text(reproduction), report.reproduction_json(reproduction), json)
+    if not reproduction.reproduced:
+        complain(f"not reproduced: {reproduction.beyond} of {reproduction.compared} differ")
         return FAILED
     return 0
 
@@ -162,7 +162,7 @@ _ABOUT = {"provenance", "files", "seconds", "written", "lines", "messages", "uni
 
 
 def _of_netcdf(file: Path) -> Reproduction:
-    """Compute the responses, or run the verb, of a netCDF file again, and compare every value."""
+    """Compute the responses of a netCDF file, or run its verb, again, and compare every value."""
     from gbeam.io.netcdf import read_stored
     from gbeam.scenario.rerun import facts_of, is_run, origin_of, run_again
 
@@ -171,7 +171,8 @@ def _of_netcdf(file: Path) -> Reproduction:
         if is_run(stored):
             return run_again(file, stored, watch)
     origin = origin_of(file, stored)
-    if not (facts := facts_of(stored)):
+    facts = facts_of(stored)
+    if not facts:
         raise InputError(str(file), "holds no figures to compare", "give the JSON of its verb")
     return _compared(file, facts, origin)
 
@@ -192,21 +193,22 @@ def _compared(file: Path, facts: dict[str, Any], origin: Provenance) -> Reproduc
     from gbeam.scenario.rerun import record_changes, reproduction
 
     with TemporaryDirectory(prefix="gbeam-") as folder:
-        again = _answered(file, origin, Path(folder), tuple(record_changes(origin, Path(folder))))
-    kind = again.get("form", {}).get("kind")
+        facts_now = _answered(file, origin, Path(folder), tuple(record_changes(origin, Path(folder))))
+    kind = facts_now.get("form", {}).get("kind")
     declared = paths_of(tree_of_answers(KINDS[kind])) if kind in KINDS else ()
-    units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): each.unit or "1" for form, each in declared}
-    forms = {name: form for each in (facts, again) for name, form, _ in _leaves(each)}
+    units = {re.compile(re.escape(form).replace(re.escape(ANY), ".+")): entry.unit or "1" for form, entry in declared}
+    forms = {name: form for tree in (facts, facts_now) for name, form, _ in _leaves(tree)}
 
     def unit_of(name: str) -> str:
-        possible = [each for each in (forms[name], forms[name].removesuffix("[i]")) if len(each) <= _LONGEST]
+        possible = [form for form in (forms[name], forms[name].removesuffix("[i]")) if len(form) <= _LONGEST]
         unit = next((unit for pattern, unit in units.items() if any(map(pattern.fullmatch, possible))), "")
         if unit == "mixed":
             return _unit_of_row(facts, name)
         return "" if unit == "unit" else unit  # a unit that another key says
 
-    then, now = ({name: value for name, _, value in _leaves(each)} for each in (facts, again))
-    return reproduction(str(file), then, now, origin, unit_of)
+    values_before = {name: value for name, _, value in _leaves(facts)}
+    values_now = {name: value for name, _, value in _leaves(facts_now)}
+    return reproduction(str(file), values_before, values_now, origin, unit_of)
 
 
 _ROWS = {"A": "states", "B": "states", "C": "outputs", "D": "outputs"}  # of a state-space model, with their units
@@ -222,7 +224,7 @@ def _unit_of_row(facts: dict[str, Any], name: str) -> str:
 
 
 def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
-    """Facts of a verb's JSON, and their provenance; InputError if it has none."""
+    """Facts of a verb's JSON and their provenance. InputError if it has none."""
     from pydantic import TypeAdapter, ValidationError
 
     from gbeam.guards.limits import read_json
@@ -240,7 +242,7 @@ def _read(file: Path) -> tuple[dict[str, Any], Provenance]:
 
 
 def _answered(file: Path, origin: Provenance, folder: Path, changes: tuple[str, ...]) -> dict[str, Any]:
-    """Run the command of a provenance again, on its scenario with changes; return the JSON that it prints."""
+    """Run the command of a provenance again, on its scenario with changes, and return the JSON that it prints."""
     from gbeam.cli.program import parsed
 
     scenario = folder / "scenario.toml"
@@ -260,9 +262,9 @@ def _answered(file: Path, origin: Provenance, folder: Path, changes: tuple[str, 
     if "resume" in parameters:  # a sweep always has a store; its cluster may be gone
         out = folder / "out"
         arguments |= {"resume": False, "scheduler": None}
-    again = Output((*asked.overrides, *changes), out, json=True)
+    new_output = Output((*asked.overrides, *changes), out, json=True)
     if "output" in parameters:
-        arguments["output"] = again
+        arguments["output"] = new_output
     else:  # of check
         arguments |= {"overrides": (*arguments.get("overrides", ()), *changes), "out": None, "json": True}
     printed = io.StringIO()
@@ -272,8 +274,9 @@ def _answered(file: Path, origin: Provenance, folder: Path, changes: tuple[str, 
 
 
 def _leaves(node: Any, name: str = "", form: str = "") -> Iterator[tuple[str, str, Any]]:
-    """Yield name, form and value of every number, text and list of numbers; units are declared by the form, in which
-    rows of lists are ``[i]``.
+    """Yield the name, form and value of every number, text and list of numbers in facts.
+
+    Units are declared by the form, in which rows of lists are ``[i]``.
     """
     if isinstance(node, dict):
         for key, value in node.items():
@@ -283,7 +286,7 @@ def _leaves(node: Any, name: str = "", form: str = "") -> Iterator[tuple[str, st
     elif not isinstance(node, list):
         yield name, form, _number(node) if isinstance(node, (int, float)) else str(node)
     elif _is_array(node):
-        yield name, f"{form}[i]", [math.nan if each is None else _number(each) for each in node]
+        yield name, f"{form}[i]", [math.nan if entry is None else _number(entry) for entry in node]
     else:
         for row, value in zip(_row_names(node), node, strict=True):
             yield from _leaves(value, f"{name}.{row}", f"{form}[i]")

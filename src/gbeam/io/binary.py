@@ -42,7 +42,7 @@ def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
 @contextmanager
 def _refused(path: str | os.PathLike[str], problem: str, fix: str) -> Iterator[None]:
-    """Refuse a damaged file, which leads its library to any exception."""
+    """Turn any exception of a damaged file's library into an InputError with this problem and fix."""
     try:
         yield
     except (InputError, MemoryError):
@@ -113,7 +113,7 @@ def _fields(kind: np.dtype[Any], inside: tuple[str, ...] = ()) -> Iterator[tuple
 
 
 def _object(name: str, kind: str) -> Column:
-    """Column that only MATLAB can read, which says so when it is asked for."""
+    """Column that only MATLAB can read. It says so when its samples are asked for."""
 
     def read() -> NDArray[Any]:
         fix = "save numbers beside it, such as s = seconds(t - t(1)) of a datetime t, or z = T.z of a table T"
@@ -123,7 +123,7 @@ def _object(name: str, kind: str) -> Column:
 
 
 def _refuse_unwritten(item: h5py.Dataset) -> None:
-    """Refuse an array of which not all was written, as by a recorder that stopped: HDF5 reads the rest as zeros."""
+    """Refuse an array that was written in part only, as by a recorder that stopped: HDF5 reads zeros for the rest."""
     if item.is_virtual or item.external or not item.size:
         return
     parts = math.prod(-(-size // chunk) for size, chunk in zip(item.shape, item.chunks or item.shape, strict=True))
@@ -149,7 +149,7 @@ def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
 
 
 def _unpacked(array: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Undo the packing of the CF conventions: samples that are missing are NaN."""
+    """Undo the packing of the CF conventions. Missing samples are NaN."""
     missing = [np.ravel(attributes[name])[0] for name in ("_FillValue", "missing_value") if name in attributes]
     empty = np.isin(array, missing) if missing else False
     scale, offset = (np.ravel(attributes.get(name, default))[0] for name, default in _PACKING.items())
@@ -191,7 +191,10 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
 
 
 def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
-    """Columns of a MAT file: of its vectors and matrices, and of the structures that `words` may name."""
+    """Columns of a MAT file: its vectors and matrices, and fields of the structures that `words` may name.
+
+    Other structures are read only if a word is not found yet: it may be the last part of a field's path.
+    """
     import scipy.io  # 0.2 s to import
 
     try:
@@ -200,7 +203,7 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
         return hdf5_table(path, matlab=True)
     except TypeError:  # of a variable that has no shape, such as a datetime
         loaded = {k: v for k, v in scipy.io.loadmat(path, simplify_cells=True).items() if k[:2] != "__"}
-        columns = [each for name, value in loaded.items() for each in _columns(name, value)]
+        columns = [column for name, value in loaded.items() for column in _columns(name, value)]
         return Table(tuple(columns), stated=tuple(_numbers_stated(loaded)))
     columns = list[Column]()
     numbers = {
@@ -211,15 +214,15 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
             squeezed = tuple(size for size in shape if size != 1)
             columns += array_columns(name, squeezed, partial(_array, path, name, shape), matlab=True)
     structures = [name for name, _, kind in variables if kind in _STRUCTURES]
-    missing = {word.removeprefix("-").strip() for word in words} - {each.name for each in columns} - {"0"}
+    missing = {word.removeprefix("-").strip() for word in words} - {column.name for column in columns} - {"0"}
     named = [name for name in structures if any(word.startswith(f"{name}.") for word in missing)]
-    parts = {name: _loaded(path, name) for name in named}
-    columns += [column for name, value in parts.items() for column in _columns(name, value)]
-    if not words or missing - {each.name for each in columns}:  # a part's last word, or a mistake
+    read_structures = {name: _loaded(path, name) for name in named}
+    columns += [column for name, value in read_structures.items() for column in _columns(name, value)]
+    if not words or missing - {column.name for column in columns}:  # a part's last word, or a mistake
         others = {name: _loaded(path, name) for name in structures if name not in named}
         columns += [column for name, value in others.items() for column in _columns(name, value)]
-        parts |= others
-    return Table(tuple(columns), stated=tuple(_numbers_stated(numbers | parts)))
+        read_structures |= others
+    return Table(tuple(columns), stated=tuple(_numbers_stated(numbers | read_structures)))
 
 
 def _numbers_stated(values: Mapping[str, Any], of: str = "") -> Iterator[Stated]:
@@ -247,7 +250,7 @@ def _array(path: str | os.PathLike[str], name: str, shape: tuple[int, ...]) -> N
 
 
 def _columns(name: str, value: Any) -> list[Column]:
-    """Columns of a value of a MAT file, or of the fields of a structure; none of what is no array of real numbers."""
+    """Columns of a value of a MAT file, or of all fields of a structure; none if it is no array of real numbers."""
     if isinstance(value, dict):
         return [column for field, part in value.items() for column in _columns(f"{name}.{field}", part)]
     if isinstance(value, np.ndarray) and value.dtype.names == _OPAQUE:
@@ -294,7 +297,7 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
         unit = _unit(data_set["ordinate_axis_units_lab"])
         columns.append(Column(name, lambda values=values: values, unit, (point,)))  # type: ignore[misc]
     steps = {float(data_set["abscissa_inc"] or 0) for data_set in sets if data_set["abscissa_spacing"] == 1}
-    return Table(tuple(columns), stated=tuple(each for step in steps for each in Stated.read("dt", step, "/")))
+    return Table(tuple(columns), stated=tuple(rate for step in steps for rate in Stated.read("dt", step, "/")))
 
 
 def _samples(data_set: dict[str, Any], key: str) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -334,18 +337,20 @@ def is_binary(path: str | os.PathLike[str]) -> bool:
 
 
 def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
-    """Read the names and units of all columns, and the samples of those that are needed."""
+    """Read the names and units of all columns, and the samples of those that `words` name."""
 
     def refuse(problem: str) -> InputError:
         return InputError("record.file", f"{path} {problem}", "export the record again, with fewer variables")
 
     parts = remembered(parts_of, path, tuple(sorted(set(words))), refuse=refuse)
-    columns, stated = (parts[name] for name in ("columns", "stated"))
-    return Table(tuple(_column(**each) for each in columns), stated=tuple(Stated(*each) for each in stated))
+    columns = tuple(_column(**column) for column in parts["columns"])
+    return Table(columns, stated=tuple(Stated(*entry) for entry in parts["stated"]))
 
 
 def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, refusal: Sequence[str] = ()) -> Column:
-    """Column that was read in another process: its samples, or the refusal when they are asked for."""
+    """Column that was read in another process: it has its samples, or a refusal that is raised when
+    they are asked for.
+    """
 
     def read() -> Any:
         if refusal:
@@ -356,23 +361,24 @@ def _column(name: str, unit: str, aliases: Sequence[str], samples: Any = None, r
 
 
 def parts_of(path: str, words: list[str]) -> dict[str, Any]:
-    """Return names, units and aliases of the columns of a file, with the samples of those that `words` name, and the
-    sample rates that it states.
+    """Return names, units and aliases of the columns of a file, and the sample rates that it states.
+
+    Columns that `words` name also have their samples.
     """
     table = READERS[Path(path).suffix.lower()](path, words)
     needed = set()
     for word in words:
         with suppress(InputError):  # no column, or several: refused where it is looked for
             needed.add(table.column("", table.signed(word)[1] or ""))
-    columns = [
-        {"name": each.name, "unit": each.unit, "aliases": each.aliases} | (_sampled(each) if each in needed else {})
-        for each in table.columns
-    ]
-    return {"columns": columns, "stated": [[each.name, each.rate, each.of] for each in table.stated]}
+    columns = []
+    for column in table.columns:
+        samples = _sampled(column) if column in needed else {}
+        columns.append({"name": column.name, "unit": column.unit, "aliases": column.aliases} | samples)
+    return {"columns": columns, "stated": [[rate.name, rate.rate, rate.of] for rate in table.stated]}
 
 
 def _sampled(column: Column) -> dict[str, Any]:
-    """Samples of a column, or the problem and the fix where they cannot be read."""
+    """Samples of a column, or the problem and the fix if they cannot be read."""
     try:
         return {"samples": np.asarray(column.read(), dtype=np.float64)}
     except MemoryError:

@@ -29,7 +29,7 @@ FRAME = (
 
 
 def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[Path]:
-    """Write the commands of one machine as CSV and MAT."""
+    """Write the commands of one machine as CSV and MAT, with the frame, units and signs of their numbers in both."""
     lines_above = header(plan, commands)
     csv, mat = folder / f"commands_{plan.name}.csv", folder / f"commands_{plan.name}.mat"
     table = np.column_stack([commands.time, commands.angle, commands.rate, commands.acceleration])
@@ -61,7 +61,7 @@ def write_commands(plan: MachinePlan, commands: Commands, folder: Path) -> list[
 
 
 def header(plan: MachinePlan, commands: Commands) -> list[str]:
-    """Lines above the commands: what they are for, and the frame, units, zeros and signs of their numbers."""
+    """Lines above the commands: what machine they are for, and the frame, units, zeros and signs of their numbers."""
     first, last = plan.axes.span
     lines = [
         f"gbeam: axis motions of {plan.name}" + (f", which imitates {plan.tracks}" if plan.tracks else ""),
@@ -128,7 +128,7 @@ def origin_lines(provenance: Provenance) -> list[str]:
 
 
 def _state(commands: Commands, sample: int) -> str:
-    """The axes at the first sample (0) or the last (-1): where a controller must bring them, or takes them over."""
+    """State of the axes at the first sample (0) or the last (-1): a controller brings them there, or takes over."""
     rate, acceleration = commands.rate[sample], commands.acceleration[sample]
     angles = ", ".join(f"axis {i + 1} at {commands.angle[sample, i]:.9g} rad" for i in (1, 2))
     moving = np.abs(np.concatenate([rate, acceleration])).max() > _STILL

@@ -35,7 +35,7 @@ def write_groups(groups: Mapping[str, Group], path: str | os.PathLike[str]) -> N
 
 
 def image(groups: Mapping[str, Group]) -> bytes:
-    """Bytes of the file, made in memory: HDF5 ends the process where a disk is full as it closes a file."""
+    """Bytes of a netCDF file, made in memory: HDF5 ends the process if a disk is full when it closes a file."""
     buffer = io.BytesIO()
     with h5netcdf.File(buffer, "w", libver=("earliest", "v110")) as file:
         for path, group in groups.items():
@@ -50,7 +50,7 @@ def image(groups: Mapping[str, Group]) -> bytes:
 
 
 def contents(path: str) -> dict[str, Any]:
-    """Return the variables of a file by path, and the attributes of variables and groups, undecoded."""
+    """Return the variables of a file by path, and the undecoded attributes of its variables and groups."""
     try:
         with opened(path) as file:
             return contents_of(file)
@@ -84,12 +84,12 @@ def _present(value: Any) -> Any:
 
 
 def _create(place: h5netcdf.Group, name: str, variable: Variable) -> None:
-    """Create a variable of a group, text as UTF-8, with NaN as the missing number."""
+    """Create a variable of a group. Text is stored as UTF-8; a missing number is NaN."""
     values = variable.values
     kind = values.dtype
     if kind.kind in "OU":
         kind = h5py.string_dtype("utf-8")
-        values = np.array([storable(str(each)) for each in values.flat], dtype=object).reshape(values.shape)
+        values = np.array([storable(str(text)) for text in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
     zeros = values.size - np.count_nonzero(values) if fill is not None else 0
     how = _COMPRESSED if values.size >= _MANY and zeros >= _EMPTY * values.size else {}
@@ -120,7 +120,9 @@ def provenance_attrs(provenance: Provenance) -> dict[str, str]:
 
 
 def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
-    """Return a scenario's text, for which attributes are too short (64 KiB), and records as variables of the root."""
+    """Return a scenario's text and its records as variables of the root: attributes, of 64 KiB, are too
+    short for them.
+    """
     text = np.array(provenance.scenario, dtype=object)
     variables = {"scenario": Variable((), text, {"long_name": "text of the scenario file"})}
     for record in provenance.records:
@@ -135,7 +137,7 @@ def provenance_variables(provenance: Provenance) -> dict[str, Variable]:
 
 
 def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str, Any]]) -> Provenance:
-    """Return the provenance in the variables and attributes of a file."""
+    """Return the provenance that the variables and attributes of a file hold."""
     root = attrs[""]
     dependencies = dict(line.split(" ", 1) for line in str(root.get("dependencies", "")).splitlines())
     versions = [str(root.get(name, "")) for name in ("gbeam_version", "python_version", "platform")]
@@ -144,7 +146,7 @@ def provenance_of(variables: Mapping[str, Any], attrs: Mapping[str, Mapping[str,
         if name.startswith(RECORD) and "sha256" in attrs[name]:
             packed = values.tobytes()
             content = zlib.decompressobj().decompress(packed, EMBEDDED) if len(packed) > 1 else None
-            file, digest = (str(attrs[name][key]) for key in ("file", "sha256"))
+            file, digest = str(attrs[name]["file"]), str(attrs[name]["sha256"])
             records.append(RecordFile(name.removeprefix(RECORD), file, digest, content))
     text = variables.get("scenario")
     return Provenance(

@@ -34,7 +34,7 @@ T = TypeVar("T")
 def write_whole(path: str | os.PathLike[str], *data: bytes | memoryview, private: bool = False) -> None:
     """Write a file under another name beside it, and rename it once it is on the disk; OSError if that cannot be.
 
-    A link at its place is replaced and not followed; a private file is for its owner only.
+    A link at its place is replaced and not followed. A private file is for its owner only.
     """
     final = Path(path)
     handle, name = mkstemp(prefix=f".{final.name}-", dir=final.parent)
@@ -54,9 +54,9 @@ def write_whole(path: str | os.PathLike[str], *data: bytes | memoryview, private
 
 
 def kept(what: str, kind: type[T], source: Callable[[], Any], make: Callable[[], T]) -> T:
-    """Return ``make()``, of a `kind`, or what it returned for an equal source before; `what` is shown if it takes long.
+    """Return ``make()``, of a `kind`, or its earlier value for an equal source; `what` is shown if it takes long.
 
-    `source` returns all that it is made from: what changes meanwhile, such as a file, keeps nothing.
+    `source` returns all that the value is made from. If that changes meanwhile, such as a file, nothing is kept.
     """
     folder = _folder()
     key = digest((_program(), source())) if folder else ""
@@ -86,12 +86,13 @@ def unkept() -> Iterator[None]:
 
 
 def _folder() -> Path | None:
-    """Folder that keeps values; None where it is off, or others than this user may write in it, which is warned of."""
+    """Folder that keeps values. None if it is off, or if other users may write in it, of which a warning says so."""
     named = os.environ.get(FOLDER, "")
     if named.strip().lower() in ("off", "0"):
         return None
     folder = Path(named) if named else user_cache_path("gbeam") / "models"
-    if (status := _status(folder)) is None or _private(status):
+    status = _status(folder)
+    if status is None or _private(status):
         return folder
     words = f"reduced solids are not kept: others may write in {folder}"
     warnings.warn(f"{words}; let only you write there, or name another folder in {FOLDER}", stacklevel=2)
@@ -120,7 +121,7 @@ def _program() -> str:
 
 
 def _read(file: Path, key: str) -> Any:
-    """Value in a file; ValueError or another error if it is damaged, another user's, or kept under another key."""
+    """Value in a file. An error is raised if it is damaged, another user's, or kept under another key."""
     with open(file, "rb") as opened:
         if not _private(os.fstat(opened.fileno())):
             raise ValueError(f"{file} may be another user's")
@@ -128,15 +129,15 @@ def _read(file: Path, key: str) -> Any:
     stated, data = content[:32], memoryview(content)[32:]
     if hashlib.sha256(data).digest() != stated:
         raise ValueError(f"{file} is damaged")
-    of, value = read_packed(io.BytesIO(data), records=True)
-    if of != key:
+    stored_key, value = read_packed(io.BytesIO(data), records=True)
+    if stored_key != key:
         raise ValueError(f"{file} has another name")
     os.utime(file)  # used now
     return value
 
 
 def _write(file: Path, key: str, value: Any) -> None:
-    """Write a file whole or not at all, and remove those that were not used for longest."""
+    """Write a file whole or not at all. If all files take too much room remove those not used for longest."""
     data = io.BytesIO()
     write_packed(data, [key, value])
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -60,18 +60,18 @@ def labels(name: str, values: list[str] | tuple[str, ...]) -> dict[str, Variable
 
 
 def thinned(group: Group, every: int) -> Group:
-    """Return a group with every so-many-th sample of its histories, and an attribute that says so."""
+    """Return a group with one of `every` samples of its histories, and an attribute that says so."""
     if every == 1:
         return group
 
-    def cut(each: Variable) -> Variable:
-        if "time" not in each.dims:
-            return each
-        samples = tuple(slice(None, None, every if dim == "time" else 1) for dim in each.dims)
-        return each._replace(values=np.ascontiguousarray(each.values[samples]))
+    def cut(variable: Variable) -> Variable:
+        if "time" not in variable.dims:
+            return variable
+        samples = tuple(slice(None, None, every if dim == "time" else 1) for dim in variable.dims)
+        return variable._replace(values=np.ascontiguousarray(variable.values[samples]))
 
-    variables = {name: cut(each) for name, each in group.variables.items()}
-    coordinates = {name: cut(each) for name, each in group.coordinates.items()}
+    variables = {name: cut(variable) for name, variable in group.variables.items()}
+    coordinates = {name: cut(variable) for name, variable in group.coordinates.items()}
     count = len(group.coordinates["time"].values)
     attrs = {"histories": f"one of {every} samples, of {count}; peaks, errors and comparisons are of all"}
     return Group(variables, coordinates, group.attrs | attrs | {"histories_every": every})
@@ -186,19 +186,20 @@ def whole_group(record: Any) -> Group:
 
 
 def completed(group: Group) -> Group:
-    """Return a group with the coordinates of dimensions that are the same everywhere, without what is empty."""
-    variables = group.variables.values()
-    sizes = {dim: size for each in variables for dim, size in zip(each.dims, each.values.shape, strict=True)}
+    """Return a group without empty variables, and with coordinates of the dimensions that all files share."""
+    sizes: dict[str, int] = {}
+    for entry in group.variables.values():
+        sizes |= dict(zip(entry.dims, entry.values.shape, strict=True))
     for dim, names in _LABELLED.items():
         if dim in sizes:
             group.coordinates.update(labels(dim, names))
     for dim, (first, meaning) in _NUMBERED.items():
         if dim in sizes and dim not in group.coordinates:
             group.coordinates.update(coordinate(dim, np.arange(first, first + sizes[dim]), "1", meaning))
-    # A length of zero is unlimited.
-    filled, along = ({name: each for name, each in columns.items() if each.values.size}
-                     for columns in (group.variables, group.coordinates))  # fmt: skip
-    return Group(filled, along, known_attrs(group.attrs))
+    # netCDF takes a dimension of length zero for an unlimited one.
+    variables = {name: entry for name, entry in group.variables.items() if entry.values.size}
+    coordinates = {name: entry for name, entry in group.coordinates.items() if entry.values.size}
+    return Group(variables, coordinates, known_attrs(group.attrs))
 
 
 def in_files(unit: str) -> str:
@@ -233,20 +234,21 @@ def _attribute(value: Any) -> Any:
 
 
 def _columns(rows: list[Group], dims: tuple[str, ...]) -> Group:
-    """Return the variables of rows stacked along a further dimension, NaN or empty where a row has none; attributes are
-    those of the first row that has one, with the unit mixed where they differ.
+    """Return the variables of rows, stacked along a further dimension; NaN or empty where a row has none.
+
+    Attributes are those of the first row that has the variable. If units differ, the unit is mixed.
     """
     group = Group()
-    for name in dict.fromkeys(name for each in rows for name in each.variables):
-        cells = [each.variables.get(name) for each in rows]
-        first, *others = (each for each in cells if each is not None)
+    for name in dict.fromkeys(name for row in rows for name in row.variables):
+        cells = [row.variables.get(name) for row in rows]
+        first, *others = (cell for cell in cells if cell is not None)
         missing = np.full(np.shape(first.values), "" if np.asarray(first.values).dtype.kind in "UO" else np.nan)
-        values = np.stack([missing if each is None else each.values for each in cells])
-        units = {each.attrs.get("units") for each in (first, *others)}
+        values = np.stack([missing if cell is None else cell.values for cell in cells])
+        units = {cell.attrs.get("units") for cell in (first, *others)}
         mixed = {"units": "mixed"} if len(units) > 1 else {}
         group.variables[name] = Variable((*dims, *first.dims), values, first.attrs | mixed)
     if rows and "" in rows[0].coordinates:
-        group.coordinates.update(labels(dims[-1], [each.coordinates[""].values.item() for each in rows]))
+        group.coordinates.update(labels(dims[-1], [row.coordinates[""].values.item() for row in rows]))
     return group
 
 
@@ -256,8 +258,11 @@ def _renamed(group: Group, names: Mapping[str, str]) -> Group:
         return group
 
     def renamed(variables: dict[str, Variable]) -> dict[str, Variable]:
-        dims = {key: tuple(names.get(dim, dim) for dim in each.dims) for key, each in variables.items()}
-        return {names.get(key, key): each._replace(dims=dims[key]) for key, each in variables.items()}
+        new = {}
+        for key, entry in variables.items():
+            dims = tuple(names.get(dim, dim) for dim in entry.dims)
+            new[names.get(key, key)] = entry._replace(dims=dims)
+        return new
 
     return Group(renamed(group.variables), renamed(group.coordinates), group.attrs)
 

@@ -71,14 +71,15 @@ def plan_group(plan: MachinePlan) -> Group:
 
 
 def limits_variables(uses: tuple[LimitUse, ...]) -> dict[str, Variable]:
-    """Return variables of use, limit and time for each quantity: of the three axes, or of the arm its power."""
+    """Return variables of the use, limit and time of each quantity: of the three axes, or of the arm its power."""
     variables = {}
     for quantity in dict.fromkeys(use.quantity for use in uses):
         rows = [use for use in uses if use.quantity == quantity]
         unit = in_files(rows[0].unit)
         whose, dims = ("of the arm", ()) if quantity == "power" else ("of each axis of the machine", ("machine_axis",))
-        columns = (np.array([getattr(use, name) for use in rows]) for name in ("used", "allowed", "time"))
-        used, allowed, time = (column if dims else column[0] for column in columns)
+        used, allowed, time = np.array([(use.used, use.allowed, use.time) for use in rows], dtype=float).T
+        if not dims:  # the arm's power is one number
+            used, allowed, time = used[0], allowed[0], time[0]
         limit = f"limit of that {quantity}; infinite where none is given"
         variables[f"{quantity}_used"] = variable(dims, used, unit, f"largest {quantity} {whose}, without sign")
         variables[f"{quantity}_allowed"] = variable(dims, allowed, unit, limit)
@@ -87,7 +88,7 @@ def limits_variables(uses: tuple[LimitUse, ...]) -> dict[str, Variable]:
 
 
 def sweep_group(sweep: Sweep) -> Group:
-    """Return what a file holds of a sweep; randomly drawn parameters lie along ``sample``."""
+    """Return what a file holds of a sweep. Randomly drawn parameters lie along ``sample``."""
     dims = sweep.dimensions
     data = {
         name: variable(dims, values, sweep.units[name] or "1", f"{sweep.verb}: {name}")
@@ -104,7 +105,7 @@ def sweep_group(sweep: Sweep) -> Group:
             for name, values in sweep.histories.items()
         }
     data |= _statistics(sweep)
-    coordinates = {each.path: _coordinate(each) for each in sweep.parameters}
+    coordinates = {parameter.path: _coordinate(parameter) for parameter in sweep.parameters}
     if SAMPLE in dims:
         count = sweep.outcome.shape[-1]
         coordinates[SAMPLE] = variable((SAMPLE,), np.arange(count), "1", "number of the sample")
@@ -121,7 +122,7 @@ def sweep_group(sweep: Sweep) -> Group:
 
 
 def _statistics(sweep: Sweep) -> dict[str, Variable]:
-    """Statistics at every point of the grid."""
+    """Variables of the statistics and Sobol indices at every point of the grid."""
     grid = tuple(name for name in sweep.dimensions if name != SAMPLE)
     variables = {}
     for name, statistic in sweep.statistics.items():
@@ -155,7 +156,7 @@ _GROUPS: dict[type, Callable[[Any], Group]] = {
 
 
 def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
-    """Write any result to a netCDF file, whole or not at all; of histories so many samples as the result says."""
+    """Write any result to a netCDF file, whole or not at all. Histories are thinned as the result says."""
     groups = groups_of(result, every=False)
     if facts:
         root = groups[""]
@@ -165,7 +166,10 @@ def save(result: Any, path: str | os.PathLike[str], facts: str = "") -> None:
 
 
 def groups_of(result: Result, *, every: bool = True) -> dict[str, Group]:
-    """Groups of a file by path: the root says what it is and where it comes from."""
+    """Groups of a file by path. The root says what the result is and where it comes from.
+
+    `every` keeps all samples of histories.
+    """
     groups = _study(result, every=every) if isinstance(result, Study) else {"": _group(result, every=every)}
     origin = result.provenance or Provenance()
     root = groups[""]
@@ -182,8 +186,10 @@ def to_xarray(result: Any) -> Any:
     def dataset(group: Group) -> xr.Dataset:
         return xr.Dataset(dict(group.variables), dict(group.coordinates), group.attrs)
 
-    every = {path: dataset(group) for path, group in groups_of(result).items()}
-    return xr.DataTree.from_dict({f"/{path}": each for path, each in every.items()}) if len(every) > 1 else every[""]
+    datasets = {path: dataset(group) for path, group in groups_of(result).items()}
+    if len(datasets) == 1:
+        return datasets[""]
+    return xr.DataTree.from_dict({f"/{path}": values for path, values in datasets.items()})
 
 
 def _group(result: Result, *, every: bool) -> Group:
@@ -197,13 +203,15 @@ def _study(study: Study, *, every: bool) -> dict[str, Group]:
     attrs = {
         "title": study.title,
         "outcome": study.outcome,
-        "verdict": "\n".join(each.verdict for each in study.comparisons),
+        "verdict": "\n".join(comparison.verdict for comparison in study.comparisons),
         "summary": repr(study),
     }
     attrs |= {f"failure_{name}": f"{failed.outcome}: {failed.message}" for name, failed in study.failures.items()}
     groups = {"": Group({}, {}, attrs)}
     groups |= {f"motions/{name}": _group(response, every=every) for name, response in study.responses.items()}
-    groups |= {f"comparisons/{each.centrifuge}": _group(each, every=every) for each in study.comparisons}
+    groups |= {
+        f"comparisons/{comparison.centrifuge}": _group(comparison, every=every) for comparison in study.comparisons
+    }
     return groups
 
 
@@ -288,19 +296,18 @@ def csv_of(stored: Stored) -> str:
     paths = [path.split("/")[1:] for path in stored.variables if path.startswith("motions/")]
     motions = [name for name, variable in paths if variable == "time"]
     ending = "_displacement"
-    bodies = [*dict.fromkeys(each.removesuffix(ending) for _, each in paths if each.endswith(ending))]
-    before = {body: f"{body}_" if len(bodies) > 1 else "" for body in bodies}
-    vectors = {
-        f"{body}_{variable}": (f"{before[body]}{name}", unit)
-        for body in bodies
-        for variable, (name, unit) in _OF_BODIES.items()
-    } | _OF_MACHINES
-    columns = [
-        f"{name}_{part}_{unit}"
-        for variable, (name, unit) in vectors.items()
-        for part in ("123" if variable in _OF_MACHINES else "xyz")
-    ]
-    stresses = {f"{body}_stress": f"{before[body]}stress_Pa" for body in bodies}
+    bodies = [*dict.fromkeys(name.removesuffix(ending) for _, name in paths if name.endswith(ending))]
+    prefixes = {body: f"{body}_" if len(bodies) > 1 else "" for body in bodies}
+    vectors = {}
+    for body, prefix in prefixes.items():
+        for quantity, (name, unit) in _OF_BODIES.items():
+            vectors[f"{body}_{quantity}"] = f"{prefix}{name}", unit
+    vectors |= _OF_MACHINES
+    columns = []
+    for quantity, (name, unit) in vectors.items():
+        components = "123" if quantity in _OF_MACHINES else "xyz"
+        columns += [f"{name}_{component}_{unit}" for component in components]
+    stresses = {f"{body}_stress": f"{prefix}stress_Pa" for body, prefix in prefixes.items()}
     lines = [",".join([_HEAD, *columns, *stresses.values()])]
     for name in motions:
         lines.extend(_rows(stored, name, vectors, stresses))
@@ -308,15 +315,16 @@ def csv_of(stored: Stored) -> str:
 
 
 def _rows(stored: Stored, name: str, vectors: Iterable[str], stresses: Iterable[str]) -> Iterator[str]:
-    """Lines of one motion: its name, the time, components of vectors at the tip or the root, stress of the root."""
+    """Lines of one motion: its name, the time, components of vectors at the tip or the root, and stress of the root."""
     place = f"motions/{name}/"
     time = stored.variables[f"{place}time"]
     columns = []
-    for each in vectors:
-        array = stored.variables.get(f"{place}{each}", np.full((len(time), 3), np.nan))
-        station = -1 if each.endswith("_displacement") else 0
+    for vector in vectors:
+        array = stored.variables.get(f"{place}{vector}", np.full((len(time), 3), np.nan))
+        station = -1 if vector.endswith("_displacement") else 0
         columns.append(array[:, station] if array.ndim == 3 else array)
-    columns += [stored.variables.get(f"{place}{each}", np.full((len(time), 1), np.nan))[:, :1] for each in stresses]
+    for stress in stresses:
+        columns.append(stored.variables.get(f"{place}{stress}", np.full((len(time), 1), np.nan))[:, :1])
     quoted = f'"{name}"' if "," in name or '"' in name else name
     for t, row in zip(time, np.concatenate(columns, axis=1), strict=True):
-        yield f"{quoted},{t:.9g}," + ",".join("" if np.isnan(each) else f"{each:.9g}" for each in row)
+        yield f"{quoted},{t:.9g}," + ",".join("" if np.isnan(value) else f"{value:.9g}" for value in row)

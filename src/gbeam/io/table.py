@@ -53,15 +53,15 @@ def is_clock(text: str) -> bool:
 
 
 def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None:
-    """The clock of a column and its times, s, NaN where a cell is none; None where the first is none."""
+    """Clock of a column, and its times, s, from the first; NaN where a cell has none. None if the first has none."""
     first = _reading(cells[0]) if len(cells) else None
     if first is None:
         return None
     readings = (_reading(cell) for cell in cells)
     seconds = np.array([np.nan if reading is None else _since(first, reading) / _SECOND for reading in readings])
-    if first[0] is None:  # past midnight, or back by less than half a day
-        known = np.isfinite(seconds)
-        seconds[known] = np.unwrap(seconds[known], period=_DAY / _SECOND)
+    if first[0] is None:  # without days, times that jump by more than half a day have passed midnight
+        finite = np.isfinite(seconds)
+        seconds[finite] = np.unwrap(seconds[finite], period=_DAY / _SECOND)
     return Clock(cells[0]), seconds
 
 
@@ -72,7 +72,7 @@ def _since(first: _Reading, now: _Reading) -> int:
 
 
 def _reading(text: str) -> _Reading | None:
-    """Day, if known, and ns from its midnight, in UTC if it has a zone; None if a text is no time of day."""
+    """Day, if known, and time from its midnight, ns, in UTC if the text has a zone; None if it is no time of day."""
     match = _CLOCK.fullmatch(text)
     if match is None:
         return _logged(text)
@@ -86,16 +86,16 @@ def _reading(text: str) -> _Reading | None:
 
 
 def _logged(text: str) -> _Reading | None:
-    """Day, if known, and ns from its midnight, as loggers write them; None if a text is no such time.
+    """Day, if known, and time from its midnight, ns, of texts as loggers write them; None if a text is no such time.
 
-    Of 3/4/2024 nobody knows which is the month; it counts as the time of day alone.
+    Of 3/4/2024 nobody knows which is the month: it counts as the time of day alone.
     """
     match = _LOGGED.fullmatch(text)
     if match is None or (match["between"] == "-" and not match["dated"]):
         return None
     parts = [match["year"] or match["then_year"], match["month"] or match["then_month"]]
     parts += [match["date"] or match["date_first"]]
-    day = None if None in parts else _day("-".join(each.zfill(2) for each in parts))
+    day = None if None in parts else _day("-".join(part.zfill(2) for part in parts))
     hour, minute, second = (int(match[name]) for name in ("hour", "minute", "second"))
     if match["half"]:
         hour = hour % 12 + 12 * (match["half"] in "Pp") if 1 <= hour <= 12 else 24
@@ -178,7 +178,7 @@ class Table:
         return f"{count} {'sample' if self.rows is None else 'row'}(s)"
 
     def column(self, axis: str, name: str) -> Column:
-        """Find a column by its name, or else by an alias."""
+        """Return a column by its name, or else by an alias. InputError if none or several have it."""
         columns = [column for column in self.columns if column.name == name]
         columns = columns or [column for column in self.columns if name in column.aliases]
         if len(columns) == 1:
@@ -187,11 +187,11 @@ class Table:
             raise InputError(f"record.{axis}", f"names {name!r}, given {len(columns)} times", "name each column once")
         names = [column.name for column in self.columns]
         candidates = [*names, *(alias for column in self.columns for alias in column.aliases)]
-        near = closest(name, candidates)
-        guess = f"did you mean {near!r}? " if near else ""
-        more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-        listed = ", ".join(names[:_LISTED]) + more
-        raise InputError(f"record.{axis}", f"names no column {name!r}", f"{guess}the columns are {listed}")
+        closest_name = closest(name, candidates)
+        guess = f"did you mean {closest_name!r}? " if closest_name else ""
+        rest_words = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+        names_in_words = ", ".join(names[:_LISTED]) + rest_words
+        raise InputError(f"record.{axis}", f"names no column {name!r}", f"{guess}the columns are {names_in_words}")
 
     def numbers(self, axis: str, name: str, part: slice = slice(None)) -> Floats:
         """Return a column as numbers (t,), NaN where a cell is none; InputError unless all are finite in `part`."""
@@ -205,8 +205,9 @@ class Table:
         return np.array([as_word(str(each)) for each in known], dtype=np.str_)[alike.reshape(-1)]
 
     def times(self, name: str) -> tuple[Floats, Clock | None, str]:
-        """Return the column of times (t,), all finite; times of day are s from the first, with their clock; and the
-        first as the file has it.
+        """Return the column of times (t,), all finite, the clock of times of day, and the first as the file has it.
+
+        Times of day are counted from the first, s.
         """
         samples = self._samples("time", name)
         by_clock = None if isinstance(samples, np.ndarray) else read_clock(samples)
@@ -227,16 +228,18 @@ class Table:
             raise InputError(f"record.{axis}", f"column {name!r} {error.problem}", error.fix) from None
 
     def _finite(self, axis: str, name: str, samples: Any, values: Floats, part: slice) -> Floats:
-        """Return the values; InputError, with the place in the file, unless they are finite within `part`."""
+        """Return the values. InputError, with the place in the file, unless they are finite within `part`."""
         bad = np.flatnonzero(~(np.abs(values[part]) <= LARGEST))
         if bad.size:
             i = int(bad[0]) + (part.start or 0)
             cell = samples[i]
             if isinstance(cell, str) and math.isnan(_number(cell)) and cell.lower().lstrip("+-") != "nan":
-                shown, what = repr(cell) if cell else "empty", "a number"
+                cell_text, wanted = repr(cell) if cell else "empty", "a number"
             else:
-                shown, what = str(cell), "a finite number"
-            raise InputError(f"record.{axis}", f"{self.place(i)}, column {name!r} is {shown}", f"put {what} there")
+                cell_text, wanted = str(cell), "a finite number"
+            raise InputError(
+                f"record.{axis}", f"{self.place(i)}, column {name!r} is {cell_text}", f"put {wanted} there"
+            )
         return values
 
     def rates(self, names: Iterable[str]) -> dict[str, float]:
@@ -262,18 +265,16 @@ class Table:
         return np.stack(parts, axis=-1)
 
     def stated_units(self, names: dict[str, str]) -> Iterator[tuple[str, str]]:
-        """Yield the columns of components or the time, named as in :meth:`vector`, with the units that the file states
-        or "".
-        """
+        """Yield the columns of components or of the time, as in :meth:`vector`, with their stated units, or ""."""
         for axis, name in names.items():
             _, column = self.signed(name)
             if column is not None:
                 yield column, self.column(axis, column).unit
 
     def signed(self, name: str) -> tuple[float, str | None]:
-        """Sign and column of a component; no column of one that is zero."""
-        known = {word for column in self.columns for word in (column.name, *column.aliases)}
-        if name in known:
+        """Sign and column of a component, from its name. A component that is zero has no column."""
+        own_names = {word for column in self.columns for word in (column.name, *column.aliases)}
+        if name in own_names:
             return 1.0, name
         if name == NO_COLUMN:
             return 1.0, None
@@ -283,7 +284,7 @@ class Table:
 def array_columns(
     name: str, shape: tuple[int, ...], read: Callable[[], NDArray[Any]], *, unit: str = "", matlab: bool = False
 ) -> list[Column]:
-    """Columns of one array of a file: itself if it is a vector, its vectors if it is a matrix, else none."""
+    """Columns of one array of a file: itself if it is a vector, one for each vector if it is a matrix, else none."""
     short = name.rpartition("." if matlab else "/")[2]
     long = [size for size in shape if size > 1]
     if len(long) == 1:

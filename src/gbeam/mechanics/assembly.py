@@ -230,7 +230,9 @@ def _nodes(kind: Kind, shapes: int) -> int:
 
 
 def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
-    """Raise InputError where shapes and quadrature would need a number that JAX traces."""
+    """Raise InputError where JAX traces the length or a position: shapes and quadrature need their numbers. Adapted
+    shapes need numbers of the material and the section, too.
+    """
     places: dict[str, Any] = {
         "length": beam.length,
         **{f"masses[{i}].at": body.at for i, body in enumerate(beam.masses)},
@@ -246,14 +248,18 @@ def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
 
 
 def _stations(beam: Beam, stations: ArrayLike) -> Array:
-    """Positions of output, m: stations in their order, or sorted where named points join them; the tip is last."""
+    """Positions of output, m. Named points join the stations, from root to tip; without them the stations keep their
+    order. The tip is last.
+    """
     positions = np.asarray(stations, dtype=float).ravel()
     for i, x in enumerate(positions):
         if not 0 <= x <= beam.length:
             raise InputError(f"stations[{i}]", f"is {x:g} m, off the beam", f"give 0 to {beam.length:g} m")
-    named = [at for name, at in beam.named_points.items() if name != TIP and at < beam.length]
-    if named:  # among the others, from root to tip
-        positions = np.unique(np.concatenate([positions, named]))
+    named_positions = [
+        position for name, position in beam.named_points.items() if name != TIP and position < beam.length
+    ]
+    if named_positions:
+        positions = np.unique(np.concatenate([positions, named_positions]))
     return np.append(positions[positions < beam.length], beam.length)
 
 
@@ -262,20 +268,25 @@ TRIANGLE = np.sqrt(2) * np.array([(np.cos(angle), np.sin(angle)) for angle in 2 
 
 
 def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, Array, Array]:
-    """Particles (p,) of the beam and its bodies: index of the field's point (node or body), mass, kg, and offset from
-    the axis (p, 3), m. Sections come first: one particle a node, three with `rotary` inertia, or more by a mass matrix.
+    """Particles (p,) that stand for the beam's sections and its bodies.
+
+    Returns the index of the field's point (a node or a body), the mass, kg, and the offset from the axis (p, 3), m.
+    Sections come first: one particle a node, or three with `rotary` inertia, or as many as a section's mass matrix
+    needs.
     """
     nodes, section = len(rule.node), beam.section.at(rule.node)
-    line = beam.density * section.area * rule.weight
-    station, mass, offset = [np.arange(nodes)], [line], [np.zeros((nodes, 3))]
+    line_mass = beam.density * section.area * rule.weight
+    station, mass, offset = [np.arange(nodes)], [line_mass], [np.zeros((nodes, 3))]
     if beam.material is None:
-        shares, places = particles_of_slices(beam.section.matrices(rule.node)[1], rotary=rotary)
-        station, mass, offset = station * len(shares), [*(line * shares)], [*places]
+        mass_shares, places = particles_of_slices(beam.section.matrices(rule.node)[1], rotary=rotary)
+        station, mass, offset = station * len(mass_shares), [*(line_mass * mass_shares)], [*places]
     elif rotary:
-        xp = namespace(line, section.area, section.inertia_y, section.inertia_z)
-        gyration = [xp.sqrt(moment / section.area) for moment in (section.inertia_z, section.inertia_y)]
-        station, mass = station * 3, [line / 3] * 3
-        offset = [xp.stack([0 * line, *(r * g for r, g in zip(at, gyration, strict=True))], axis=1) for at in TRIANGLE]
+        xp = namespace(line_mass, section.area, section.inertia_y, section.inertia_z)
+        # Three equal particles in a triangle that is stretched to the radii of gyration.
+        radius_y = xp.sqrt(section.inertia_z / section.area)
+        radius_z = xp.sqrt(section.inertia_y / section.area)
+        station, mass = station * 3, [line_mass / 3] * 3
+        offset = [xp.stack([0 * line_mass, y * radius_y, z * radius_z], axis=1) for y, z in TRIANGLE]
     for k, body in enumerate(beam.masses):
         masses, places = body.particles()
         station.append(np.full(len(masses), nodes + k))
@@ -286,8 +297,11 @@ def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, 
 
 
 def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
-    """Stiffness (n, n) of shapes with strains (6, g, n), the root's springs last: second derivatives of the energy
-    ½ ∫ Σ rigidity · strain² dx + ½ Σ k s² (2009 (10); 2020 (8), corrected; with shear and twist Timoshenko's).
+    """Stiffness (n, n) of shapes with strains (6, g, n); the last coordinates are the root's springs.
+
+    It holds the second derivatives of the energy ½ ∫ Σ rigidity · strain² dx + ½ Σ k s² (2009 (10); 2020 (8),
+    corrected; shear and twist as Timoshenko has them). A section without material has a full stiffness matrix in place
+    of rigidities.
     """
     springs = [*beam.root.springs.values()]
     if beam.material is None:
@@ -297,11 +311,10 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
         forces = einsum("g,gab,bgj->agj", rule.weight, matrix, strains[shaped])
         parts = [einsum("agi,agj->ij", strains[shaped], forces)]
     else:
-        parts = [
-            shapes.T @ ((rigidity * rule.weight)[:, None] * shapes)
-            for rigidity, shapes in zip(beam.stiffnesses(rule.node), strains, strict=True)
-            if shapes.any()
-        ]
+        parts = []
+        for rigidity, shapes in zip(beam.stiffnesses(rule.node), strains, strict=True):
+            if shapes.any():
+                parts.append(shapes.T @ ((rigidity * rule.weight)[:, None] * shapes))
     xp = namespace(*springs, *parts)
     n = strains.shape[2]
     by_springs = xp.concatenate([np.zeros(n - len(springs)), xp.asarray(springs, dtype=float)])
@@ -309,7 +322,7 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
 
 
 def _history(beam: Beam) -> LoadHistory | None:
-    """Components of the beam's loads over time; None without loads."""
+    """Components of the beam's loads over time, as profiles; None without loads."""
 
     def profile(value: Any) -> Any:
         return value if callable(value) else constant(np.zeros(3) if value is None else value)
@@ -320,8 +333,9 @@ def _history(beam: Beam) -> LoadHistory | None:
 
 
 def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
-    """Work of the beam's loads, and the field's points where they act, an entry for each: all quadrature nodes, or the
-    point of a load at one place. The points of such loads are those from the index `first` on.
+    """Work of the beam's loads, and the indices of the field's points where they act.
+
+    A spread load acts at all quadrature nodes. A load at one place has its own point; these begin at index `first`.
     """
     station, load_index, weight = [], [], []
     for k, load in enumerate(beam.loads):
@@ -333,37 +347,39 @@ def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[L
             weight.append(np.ones(1))
             first += 1
         load_index.append(np.full(len(station[-1]), k))
-    at, of_load = np.concatenate(station), np.concatenate(load_index)
-    follower = np.array([load.follower for load in beam.loads])[of_load]
-    return LoadWork(field.sections(at), of_load, np.concatenate(weight), follower), at
+    points, load_of_point = np.concatenate(station), np.concatenate(load_index)
+    follower = np.array([load.follower for load in beam.loads])[load_of_point]
+    return LoadWork(field.sections(points), load_of_point, np.concatenate(weight), follower), points
 
 
 def sections_of(
     beam: Beam,
-    at: Array,
+    positions: Array,
     until: Array,
     particles: tuple[Array, Array],
     loaded: Array,
     first: int,
 ) -> Sections:
-    """Sections at the root, on the base's side of its springs, and at stations `at` m, with what is outboard of each.
-    `until` (points, g) integrates from the root to the field's points, of which the stations begin at index `first`;
-    `particles` are masses, kg, and their points, `loaded` the points of the loads.
+    """Sections at the root, on the base's side of its springs, and at stations `at`, m, with the masses and loads
+    outboard of each.
+
+    `until` (points, g) integrates from the root to the field's points, of which the stations begin at index `first`.
+    `particles` are the masses, kg, and the indices of their points; `loaded` are the points of the loads.
     """
     nodes = until.shape[1]
     weight, x = until[-1], until.sum(axis=1)  # the tip is the last point: the whole integral
-    share = 1 - np.concatenate([np.zeros((1, nodes)), until[first:]]) / weight
+    node_share = 1 - np.concatenate([np.zeros((1, nodes)), until[first:]]) / weight
     stations = np.concatenate([[0.0], x[first:]])
-    # Share of each of the field's points that is outboard: of a node that of its panel, of another all or nothing.
-    whole = x[None, nodes:] >= stations[:, None] - 1e-9 * beam.length
-    beyond = np.concatenate([share, whole], axis=1)
+    # Share of each point that is outboard of a station: of a node part of its integral, of others all or none.
+    is_outboard = x[None, nodes:] >= stations[:, None] - 1e-9 * beam.length
+    outboard_share = np.concatenate([node_share, is_outboard], axis=1)
     return Sections(
-        values=beam.section.at(np.append(0.0, at)),
+        values=beam.section.at(np.append(0.0, positions)),
         along=x,
-        stresses=beam.section.stresses(np.append(0.0, at)),
+        stresses=beam.section.stresses(np.append(0.0, positions)),
         root_axes=np.eye(3) if beam.line is None else beam.line.places(0.0)[1][0],
-        mass=beyond[:, particles[1]] * particles[0],
-        loaded=beyond[:, loaded],
+        mass=outboard_share[:, particles[1]] * particles[0],
+        loaded=outboard_share[:, loaded],
         yield_strength=None if beam.material is None else beam.material.yield_strength,
         fatigue_exponent=np.nan if beam.material is None else beam.material.fatigue_exponent,
     )

@@ -27,29 +27,37 @@ TENSION = 1.0  # N L²/EI: from there on the axial force bends the shapes
 
 
 def axial_force(beam: Beam, rule: Quadrature, along: Array, spin: Array) -> Array:
-    """Axial force (g,) N at the nodes at the time when it is largest at the root, by the root's accelerations `along`
-    the beam (t,), m/s², and squared angular rates `spin` across it (t,), rad²/s².
+    """Axial force (g,), N, at the nodes, at the time when it is largest at the root.
+
+    `along` (t,), m/s², is the root's acceleration along the beam; `spin` (t,), rad²/s², the squared angular rate across
+    it.
     """
-    line = beam.density * beam.section.at(rule.node).area
+    line_mass = beam.density * beam.section.at(rule.node).area
     inboard = rule.cumulative(rule.node)
-    mass, moment = (rule.weight @ f - inboard @ f for f in (line, line * rule.node))  # outboard of each node
+    # Mass and first moment of mass outboard of each node.
+    mass = rule.weight @ line_mass - inboard @ line_mass
+    moment = rule.weight @ (line_mass * rule.node) - inboard @ (line_mass * rule.node)
     for body in beam.masses:
         outboard = rule.node < body.at
         mass, moment = mass + body.mass * outboard, moment + body.mass * body.at * outboard
-    k = int(np.argmax(np.abs(spin * moment[0] - along * mass[0])))
-    return np.asarray(spin[k] * moment - along[k] * mass)
+    largest = int(np.argmax(np.abs(spin * moment[0] - along * mass[0])))
+    return np.asarray(spin[largest] * moment - along[largest] * mass)
 
 
 def enriched_shapes(
     beam: Beam, spaces: Sequence[Space], families: Families, force: Array | None = None
 ) -> tuple[Families, Counts]:
-    """Families of shapes with those added that they lack, also under an axial force (g,) N, and the numbers added."""
+    """Add the shapes that the families lack, and count them by family.
+
+    The lacking shapes are static answers to loads that the shapes do not contain, also under an axial force (g,), N.
+    """
     least = APART**2 * max(_period(beam, space, along) for along, space in enumerate(spaces))
-    both, counts = list(families), [0] * 6
+    enriched, counts = list(families), [0] * 6
     for along, space in enumerate(spaces):
         for family, added in _lacking(beam, space, families, along, force, least).items():
-            both[family], counts[family] = _joined(families[family], added), added(space.rule.node).value.shape[1]
-    (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z) = both, counts
+            enriched[family] = _joined(families[family], added)
+            counts[family] = added(space.rule.node).value.shape[1]
+    (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z) = enriched, counts
     return (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z)
 
 
@@ -125,7 +133,7 @@ def _period(beam: Beam, space: Space, along: int) -> float:
 
 
 def _flexibilities(space: Space, force: Array | None) -> list[Array]:
-    """Inverse of the stiffness, and where an axial force (g,) N matters and does not buckle, that with the force's."""
+    """Inverse of the stiffness and, if an axial force (g,), N, matters and does not buckle the beam, that with it."""
     unloaded = _flexibility(space)
     if force is None or not bends(space, force):
         return [unloaded]
@@ -200,7 +208,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
 
 
 def _loads(beam: Beam, space: Space, along: int) -> Array:
-    """Generalised forces (n, k) of accelerations, even and growing along the beam, of turning bodies, and of loads."""
+    """Generalised forces (n, k): of uniform and of linearly growing accelerations, of turning bodies, and of loads."""
     if space.loads is not None:
         return space.loads
     x = space.rule.node
@@ -209,16 +217,16 @@ def _loads(beam: Beam, space: Space, along: int) -> Array:
     growing = (space.line * x) @ value + (space.turning * x) @ slope
     columns = []
     for body in beam.masses:
-        moved, turned = space.sensitivity(np.array([body.at]))
-        uniform, growing = uniform + body.mass * moved[0], growing + body.mass * body.at * moved[0]
+        displacement, angle = space.sensitivity(np.array([body.at]))
+        uniform, growing = uniform + body.mass * displacement[0], growing + body.mass * body.at * displacement[0]
         if along and (any(body.offset) or any(body.inertia)):
-            columns.append(turned[0])
+            columns.append(angle[0])
     for load in beam.loads:
-        moved, turned = (value, slope) if load.at is None else space.sensitivity(np.array([load.at]))
+        displacement, angle = (value, slope) if load.at is None else space.sensitivity(np.array([load.at]))
         weight = space.rule.weight if load.at is None else np.ones(1)
-        columns += [
-            weight @ part for part, component in zip((moved, turned), load.acting, strict=True) if component is not None
-        ]
+        for part, component in zip((displacement, angle), load.acting, strict=True):  # by force and by moment
+            if component is not None:
+                columns.append(weight @ part)
     return np.stack([uniform, growing, *columns], axis=1)
 
 
@@ -240,8 +248,9 @@ class Twin(NamedTuple):
 
 
 def enrichment(structure: Structure, base: Base | None = None) -> Enrichment | Twin:
-    """Return a structure's own shapes with those that it lacks, also under the largest axial force that the motion of
-    the `base` (t, 3) makes, where that changes the shapes.
+    """Return a structure's own shapes with those that it lacks; a richer structure that is given takes their place.
+
+    Where the motion of the `base` (t, 3) makes an axial force that changes the shapes, they are found under it.
     """
     if structure.richer is not None:
         return Twin(structure)
@@ -260,6 +269,7 @@ class Enrichment:
     """A structure's own shapes and those that it lacks under an axial force (g,) N, for models with all of them."""
 
     def __init__(self, structure: Structure, force: Array | None = None) -> None:
+        """Find the shapes that the structure lacks, also under an axial `force` (g,), N."""
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
         counts = structure.counts
@@ -282,31 +292,33 @@ class Enrichment:
     def model(
         self, kind: str, *, directions: tuple[bool, bool, bool] = (True, True, True)
     ) -> tuple[Structure, NDArray[np.int_]]:
-        """Return a model with new shapes along some of x, y, z, and the indices of the structure's own coordinates."""
+        """Return a model with new shapes along some of x, y and z, and in it the indices of the structure's own."""
         key = kind, directions
         if key not in self._made:
             self._made[key] = self._model(kind, directions)
         return self._made[key]
 
     def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
-        """Return the model and indices of :meth:`model`, newly made."""
+        """Build the model and indices of :meth:`model`, with new shapes of families that move along `directions`."""
         model_counts = self.structure.counts
         wanted = [False] * 6
         for group, along in zip(GROUPS, (*directions, True), strict=True):
             for family in group:
                 wanted[family] = along
-        with_new = zip(model_counts, self.new, wanted, strict=True)
-        axial, *others = (count + new if wished else count for count, new, wished in with_new)
-        counts: Any = (axial if KINDS[kind].axial else 0, *others)
+        axial, *other_counts = (
+            count + new if is_wanted else count
+            for count, new, is_wanted in zip(model_counts, self.new, wanted, strict=True)
+        )
+        counts: Any = (axial if KINDS[kind].axial else 0, *other_counts)
         families: Any = tuple(_first(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)
-        if isinstance(ratio, tuple):
+        if isinstance(ratio, tuple):  # new modes have the last ratio
             ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - len(ratio)))
         beam = replace(self.beam, damping_ratio=ratio)
-        at = np.asarray(self.structure.stations)
+        stations = np.asarray(self.structure.stations)
         shapes = self.structure.source.shapes  # type: ignore[union-attr]
-        rich = assembled(beam, kind, counts, self.rule, at, families, shapes)
+        rich = assembled(beam, kind, counts, self.rule, stations, families, shapes)
         starts = np.cumsum([0, *counts])
         index = np.concatenate(
             [

@@ -124,6 +124,7 @@ class Model:
         return replace(self, twist=twist, shear_y=shear_y, shear_z=shear_z)
 
     def __post_init__(self) -> None:
+        """Refuse unknown kinds and shapes, and numbers of shapes that the kind cannot have."""
         for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, get_args(Shapes))):
             if value not in choices:
                 raise InputError(name, f"is {value!r}", f"choose one of {', '.join(choices)}")

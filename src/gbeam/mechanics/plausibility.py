@@ -40,17 +40,19 @@ def implausible_beam(beam: Beam, bends: tuple[bool, bool]) -> tuple[str, ...]:
 
 
 def refuse_disparate(beam: Beam) -> None:
-    """Raise InputError where a body or a spring is so large or small that numbers do not hold it beside the beam."""
+    """Raise InputError where a body or a spring is so much larger or smaller than the beam that a sum
+    loses its digits.
+    """
     if _traced(beam) or holds_jax(list(beam.root.springs.values())):
         return
-    for where, value, unit, what, share in _shares(beam):
-        if share > DISPARATE or (what == "stiffness" and share < 1 / DISPARATE):
-            problem = f"is {value:g} {unit}: a {what} {share:.3g} times the beam's"
+    for where, value, unit, quantity, ratio in _ratios(beam):
+        if ratio > DISPARATE or (quantity == "stiffness" and ratio < 1 / DISPARATE):
+            problem = f"is {value:g} {unit}: a {quantity} {ratio:.3g} times the beam's"
             raise InputError(where, problem, f"numbers hold both up to {DISPARATE:g} times; is its unit right?")
 
 
 def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> None:
-    """Raise InputError where a beam lacks a stiffness, or the inertia, of strains that a model has."""
+    """Raise InputError if a stiffness or inertia is missing for strains that a model has."""
     if beam.material is None or not (twist or shear_y or shear_z):
         return
     material, section = beam.material, beam.section
@@ -70,8 +72,8 @@ def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> 
         raise InputError("rotary_inertia", "is false, and the model has twist", fix)
 
 
-def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
-    """Yield, by body and spring, the scenario key, value, unit, what it adds, and its ratio to the beam's own."""
+def _ratios(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
+    """Yield by body and spring: scenario key, value, unit, the quantity that it adds, and its ratio to the beam's."""
     mass, length, inertia = _mass(beam), beam.length, "moment of inertia"
     for i, body in enumerate(beam.masses):
         scale, arm, largest = mass * length**2, max(map(abs, body.offset)), max(body.inertia)
@@ -79,11 +81,14 @@ def _shares(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
         yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / scale
         yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / scale
     rigidities = beam.rigidities(np.asarray(beam.section.stations or (0.0,)))
-    along, about_y, about_z = (np.mean(each) for each in rigidities)
+    along, about_y, about_z = (np.mean(rigidity) for rigidity in rigidities)
     bending = np.sqrt(about_y * about_z) / length
     for name, value in beam.root.springs.items():
-        unit, stiffness = ("N m/rad", bending) if name.startswith("rotation") else ("N/m", bending / length**2)
-        stiffness = along / length if name == "translation_x" else stiffness
+        unit, stiffness = "N/m", bending / length**2
+        if name.startswith("rotation"):
+            unit, stiffness = "N m/rad", bending
+        elif name == "translation_x":
+            stiffness = along / length
         yield f"root.{name}", value, unit, "stiffness", float(value / stiffness)
 
 
@@ -115,12 +120,12 @@ def _material(beam: Beam) -> Iterator[str]:
 
 
 def _dimensions(beam: Beam) -> Iterator[str]:
-    """Implausible lengths of the beam and its section."""
+    """Warn of implausible lengths of the beam and of its section, and of sections larger than the beam's length."""
     yield from implausible("beam.length", "length", beam.length)
     for name, values in beam.section.dimensions.items():
         largest, kind = max(values), KINDS.get(name, "section")
-        doubts = implausible(f"beam.section.{name}", kind, largest)
-        doubts = doubts or implausible(f"beam.section.{name}", kind, min(values))
+        key = f"beam.section.{name}"
+        doubts = implausible(key, kind, largest) or implausible(key, kind, min(values))
         yield from doubts
         if not doubts and kind == "section" and largest > beam.length:
             yield (
@@ -130,16 +135,18 @@ def _dimensions(beam: Beam) -> Iterator[str]:
 
 
 def _matching(beam: Beam) -> Iterator[str]:
-    """Properties of the material that no material has together, each plausible alone."""
+    """Warn of properties of a material that are plausible alone and not together, such as modulus and density."""
     material = beam.metal
     modulus, density = float(material.youngs_modulus), float(material.density)
     speed = float(np.sqrt(modulus / density))
     soft = density > DENSE and speed < SLOW_SOUND
     if soft or speed > FAST_SOUND:
-        slip = f"did you mean {modulus / 1e6:g} GPa?" if soft and SLOW_SOUND < speed * 1e3**0.5 < FAST_SOUND else _UNITS
+        advice = (
+            f"did you mean {modulus / 1e6:g} GPa?" if soft and SLOW_SOUND < speed * 1e3**0.5 < FAST_SOUND else _UNITS
+        )
         yield (
             f"beam.material.youngs_modulus is {modulus / 1e6:g} MPa, of {density:g} kg/m^3, so that sound travels at "
-            f"{speed:.3g} m/s: nothing as {'dense is as soft' if soft else 'light is as stiff'}; {slip}"
+            f"{speed:.3g} m/s: nothing as {'dense is as soft' if soft else 'light is as stiff'}; {advice}"
         )
     limits = (
         ("yield_strength", material.yield_strength, WEAKEST, STRONGEST, modulus > STIFF),
@@ -147,14 +154,15 @@ def _matching(beam: Beam) -> Iterator[str]:
     )
     for name, value, least, most, judged in limits:
         if value is not None and judged and not soft and not least < value / modulus < most:
-            times = f"{value / modulus:.3g} times youngs_modulus, {modulus / 1e6:g} MPa"
-            yield f"beam.material.{name} is {value / 1e6:g} MPa, {times}; {_UNITS}"
+            ratio = f"{value / modulus:.3g} times youngs_modulus, {modulus / 1e6:g} MPa"
+            yield f"beam.material.{name} is {value / 1e6:g} MPa, {ratio}; {_UNITS}"
 
 
 def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
-    """Radii of gyration that do not go with the section's area, or with the length where the beam `bends`."""
+    """Warn of radii of gyration that do not fit the area or, in directions in which the beam bends, its length."""
     section = beam.section.at(np.asarray(beam.section.stations or (0.0,)))
-    for axis, bent, inertia, name in (("y", bends[0], section.inertia_z, "z"), ("z", bends[1], section.inertia_y, "y")):
+    directions = (("y", bends[0], section.inertia_z, "z"), ("z", bends[1], section.inertia_y, "y"))
+    for axis, bent, inertia, name in directions:
         gyration = np.sqrt(inertia / section.area)
         shape = gyration / np.sqrt(section.area)
         if not (shape.min() > LEANEST and shape.max() < FATTEST):
@@ -172,7 +180,7 @@ def _proportions(beam: Beam, bends: tuple[bool, bool]) -> Iterator[str]:
 
 
 def _bodies(beam: Beam) -> Iterator[str]:
-    """Bodies that are too heavy, too far off the axis or too wide beside the beam."""
+    """Warn of bodies that are too heavy, too far off the axis or too wide beside the beam."""
     mass = _mass(beam)
     for i, body in enumerate(beam.masses):
         where = f"beam.masses[{i}]"
@@ -211,8 +219,10 @@ def input_warnings(
     base: Any = None,
     rest: Any = None,
 ) -> tuple[str, ...]:
-    """Warn of what is implausible in a structure and its motion over a `span` of time, s; not under JAX. The `base` at
-    some times and the circular frequencies at `rest` (n,), rad/s, are computed unless given.
+    """Warn of what is implausible in a structure and its motion over a `span` of time, s; nothing is judged under JAX.
+
+    The motion of the `base` at some times, and the circular frequencies at `rest` (n,), rad/s, are computed unless
+    given.
     """
     if structure.traced or holds_jax(motion):
         return ()
@@ -242,16 +252,16 @@ def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
 
 
 def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
-    """Warn if the loads of a motion would stiffen a structure whose matrices do not say how, and say by how much.
+    """Warn if the loads of a motion would noticeably stiffen a structure whose matrices leave that out.
 
-    An acceleration a bends a cantilever by about a/ω², and the square of its lowest frequency changes, by the stress,
-    by about a/(ω² L) of itself, in a rotation by about Ω²/ω².
+    An acceleration a bends a cantilever by about a/ω². The stress changes the square of its lowest frequency by about
+    a/(ω² L) of itself; a rotation changes it by about Ω²/ω².
     """
     if not structure.unstiffened or base is None or is_traced(base.a_WO_B):
         return
     length, square = float(structure.length), float(structure.rest[0][0]) ** 2
     vectors = base.a_WO_B, base.w_WB_B, base.alpha_WB_B
-    a, w, alpha = (np.linalg.norm(np.reshape(each, (-1, 3)), axis=-1) for each in vectors)
+    a, w, alpha = (np.linalg.norm(np.reshape(vector, (-1, 3)), axis=-1) for vector in vectors)
     share = float((a / length + w**2 + alpha).max()) / square
     if share > NEGLIGIBLE:
         yield (
@@ -294,19 +304,21 @@ def bent_far(structure: Structure, share: float) -> Iterator[str]:
 
 
 def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
-    """Accelerations and loads across the beam along which the model has no shape: the beam stays straight there."""
-    still = structure.axes_without_shapes
-    if structure.field is None or not still:
+    """Warn of accelerations and loads across the beam along axes without shapes: the model stays straight there."""
+    rigid_axes = structure.axes_without_shapes
+    if structure.field is None or not rigid_axes:
         return
     if base is not None and not is_traced(base.a_WO_B):
-        size = np.abs(np.reshape(base.a_WO_B, (-1, 3))).max(axis=0)
-        for axis in still:
-            if size[axis] > NOTICED * size.max():
-                yield _remark(f"{where} accelerates the root, or gravity does,", f"{size[axis]:.3g} m/s²", axis)
+        accelerations = np.abs(np.reshape(base.a_WO_B, (-1, 3))).max(axis=0)
+        for axis in rigid_axes:
+            if accelerations[axis] > NOTICED * accelerations.max():
+                yield _remark(
+                    f"{where} accelerates the root, or gravity does,", f"{accelerations[axis]:.3g} m/s²", axis
+                )
     if structure.history is None:
         return
     values = _largest_loads(structure.history, span)
-    for axis in still:
+    for axis in rigid_axes:
         # A moment about z bends along y, one about y along z.
         for part, column, unit in (("force", axis, "N"), ("moment", 6 - axis, "N m")):
             largest = values[:, 3 * (column // 3) : 3 * (column // 3) + 3].max(initial=0.0)
@@ -315,7 +327,7 @@ def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[flo
 
 
 def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
-    """Moments about the beam's axis of a model that does not turn by them."""
+    """Warn of moments about the beam's axis if the model does not twist."""
     if structure.field is None or structure.history is None or structure.counts[3]:
         return
     values = _largest_loads(structure.history, span)[:, 3:]
@@ -327,7 +339,7 @@ def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
 
 
 def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterator[str]:
-    """A beam that a hub speeds up or slows down against its stiff direction, where nothing says that this is meant."""
+    """Warn if a hub's angular acceleration bends a beam in its stiff direction and the setting angle was not chosen."""
     if motion is None or motion.kind != "hub" or structure.source is None:
         return
     if motion.setting_angle is not None or motion.turn is not None:
@@ -335,11 +347,11 @@ def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterat
     if not (motion.free or (base is not None and np.any(base.alpha_WB_B))):
         return
     beam = structure.source.beam
-    _, along_z, along_y = (np.mean(each) for each in beam.rigidities(np.linspace(0, beam.length, 41)))
-    if along_y > STIFFER * along_z:
+    _, bending_z, bending_y = (np.mean(values) for values in beam.rigidities(np.linspace(0, beam.length, 41)))
+    if bending_y > STIFFER * bending_z:
         yield (
-            f"{where} bends the beam along y, in its plane of rotation, where it is {along_y / along_z:.3g} times as "
-            f'stiff as along z; give {where}.setting_angle = "90 deg" to turn it, or "0 deg" if this is meant'
+            f"{where} bends the beam along y, in its plane of rotation, where it is {bending_y / bending_z:.3g} times "
+            f'as stiff as along z; give {where}.setting_angle = "90 deg" to turn it, or "0 deg" if this is meant'
         )
 
 

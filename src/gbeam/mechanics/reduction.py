@@ -55,18 +55,20 @@ class Reduced:
     bending: Bending | None = None
 
     def structure(self, build: Callable[[int, Any], Structure], damping_ratio: Any) -> Structure:
-        """Build a structure in the first `size` coordinates whose `richer` is one in all. A list of damping ratios that
-        ends at the modes, or at these coordinates, goes on with its last value.
+        """Build a structure in the first `size` coordinates, whose `richer` is one in all coordinates.
+
+        A list of damping ratios that ends at the modes, or at these coordinates, is continued with its last value.
         """
 
         def ratios(n: int) -> Any:
-            listed = np.ndim(damping_ratio) and len(damping_ratio)
-            if listed in (self.modes, self.size):
-                return [*damping_ratio, *[damping_ratio[-1]] * (n - listed)]
+            count = np.ndim(damping_ratio) and len(damping_ratio)
+            if count in (self.modes, self.size):
+                return [*damping_ratio, *[damping_ratio[-1]] * (n - count)]
             return damping_ratio
 
-        few, every = self.size, len(self.stiffness)
-        return replace(build(few, ratios(few)), richer=replace(build(every, ratios(every)), bending=self.bending))
+        total = len(self.stiffness)
+        richer = replace(build(total, ratios(total)), bending=self.bending)
+        return replace(build(self.size, ratios(self.size)), richer=richer)
 
 
 def linear_fields(points: Floats) -> Floats:
@@ -82,21 +84,22 @@ def inertial_loads(weights: Floats) -> Floats:
 
 
 def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int, bending: BendingOf | None = None) -> Reduced:
-    """Reduce matrices (u, u) of the free unknowns to their lowest modes and static displacements under `loads` (u, m);
-    InputError unless there are so many modes, and stiffness and mass are positive. `bending` gives the forces of higher
-    order of shapes (u, n) with a stiffness (n, n), by a function that answers loads (u, m).
+    """Reduce matrices (u, u) of the free unknowns to lowest modes and static displacements under `loads` (u, m).
+
+    `bending` returns the forces of higher order from shapes (u, n), their stiffness (n, n), and a function that answers
+    loads (u, m). InputError unless there are so many modes, and stiffness and mass are positive.
     """
-    count, more = len(loads), min(MORE, len(loads) - modes)
+    count, extra = len(loads), min(MORE, len(loads) - modes)
     if not 1 <= modes <= count:
         raise InputError("modes", f"is {modes}, of {count} unknowns", f"give 1 to {count}")
     with factorised(stiffness) as solve:
         static = solve(loads)
-        if modes + more > count // 2:  # the space of Lanczos' iteration would be all
-            inverse, vector = _dense(stiffness.toarray(), mass.toarray())
+        if modes + extra > count // 2:  # the space of Lanczos' iteration would be all
+            inverse_eigenvalues, vectors = _dense(stiffness.toarray(), mass.toarray())
         else:
-            start = np.random.default_rng(0).standard_normal((count, WIDTH))
-            inverse, vector = lowest_modes(solve, mass, start, modes, more)
-        reduced = _reduced(stiffness, mass, static, modes, more, inverse, vector)
+            start_vectors = np.random.default_rng(0).standard_normal((count, WIDTH))
+            inverse_eigenvalues, vectors = lowest_modes(solve, mass, start_vectors, modes, extra)
+        reduced = _reduced(stiffness, mass, static, modes, extra, inverse_eigenvalues, vectors)
         if bending is None:
             return reduced
         return replace(reduced, bending=bending(reduced.shapes, reduced.stiffness, solve))
@@ -105,8 +108,9 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int, bending: Bendin
 def _reduced(
     stiffness: Any, mass: Any, static: Floats, modes: int, more: int, inverse: Floats, vector: Floats
 ) -> Reduced:
-    """Reduce matrices (u, u) to `modes` of some modes (u, k), with inverse eigenvalues (k,), and static displacements
-    (u, m), and to `more` of these modes besides.
+    """Reduce matrices (u, u) to the first `modes` of the modes `vector` (u, k) and to static displacements (u, m).
+
+    `inverse` (k,) are the modes' inverse eigenvalues. The next `more` modes are added behind, to judge the error.
     """
     moving = _moving(inverse)
     if not inverse[:modes].min() > -ZERO * inverse.max():
@@ -143,8 +147,9 @@ def _reduced(
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
-    """Inverse eigenvalues 1/ω², s², descending, and modes of unit modal mass; those that move no mass have eigenvalues
-    of about zero and unit modal stiffness.
+    """Inverse eigenvalues 1/ω², s², descending, and modes of unit modal mass.
+
+    Modes that move no mass have eigenvalues of about zero; they are scaled to unit modal stiffness.
     """
     from scipy.linalg import eigh
 
@@ -168,14 +173,14 @@ def _shares(stiffness: Any, shapes: Floats, static: Floats) -> Floats:
 
 
 def _complement(stiffness: Any, mass: Any, modes: Floats, static: Floats) -> Floats:
-    """Vectors (u, l), orthonormal in energy, that span what static answers (u, m) have beside the modes (u, k)."""
+    """Vectors (u, l), orthonormal in energy, that span static answers (u, m) without their parts in modes (u, k)."""
     energy = np.einsum("ij,ij->j", static, stiffness @ static)
-    moved = static[:, energy > 0] / np.sqrt(energy[energy > 0])
-    for _ in range(2):  # twice is enough
-        moved = moved - modes @ (modes.T @ (mass @ moved))
-    value, vector = np.linalg.eigh(moved.T @ (stiffness @ moved))
-    kept = value > ALIKE
-    return moved @ (vector[:, kept] / np.sqrt(value[kept]))
+    residual = static[:, energy > 0] / np.sqrt(energy[energy > 0])
+    for _ in range(2):  # the second time removes what rounding left
+        residual = residual - modes @ (modes.T @ (mass @ residual))
+    value, vector = np.linalg.eigh(residual.T @ (stiffness @ residual))
+    independent = value > ALIKE
+    return residual @ (vector[:, independent] / np.sqrt(value[independent]))
 
 
 def particles_of(points: Floats, shapes: Floats, mass: Any) -> tuple[Floats, Floats, Floats]:
@@ -187,8 +192,10 @@ def particles_of(points: Floats, shapes: Floats, mass: Any) -> tuple[Floats, Flo
 
 
 def standing_in(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Floats, Floats]:
-    """Particles, as :func:`particles_of` returns them, with the mass, first and second moments of a `body` (10,), and
-    with the `sums` Σ m ∂r_a/∂q (3, n) and `moments` Σ m r_b ∂r_a/∂q (3, 3, n); their shapes are linear in the places.
+    """Few particles, as :func:`particles_of` returns them, that have the same inertia as a body with many.
+
+    They have the mass, first and second moments of the `body` (10,), and its `sums` Σ m ∂r_a/∂q (3, n) and `moments` Σ
+    m r_b ∂r_a/∂q (3, 3, n). Their shapes are linear in the places.
     """
     total, (x, y, z), (xx, yy, zz, xy, yz, zx) = body[0], body[1:4], body[4:]
     places = np.array([[total, x, y, z], [x, xx, xy, zx], [y, xy, yy, yz], [z, zx, yz, zz]])
@@ -198,7 +205,10 @@ def standing_in(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Fl
 
 
 def _particles(products: Floats, n: int) -> tuple[Floats, Floats, Floats]:
-    """Masses, places and derivatives of particles by the products (4 + 3 n, 4 + 3 n), kg, of 1, x, y, z and shapes."""
+    """Masses, places and derivatives of particles by the products Σ m a b (4 + 3 n, 4 + 3 n) of 1, x, y, z and shapes.
+
+    The products' eigenvectors give one particle for each eigenvalue that is not rounding.
+    """
     total = products[0, 0]
     size = np.sqrt(np.diagonal(products) / total)
     scale = np.where(size > 0, size, 1.0)

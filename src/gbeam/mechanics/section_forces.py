@@ -107,16 +107,15 @@ def section_forces(
 def _of_ends(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
 ) -> Loads:
-    """Loads, without stress, at the root of a structure without sections and at its tip, which carries nothing."""
+    """Loads at the root of a structure without sections, and at its tip, which carries nothing; without stress."""
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
     wrench = terms_of(structure).demanded(q, qd, qdd, root, applied)[1]
     demanded = [wrench.force, wrench.moment]
     if hung is not None:
-        hanging = hung.force.sum(axis=1), hung.moment.sum(axis=1)
-        demanded = [each + more for each, more in zip(demanded, hanging, strict=True)]
-    force, moment = (xp.stack([-each, 0 * each], axis=1) for each in demanded)
+        demanded = [demanded[0] + hung.force.sum(axis=1), demanded[1] + hung.moment.sum(axis=1)]
+    force, moment = (xp.stack([-at_root, 0 * at_root], axis=1) for at_root in demanded)
     tip = absolute_accelerations(xp, base, *structure.output[-1:].paths(q, qd, qdd))
     unknown = xp.full(force.shape[:2], np.nan)
     return Loads(
@@ -148,28 +147,32 @@ def sections(
     values: Array | None,
     hung: Hung | None = None,
 ) -> Carried:
-    """Loads (t, s, 3) that the root and the s − 1 stations carry, by what is `outboard` of each, at load components
-    (t, loads, 6) and with bodies `hung` on them.
+    """Loads (t, s, 3) that the root and the s − 1 stations carry, from what is `outboard` of each.
+
+    `values` (t, loads, 6) are load components; bodies `hung` on the structure pull, too.
     """
     count = outboard.mass.shape[0] - 1
-    particles, stations, turned = _sent_out(structure, count, q, qd, qdd)
+    particles, stations, turned = _paths_outward(structure, count, q, qd, qdd)
     xp = namespace(q, particles[0], base.a_WO_B)
     root = (xp.zeros_like(stations[0][:, :1]),) * 3
     stations = tuple(xp.concatenate(pair, axis=1) for pair in zip(root, stations, strict=True))
     a_particles, a_stations = absolute_accelerations(xp, base, *particles), absolute_accelerations(xp, base, *stations)
     # Σ m (r − r_x) × a = Σ m r × a − r_x × Σ m a, and so for the loads.
     mass = xp.asarray(outboard.mass)
-    force, about_root = -mass @ a_particles, -mass @ _cross(xp, particles[0], a_particles)
+    force, moment_about_root = -mass @ a_particles, -mass @ _cross(xp, particles[0], a_particles)
     if structure.work is not None and values is not None:
         loaded = structure.work.field
-        pull, turn = structure.work.forces(loaded.rotation(q), values)
+        load_force, load_moment = structure.work.forces(loaded.rotation(q), values)
         share = xp.asarray(outboard.loaded)
-        force, about_root = force + share @ pull, about_root + share @ (_cross(xp, loaded.positions(q), pull) + turn)
+        force, moment_about_root = (
+            force + share @ load_force,
+            moment_about_root + share @ (_cross(xp, loaded.positions(q), load_force) + load_moment),
+        )
     if hung is not None:
         sections_at = np.append(0.0, structure.stations)
         beyond = (structure.stations[hung.station] >= sections_at[:, None] - 1e-9 * structure.length).astype(float)
-        force, about_root = force - beyond @ hung.force, about_root - beyond @ hung.moment
-    moment = about_root - _cross(xp, stations[0], force)
+        force, moment_about_root = force - beyond @ hung.force, moment_about_root - beyond @ hung.moment
+    moment = moment_about_root - _cross(xp, stations[0], force)
     straight = xp.broadcast_to(xp.asarray(outboard.root_axes), (len(q), 1, 3, 3))
     rotation = xp.concatenate([straight, turned], axis=1)
 
@@ -179,13 +182,13 @@ def sections(
     return Carried(force, moment, inward(force), inward(moment), a_stations, stations[0])
 
 
-def _sent_out(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, Any, Array]:
-    """Paths (t, p, 3) of the particles and of the last `count` stations, and rotations of these (t, count, 3, 3)."""
+def _paths_outward(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, Any, Array]:
+    """Paths (t, p, 3) of particles and the last `count` stations, and rotations (t, count, 3, 3) of the stations."""
     particles, last = structure.particles, slice(-count, None)
     stations: Any = structure.output[last]
     if not isinstance(particles, Places):
         paths, turned = particles.joined(stations).poses(q, qd, qdd, last)
-        return tuple(each[:, :-count] for each in paths), tuple(each[:, last] for each in paths), turned
+        return tuple(path[:, :-count] for path in paths), tuple(path[:, last] for path in paths), turned
     xp = namespace(q, structure.mass)
     turned = xp.broadcast_to(xp.eye(3), (len(q), count, 3, 3))
     if structure.field is not None:
@@ -199,7 +202,10 @@ def accelerations(structure: Structure, base: Base, q: Array, qd: Array, qdd: Ar
 
 
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
-    """Absolute accelerations (t, p, 3) of points by their motion (t, p, 3) relative to the base, base axes."""
+    """Absolute accelerations (t, p, 3) of points, base axes, from their motion (t, p, 3) relative to the base.
+
+    They are a_O + (α× + ω×ω×) r + 2 ω × ṙ + r̈; the products with r and ṙ are one product of matrices.
+    """
     w, alpha, along = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]
     if xp is np and not (w.any() or alpha.any()):
         return along + rdd
@@ -214,15 +220,16 @@ def _cross(xp: Any, left: Array, right: Array) -> Array:
 
 
 def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:
-    """Add to loads the torque of the beam about a hub's axis and, where its inertia is given, that of the hub's drive;
-    with other motions return the loads. `alpha_WB_B` (t, 3) rad/s² is the base's.
+    """Add to loads the beam's torque about a hub's axis and, if the hub's inertia is given, the torque of its drive.
+
+    With other motions the loads are returned as they are. `alpha_WB_B` (t, 3), rad/s², is the base's.
     """
     if motion is None or motion.kind != "hub":
         return loads
     hub: Any = motion
     xp = namespace(loads.force, hub.mount.R_HB)
-    turned = xp.asarray(hub.mount.R_HB).T
-    force_H, moment_H, alpha_H = (x @ turned for x in (loads.root_force, loads.root_moment, alpha_WB_B))
+    R_BH = xp.asarray(hub.mount.R_HB).T
+    force_H, moment_H, alpha_H = loads.root_force @ R_BH, loads.root_moment @ R_BH, alpha_WB_B @ R_BH
     along, across = hub.mount.place[0], hub.mount.place[1]
     torque = moment_H[:, 2] + along * force_H[:, 1] - across * force_H[:, 0]
     drive = None if hub.inertia is None else torque + hub.inertia * alpha_H[:, 2]

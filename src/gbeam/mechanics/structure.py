@@ -312,7 +312,7 @@ class Structure:
         return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
 
     def about(self, q: Array) -> tuple[Coefficients, Array]:
-        """Coefficients of small departures from coordinates `q` (n,), and the elastic forces there, (n,)."""
+        """Coefficients of the equations linearised at coordinates `q` (n,), and the elastic forces there, (n,)."""
         c = self.coefficients
         if self.linear:
             return c.about(q), c.elastic(q)
@@ -339,13 +339,15 @@ class Structure:
 
     @property
     def bent(self) -> Structure:
-        """Structure of kind exact with forces of higher order, by which it bends far; itself where none are known."""
+        """Structure of kind exact with elastic forces of higher order, for large bending; itself where
+        none are known.
+        """
         if self.bending is None:
             return self
-        at, soft = self.station_places, self.bending.soft
-        second = soft @ self.bending.places @ soft.T + (0.0 if at.second is None else at.second)
+        stations, soft = self.station_places, self.bending.soft
+        second = soft @ self.bending.places @ soft.T + (0.0 if stations.second is None else stations.second)
         coefficients = replace(self.coefficients, bending=self.bending)
-        return replace(self, kind="exact", coefficients=coefficients, station_places=replace(at, second=second))
+        return replace(self, kind="exact", coefficients=coefficients, station_places=replace(stations, second=second))
 
     @property
     def resolved(self) -> int:
@@ -372,7 +374,8 @@ class Structure:
         Structure
             With k coordinates, whose answers are those of the old ones that the basis reaches.
         """
-        c, turns = self.coefficients.turned(basis), None if self.turns is None else self.turns @ basis
+        c = self.coefficients.turned(basis)
+        turns = None if self.turns is None else self.turns @ basis
         places, stations = self.places.turned(basis), self.station_places.turned(basis)
         return replace(self, coefficients=c, places=places, station_places=stations, turns=turns, recovery=None)
 
@@ -402,8 +405,9 @@ class Structure:
         return self.output.slopes(q)
 
     def twist_slopes(self, q: Array, chosen: Array | None = None) -> Array | None:
-        """Derivatives of the angles of sections about the beam's axis at coordinates `q` (n,), (s, n): of the stations,
-        or of those at the `chosen` points of the field; None of a model without twist.
+        """Derivatives (s, n), by the coordinates at `q` (n,), of the angles of sections about the beam's axis.
+
+        The sections are the stations, or the `chosen` points of the field. None of a model without twist.
         """
         if self.field is None or not (self.counts[3] or (self.source and self.source.beam.line)):
             return None
@@ -447,7 +451,7 @@ def linear_structure(
     unstiffened: bool = False,
     modes: int | None = None,
 ) -> Structure:
-    """Linear structure with the coefficients `terms`, the places of its particles (k,) kg and of its stations."""
+    """Linear structure from the coefficients `terms`, the places of its particles (k,) kg, and of its stations."""
     ratio = 0.0 if holds_jax(damping_ratio) else float(np.max(damping_ratio))
     return Structure(
         kind=kind,

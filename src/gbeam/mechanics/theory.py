@@ -26,32 +26,39 @@ from gbeam.structure.matrices import condensed
 ZONE = 0.9  # of one term's length: what several terms leave of it
 
 
-def stiffening(beam: Beam, x: Floats, bent: Floats) -> tuple[Floats, Floats]:
-    """Factors (p,) on EI_y, EI_z at x (p,) by which a strip is stiffer than a beam, at curvatures (2, p), 1/m."""
+def stiffening(beam: Beam, x: Floats, curvatures: Floats) -> tuple[Floats, Floats]:
+    """Factors (p,) on EI_y and EI_z at x (p,), m: a strip is stiffer where, as a plate, it cannot bend across.
+
+    `curvatures` (2, p) are its own, 1/m.
+    """
     if beam.material is None:  # what its matrices say is all that is known
         return np.ones(len(x)), np.ones(len(x))
     ratio, (width, thickness) = float(beam.material.ratio), beam.section.at(x).extents()
-    most = ratio**2 / (1 - ratio**2)
-    flat = [
+    plate_gain = ratio**2 / (1 - ratio**2)
+    flatness = [
         near_clamp_or_bent(ratio, x, across, through, curvature) * np.maximum(1 - (through / across) ** 2, 0)
-        for across, through, curvature in ((width, thickness, bent[0]), (thickness, width, bent[1]))
+        for across, through, curvature in ((width, thickness, curvatures[0]), (thickness, width, curvatures[1]))
     ]
     plate_factor = 1 / (1 - ratio**2) if beam.section.plate else 1.0
-    return (1 + most * flat[0]) / plate_factor, 1 + most * flat[1]
+    return (1 + plate_gain * flatness[0]) / plate_factor, 1 + plate_gain * flatness[1]
 
 
 def near_clamp_or_bent(ratio: float, x: Floats, across: Floats, through: Floats, curvature: Floats) -> Floats:
-    """Flatness of sections (p,), from 0 (free to bend across) to 1 (as in a plate), at x m from the clamp, `across` m
-    wide and `through` m thick, by their `curvature`, 1/m: c = c' = 0 at the clamp in b⁴/720 c'''' − (1 − ν) b²/6 c'' +
-    c = −ν w'', to which the stretch adds (1 − ν²) (b² w''/h)²/60 c (Searle, 1907).
+    """Flatness of sections (p,), from 0 (free to bend across) to 1 (as in a plate), at x, m, from the clamp.
+
+    Sections are `across` m wide and `through` m thick. Near the clamp, where c = c' = 0, the shape c across solves
+    b⁴/720 c'''' − (1 − ν) b²/6 c'' + c = −ν w''; a `curvature`, 1/m, adds the stretch's (1 − ν²) (b² w''/h)²/60 c
+    (Searle, 1907).
     """
     mean = (1 - ratio) / 6
     root = np.sqrt(mean**2 - 4 / 720)
-    near, far = np.sqrt(360 * (mean + root)), np.sqrt(360 * (mean - root))
-    place = x / (ZONE * across)
-    clamped = (near * np.exp(-far * place) - far * np.exp(-near * place)) / (near - far)
+    slow_rate, fast_rate = np.sqrt(360 * (mean + root)), np.sqrt(360 * (mean - root))
+    scaled_x = x / (ZONE * across)
+    free_share = (slow_rate * np.exp(-fast_rate * scaled_x) - fast_rate * np.exp(-slow_rate * scaled_x)) / (
+        slow_rate - fast_rate
+    )
     searle = (1 - ratio**2) * (across**2 * curvature / through) ** 2 / 60
-    return 1 - (1 - clamped) / (1 + searle)
+    return 1 - (1 - free_share) / (1 + searle)
 
 
 NEW = 1e-4  # of a vector's length in energy: less of it is nothing that the others have not
@@ -110,6 +117,7 @@ class _Parts:
     """Stiffness, points and motions of a beam: unknowns (m,) are six strains at every node, then the springs."""
 
     def __init__(self, structure: Structure, beam: Beam, rule: Quadrature, hung: tuple[int, ...] = ()) -> None:
+        """Prepare strains, stiffnesses and points of a beam. `hung` are the stations where bodies hang."""
         self.structure, self.beam, self.rule = structure, beam, rule
         x, section = rule.node, beam.section.at(rule.node)
         strained = [strain for strain, count in zip(STRAINS, structure.counts, strict=True) if count]
@@ -141,26 +149,31 @@ class _Parts:
         return strain_field(self.rule, self.points, shaped, self.move @ root, self.turn @ root, self.beam.line)
 
     def pulled(self, force: Floats, moment: Floats) -> Floats:
-        """Generalised forces (m, k) on the strains of k cases of forces and moments (3, points, k) at the points."""
-        slope, axes = self.cumulative.T @ force, self.axes[: len(self.rule.node)]
+        """Generalised forces (m, k) on the strains, of k cases of forces and moments (3, points, k) at the points."""
+        force_outboard, axes = self.cumulative.T @ force, self.axes[: len(self.rule.node)]
         # The axis turns with its sections.
-        lever = np.cross(axes[:, :, 0].T[..., None], slope, axis=0)
-        angle = self.cumulative.T @ moment + self.at_nodes.T @ lever
-        root = (moment + np.cross(self.place.T[..., None], force, axis=0)).sum(axis=1)
-        springs = self.move.T @ force.sum(axis=1) + self.turn.T @ root
-        inward = [np.einsum("gba,bgk->agk", axes, each).reshape(-1, force.shape[-1]) for each in (slope, angle)]
+        force_moment = np.cross(axes[:, :, 0].T[..., None], force_outboard, axis=0)
+        moment_outboard = self.cumulative.T @ moment + self.at_nodes.T @ force_moment
+        root_moment = (moment + np.cross(self.place.T[..., None], force, axis=0)).sum(axis=1)
+        springs = self.move.T @ force.sum(axis=1) + self.turn.T @ root_moment
+        inward = [
+            np.einsum("gba,bgk->agk", axes, resultant).reshape(-1, force.shape[-1])
+            for resultant in (force_outboard, moment_outboard)
+        ]
         return np.concatenate([*inward, springs])
 
     def answers(self, coordinates: Floats) -> Floats:
-        """Strains (m, k) of the thick beam under static loads: the inertia of shapes with strains (m, n), unit
-        accelerations, its loads, forces where bodies hang, and on each further level the inertia of the last answers.
+        """Strains (m, k) of the thick beam under static loads.
+
+        The loads are the inertia forces of shapes with strains (m, n), unit accelerations, the beam's loads and forces
+        where bodies hang; on each further level they are the inertia forces of the last answers.
         """
-        at, mass, offset = particles_of(self.beam, self.rule, rotary=True)
-        arm = np.einsum("pab,pb->ap", self.axes[at], offset)[..., None]
-        onto = at == np.arange(len(self.points))[:, None]  # (points, particles)
+        station, mass, offset = particles_of(self.beam, self.rule, rotary=True)
+        arm = np.einsum("pab,pb->ap", self.axes[station], offset)[..., None]
+        onto = station == np.arange(len(self.points))[:, None]  # (points, particles)
 
         def inertia(move: Floats, turn: Floats) -> Floats:
-            force = mass[:, None] * (move[:, at] + np.cross(turn[:, at], arm, axis=0))
+            force = mass[:, None] * (move[:, station] + np.cross(turn[:, station], arm, axis=0))
             return self.pulled(onto @ force, onto @ np.cross(arm, force, axis=0))
 
         def inertia_of(strains: Floats) -> Floats:
@@ -193,7 +206,7 @@ class _Parts:
         return self._at_nodes(np.asarray(np.linalg.inv(self.coupling)), forces, uncoupled)
 
     def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
-        """Strains (m, k) scaled so that their energy is half their square, or scaled `back` from that."""
+        """Scale strains (m, k) so that their energy is half their square; `back` reverses it."""
         root = np.sqrt(np.where(self.known, self.stiffness, 1.0))[:, None]
         uncoupled = strains / root if back else strains * root
         if self.coupling is None:
@@ -212,14 +225,16 @@ class _Parts:
         return load_work(self.beam, field, self.rule, self.first_load)
 
     def theory(self, families: Families) -> Theory:
-        """Both theories, with the structure's own shapes `families` and the strains of :meth:`answers` beside these."""
+        """Models of both theories, slender and thick. Their shapes are the structure's own `families` and what the
+        static answers add.
+        """
         strains = self.shaped(families)
         answers = self.answers(strains)
-        blocks = [np.concatenate([strains, self.others(answers, self.modelled, strains)], axis=1)]
-        lacking = (tuple(set(family) - set(self.modelled)) for family in (SHEAR, TWIST))
-        blocks += [self.others(answers, family) for family in lacking]
-        ends = np.cumsum([0, *(block.shape[1] for block in blocks)]).tolist()
-        thick, slender = np.concatenate(blocks, axis=1), blocks[0]
+        strain_blocks = [np.concatenate([strains, self.others(answers, self.modelled, strains)], axis=1)]
+        missing_families = (tuple(set(family) - set(self.modelled)) for family in (SHEAR, TWIST))
+        strain_blocks += [self.others(answers, family) for family in missing_families]
+        block_ends = np.cumsum([0, *(block.shape[1] for block in strain_blocks)]).tolist()
+        thick, slender = np.concatenate(strain_blocks, axis=1), strain_blocks[0]
         nodes = len(self.rule.node)
         bodies = self.field(thick)[nodes : nodes + len(self.beam.masses)]
         offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
@@ -227,7 +242,7 @@ class _Parts:
         models = self.model(slender, rotary=self.beam.rotary_inertia), self.model(thick, rotary=True)
         return Theory(
             *models,
-            {"shear": slice(ends[1], ends[2]), "twist": slice(ends[2], ends[3])},
+            {"shear": slice(block_ends[1], block_ends[2]), "twist": slice(block_ends[2], block_ends[3])},
             thick[4 * nodes : 6 * nodes].reshape(2, nodes, -1),
             np.stack([about_y, about_z]) * self.rule.weight,
             self.rule.node,
@@ -236,7 +251,7 @@ class _Parts:
         )
 
     def shaped(self, families: Families) -> Floats:
-        """Strains (m, n) of the coordinates: of shapes of some families, then of the root's springs."""
+        """Strains (m, n) of unit coordinates: of shapes of the families, then of the root's springs."""
         nodal = shaped_strains(self.rule, families)
         strains = nodal.reshape(-1, nodal.shape[2])
         springs = self.move.shape[1]
@@ -246,24 +261,27 @@ class _Parts:
         return out
 
     def others(self, answers: Floats, families: tuple[int, ...], coordinates: Floats | None = None) -> Floats:
-        """Strains (m, l), orthonormal in energy, that span what answers have in some families (0 to 5, strains) beside
-        the `coordinates` (m, n) where these are given.
+        """Strains (m, l), orthonormal in energy, that span the parts of `answers` in some families (0 to 5).
+
+        Parts along the `coordinates` (m, n), if given, are removed before.
         """
-        chosen = (np.isin(self.families, families) & self.known)[:, None]
+        in_families = (np.isin(self.families, families) & self.known)[:, None]
         basis = (
-            np.zeros((len(chosen), 0)) if coordinates is None else np.linalg.qr(self.scaled(chosen * coordinates))[0]
+            np.zeros((len(in_families), 0))
+            if coordinates is None
+            else np.linalg.qr(self.scaled(in_families * coordinates))[0]
         )
         lengths = np.linalg.norm(self.scaled(self.known[:, None] * answers), axis=0)
-        first = basis.shape[1]
-        for vector, length in zip(self.scaled(chosen * answers).T, lengths, strict=True):
-            rest = vector - basis @ (basis.T @ vector)
-            rest = rest - basis @ (basis.T @ rest)
-            if np.linalg.norm(rest) > NEW * length:
-                basis = np.concatenate([basis, (rest / np.linalg.norm(rest))[:, None]], axis=1)
-        return np.where(chosen, self.scaled(basis[:, first:], back=True), 0.0)
+        count = basis.shape[1]
+        for vector, length in zip(self.scaled(in_families * answers).T, lengths, strict=True):
+            residual = vector - basis @ (basis.T @ vector)
+            residual = residual - basis @ (basis.T @ residual)
+            if np.linalg.norm(residual) > NEW * length:
+                basis = np.concatenate([basis, (residual / np.linalg.norm(residual))[:, None]], axis=1)
+        return np.where(in_families, self.scaled(basis[:, count:], back=True), 0.0)
 
     def energy(self, strains: Floats) -> Floats:
-        """Stiffness (n, n) of shapes with strains (m, n); strains that no shape has take values without force."""
+        """Stiffness (n, n) of shapes with strains (m, n). Strains without shapes are free: they carry no force."""
         if self.coupling is None:
             return np.asarray(strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains))
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
@@ -274,10 +292,10 @@ class _Parts:
         return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
 
     def model(self, strains: Floats, *, rotary: bool) -> Structure:
-        """The linear structure whose shapes have the strains (m, n), with rotary inertia where that is `rotary`."""
+        """Linear structure whose shapes have the strains (m, n), with rotary inertia if `rotary`."""
         structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
-        field, (at, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
-        inertia = inertia_of(field.points(at, offset), mass)
+        field, (station, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
+        inertia = inertia_of(field.points(station, offset), mass)
         places, geometric = inertia.about(rest)
         stiffness = self.energy(strains)
         work, loaded, loads = None, np.zeros(0, int), None
@@ -300,7 +318,9 @@ class _Parts:
             inertia=inertia,
             field=field,
             first_station=self.first_station,
-            sections=sections_of(beam, structure.stations, self.cumulative, (mass, at), loaded, self.first_station),
+            sections=sections_of(
+                beam, structure.stations, self.cumulative, (mass, station), loaded, self.first_station
+            ),
             work=work,
             source=None,
             warnings=(),

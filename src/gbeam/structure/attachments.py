@@ -114,6 +114,7 @@ class PointMass(Value):
     name: Annotated[str, "name of the point of output at its place"] = ""
 
     def __post_init__(self) -> None:
+        """Refuse a name or an inertia that no body has."""
         if self.name:
             checked_name(self.name)
         for name, values in (("inertia", self.inertia), ("offset", self.offset)):
@@ -195,6 +196,7 @@ class Load(Value):
     )
 
     def __post_init__(self) -> None:
+        """Refuse a load without force and moment, one at a place beside a spread one, and a force without place."""
         at_station = {"force": self.force, "moment": self.moment}
         spread = {"distributed": self.distributed, "distributed_moment": self.distributed_moment}
         written = [name for name, value in at_station.items() if value is not None]
@@ -202,8 +204,9 @@ class Load(Value):
         if not written and not spreads:
             fix = 'give force, moment or distributed, such as force = { z = "5 N" }'
             raise InputError("", "has neither force nor moment", fix)
-        for name in [*(["at"] if self.at is not None else []), *written] if spreads else []:
-            raise InputError(name, f"is given beside {spreads[0]}", "make two loads of them")
+        if spreads and (self.at is not None or written):
+            where = "at" if self.at is not None else written[0]
+            raise InputError(where, f"is given beside {spreads[0]}", "make two loads of them")
         if written and self.at is None:
             raise InputError("", "at is missing", 'say where the load acts: at = "300 mm"')
         for name, value in (at_station | spread).items():

@@ -81,21 +81,22 @@ class Beam(Value):
     ] = None
 
     def __post_init__(self) -> None:
+        """Refuse positions beyond the tip, and section, material and damping that do not fit one another."""
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "points", tuple(self.points))
-        places = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
-        places += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
-        places += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
+        positions = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
+        positions += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
+        positions += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
         self._refuse_names_twice()
         if self.line is not None and not abs(self.line.length - self.length) <= 1e-9 * self.line.length:
             fix = f"give length = {self.line.length!r}"
             raise InputError("length", f"is {self.length:g} m, and the line is {self.line.length:g} m long", fix)
-        for place, at in places:
-            if at > self.length * (1 + 1e-12):
+        for key, position in positions:
+            if position > self.length * (1 + 1e-12):
                 raise InputError(
-                    place,
-                    f"is {at:g} m, beyond the tip",
+                    key,
+                    f"is {position:g} m, beyond the tip",
                     f"give 0 to {self.length:g} m from the root",
                 )
         stations = self.section.stations
@@ -174,18 +175,19 @@ class Beam(Value):
         return 1.0 if self.material is None else self.material.density
 
     def rigidities(self, x: ArrayLike) -> tuple[Any, Any, Any]:
-        """EA N, EI_y and EI_z N m² at positions `x`, m: against stretching, bending along z and bending along y."""
+        """EA, N, EI_y and EI_z, N m², at positions `x`, m: against stretching, bending along z and bending along y."""
         if self.material is None:
             axial, *_, about_y, about_z = self.stiffnesses(x)
             return axial, about_y, about_z
         section, modulus = self.section.at(x), self.material.youngs_modulus
-        flat = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
-        return modulus * section.area, modulus * section.inertia_y * flat, modulus * section.inertia_z
+        plate_factor = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
+        return modulus * section.area, modulus * section.inertia_y * plate_factor, modulus * section.inertia_z
 
     def stiffnesses(self, x: ArrayLike) -> tuple[Any, ...]:
-        """EA, kGA along y and along z N, GJ, EI_y and EI_z N m² at positions `x`, m: against stretch and shears, twist
-        and curvatures about y and z. GJ is NaN where the torsion constant is not known. Of a section by matrices these
-        are the diagonal of its stiffness.
+        """EA, kGA along y and z, N, GJ, EI_y and EI_z, N m², at positions `x`, m.
+
+        They act against stretch, shears, twist and curvatures about y and z. GJ is NaN where the torsion constant is
+        not known. Of a section by matrices these are the diagonal of its stiffness.
         """
         if self.material is None:
             stiffness = self.section.matrices(x)[0]
@@ -197,7 +199,7 @@ class Beam(Value):
 
 
 def assumptions(beam: Beam) -> tuple[str, ...]:
-    """Assumptions of the beam theory's stated error where the beam does not say: ``Poisson's ratio 0.3``."""
+    """Assumptions of the beam theory's stated error where the beam gives no value, such as ``Poisson's ratio 0.3``."""
     words = []
     if beam.material is None:
         return ()
@@ -212,14 +214,14 @@ def assumptions(beam: Beam) -> tuple[str, ...]:
 
 
 def fibre_strain(beam: Beam, at: Any, force: Any, moment: Any, y: Any, z: Any) -> Any:
-    """Normal strain, (..., s), at places (y, z) m in a beam's sections `at` (s,) m, by what these carry."""
+    """Normal strain (..., s) at places (y, z), m, in sections `at` (s,), m, from the force and moment they carry."""
     if beam.material is None:
         carried = namespace(force, moment).concatenate([force, moment], axis=-1)[..., None]
         stiffness = beam.section.matrices(at)[0]
         strain = namespace(stiffness).linalg.inv(stiffness) @ carried
         return strain[..., 0, 0] + strain[..., 4, 0] * z - strain[..., 5, 0] * y
-    axial, along_z, along_y = beam.rigidities(at)
-    return force[..., 0] / axial + moment[..., 1] * z / along_z - moment[..., 2] * y / along_y
+    axial, bending_z, bending_y = beam.rigidities(at)
+    return force[..., 0] / axial + moment[..., 1] * z / bending_z - moment[..., 2] * y / bending_y
 
 
 def names_at(beam: Beam, stations: ArrayLike) -> tuple[str, ...]:

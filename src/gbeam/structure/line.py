@@ -86,6 +86,7 @@ class Line(Value):
     turns: ArrayLike = ()
 
     def __post_init__(self) -> None:
+        """Check the corners and breaks, and try the curvature at 64 positions."""
         length = float(positive("length", self.length, "m"))
         corners = tuple(float(at) for at in self.corners)
         turns = np.asarray(self.turns, dtype=float)
@@ -96,7 +97,7 @@ class Line(Value):
         for i, at in enumerate(corners):
             if not 0 <= at < length:
                 raise InputError(f"corners[{i}]", f"is at {at:g} m", f"give a place from 0 to before {length:g} m")
-        breaks = tuple(sorted({float(each) for each in self.breaks} | {*corners}))
+        breaks = tuple(sorted({float(position) for position in self.breaks} | {*corners}))
         if breaks and not (breaks[0] >= 0 and breaks[-1] <= length * (1 + NEAR)):
             raise InputError("breaks", f"reach from {breaks[0]:g} to {breaks[-1]:g} m", f"give 0 to {length:g} m")
         vectors = tuple(tuple(turn.tolist()) for turn in turns.reshape(-1, 3))
@@ -136,7 +137,8 @@ class Line(Value):
         """
         size = np.atleast_1d(np.asarray(lengths, dtype=float))
         try:
-            turns = np.stack([np.broadcast_to(np.asarray(each, float), size.shape) for each in (twist, turn_y, turn_z)])
+            angles = (twist, turn_y, turn_z)
+            turns = np.stack([np.broadcast_to(np.asarray(angle, float), size.shape) for angle in angles])
         except ValueError:
             raise InputError("twist", "and turns are not one for each piece", f"give {len(size)}, or one") from None
         for i, length in enumerate(size):
@@ -145,11 +147,12 @@ class Line(Value):
             raise InputError("lengths", "are all zero", "give one piece a length")
         if not np.isfinite(turns).all():
             raise InputError("twist", "or a turn is not finite", "give finite angles, rad")
-        ends, real = np.cumsum(size), size > 0
+        ends, real = np.cumsum(size), size > 0  # pieces without length are corners
         edges = np.append(0.0, ends[real])
-        turned = ~real & turns.any(axis=0)
+        is_corner = ~real & turns.any(axis=0)
         rates = turns.T[real] / size[real, None]
-        return cls(float(edges[-1]), Even(edges, rates), tuple(edges[1:-1]), tuple(ends[turned]), turns.T[turned])
+        corners = tuple(ends[is_corner])
+        return cls(float(edges[-1]), Even(edges, rates), tuple(edges[1:-1]), corners, turns.T[is_corner])
 
     @classmethod
     @typed
@@ -215,22 +218,22 @@ class Line(Value):
 
     @property
     def panels(self) -> tuple[float, ...]:
-        """Positions between which the curvatures are smooth and the line turns by a quarter at most, m."""
-        edges, out = sorted({0.0, *self.breaks, self.length}), set(self.breaks)
+        """Positions, m, between which the curvatures are smooth and the line turns by a quarter at most."""
+        edges, positions = sorted({0.0, *self.breaks, self.length}), set(self.breaks)
         for low, high in pairwise(edges):
             middle = low + (high - low) * (np.arange(16) + 0.5) / 16
             turn = np.linalg.norm(self.curvature(middle), axis=1).mean() * (high - low)
-            out |= set(np.linspace(low, high, 1 + max(1, math.ceil(turn / PANEL - NEAR)))[1:-1].tolist())
-        return tuple(sorted(out))
+            positions |= set(np.linspace(low, high, 1 + max(1, math.ceil(turn / PANEL - NEAR)))[1:-1].tolist())
+        return tuple(sorted(positions))
 
     def places(self, x: ArrayLike) -> tuple[Floats, Floats]:
-        """Places at rest (p, 3) m, base axes, and axes of the sections in columns (p, 3, 3), at positions `x` (p,), m.
+        """Places at rest (p, 3), m, base axes, and axes of the sections in columns (p, 3, 3), at positions `x` (p,), m.
 
-        A corner turns what lies beyond it; one at the root the root too.
+        A corner turns all beyond it; one at the root turns the root, too.
         """
-        at = np.atleast_1d(np.asarray(x, dtype=float))
-        place, axes = np.zeros((len(at), 3)), np.zeros((len(at), 3, 3))
-        if not at.size:  # of no bodies, as every response asks
+        positions = np.atleast_1d(np.asarray(x, dtype=float))
+        place, axes = np.zeros((len(positions), 3)), np.zeros((len(positions), 3, 3))
+        if not positions.size:  # of no bodies, as every response asks
             return place, axes
         from scipy.integrate import solve_ivp  # these take longer to import than a straight beam to compute
         from scipy.spatial.transform import Rotation
@@ -238,6 +241,7 @@ class Line(Value):
         state, edges = np.append(np.zeros(3), np.eye(3).ravel()), sorted({0.0, *self.breaks, self.length})
 
         def change(x: float, y: Floats) -> Floats:
+            """Derivatives r' = R e₁ and R' = R [κ]×."""
             rotation = y[3:].reshape(3, 3)
             turning = np.cross(np.eye(3), np.asarray(self.curvature(np.array([x])))[0])  # [κ]×
             return np.append(rotation[:, 0], (rotation @ turning).ravel())
@@ -247,10 +251,10 @@ class Line(Value):
                 if abs(corner - low) <= NEAR * self.length:
                     turned = state[3:].reshape(3, 3) @ Rotation.from_rotvec(turn).as_matrix()
                     state = np.append(state[:3], turned.ravel())
-            inside = (at <= high) & ((at > low) | (low == 0.0))
+            inside = (positions <= high) & ((positions > low) | (low == 0.0))
             if high == self.length:
-                inside |= at > high
-            wanted, index = np.unique(np.clip(at[inside], low, high), return_inverse=True)
+                inside |= positions > high
+            wanted, index = np.unique(np.clip(positions[inside], low, high), return_inverse=True)
             stops = np.unique([low, *wanted, high])
             solved = solve_ivp(change, (low, high), state, t_eval=stops, **_EXACT).y.T
             states = solved[np.searchsorted(stops, wanted)][index]
@@ -280,7 +284,7 @@ class Splines(Value):
     coefficients: Floats
 
     def __call__(self, x: Floats) -> Floats:
-        """Curvatures at positions."""
+        """Curvatures (p, 3), 1/m, at positions x (p,), m, by the spline of each position's piece."""
         x = np.asarray(x, dtype=float)
         piece, out = np.searchsorted(self.edges[1:-1], x, side="left"), np.zeros((len(x), 3))
         from scipy.interpolate import BSpline
@@ -292,7 +296,7 @@ class Splines(Value):
 
 
 def _shortest(where: str, before: Floats, after: Floats) -> Rotation:
-    """Smallest rotation from one direction to another; InputError, with the place `where`, if they are opposite."""
+    """Smallest rotation from one direction to another. InputError, with the place `where`, if they are opposite."""
     from scipy.spatial.transform import Rotation
 
     axis, cosine = np.cross(before, after), float(before @ after)
@@ -305,7 +309,10 @@ def _shortest(where: str, before: Floats, after: Floats) -> Rotation:
 
 
 def _curve(points: Floats, chords: Floats, twist: Floats) -> Line:
-    """Line along the cubic spline through points (k, 3) m, `chords` (k − 1,) m apart, with a `twist` (k,) rad there."""
+    """Line along the cubic spline through points (k, 3), m, which lie `chords` (k − 1,), m, apart.
+
+    At each point the sections are turned by `twist` (k,), rad, against a frame that does not turn about the line.
+    """
     from scipy.integrate import solve_ivp
     from scipy.interpolate import CubicSpline, make_interp_spline
     from scipy.spatial.transform import Rotation
@@ -320,6 +327,7 @@ def _curve(points: Floats, chords: Floats, twist: Floats) -> Line:
         return rate, first * rate, np.cross(first, bend(u)) * rate**3
 
     def change(u: float, y: Floats) -> Floats:
+        """Derivatives by u of the arc length and of a frame that does not turn about the line."""
         rate, _, turning = tangent(u)
         return np.append(1.0, np.cross(turning, y[1:].reshape(3, 3), axisb=0, axisc=0).ravel()) / rate
 

@@ -133,11 +133,13 @@ class Orthotropic(Value):
     fatigue_exponent: ClassVar[float] = FATIGUE_EXPONENT
 
     def __post_init__(self) -> None:
+        """Refuse axes that are not perpendicular, and moduli and ratios with which a strain has no energy."""
         for name in ("youngs_moduli", "poissons_ratios", "shear_moduli"):
             if len(getattr(self, name)) != 3:
                 raise InputError(name, f"has {len(getattr(self, name))} values", "give three")
         axes = np.asarray(self.axes, dtype=float)
-        if axes.shape != (2, 3) or not np.all(lengths := np.linalg.norm(axes, axis=1)):
+        lengths = np.linalg.norm(axes, axis=1) if axes.shape == (2, 3) else np.zeros(2)
+        if not np.all(lengths):
             raise InputError("axes", f"is {self.axes!r}", "give two directions, such as ((1, 0, 0), (0, 1, 0))")
         if abs(axes[0] @ axes[1]) > 1e-6 * lengths.prod():
             raise InputError("axes", "are not perpendicular", "give the directions of the material's axes 1 and 2")
@@ -147,7 +149,7 @@ class Orthotropic(Value):
 
     @property
     def _compliance(self) -> Any:
-        """Strains (6, 6) of unit stresses xx, yy, zz, yz, xz, xy in its own axes."""
+        """Compliance matrix: strains (6, 6) of unit stresses xx, yy, zz, yz, xz, xy, in the material's own axes."""
         (e1, e2, e3), (v12, v23, v13), (g12, g23, g13) = self.youngs_moduli, self.poissons_ratios, self.shear_moduli
         compliance = np.diag([1 / e1, 1 / e2, 1 / e3, 1 / g23, 1 / g13, 1 / g12])
         compliance[0, 1] = compliance[1, 0] = -v12 / e1
@@ -158,7 +160,7 @@ class Orthotropic(Value):
     @property
     def elasticity(self) -> Any:
         """Stresses (6, 6) Pa of unit strains xx, yy, zz, yz, xz, xy, base axes, with twice the tensor's shear."""
-        first, second = (each / np.linalg.norm(each) for each in np.asarray(self.axes, dtype=float))
+        first, second = (axis / np.linalg.norm(axis) for axis in np.asarray(self.axes, dtype=float))
         turned = np.stack([first, second, np.cross(first, second)], axis=1)
         pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
         voigt = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])

@@ -32,8 +32,9 @@ UPPER = np.triu_indices(3)
 
 
 def listed(name: str, value: Any) -> tuple[Matrix, ...]:
-    """Matrices, one per station, of an array (6, 6) or (stations, 6, 6), as tuples unless JAX traces them; InputError
-    unless they have this shape and are finite.
+    """Matrices, one for each station, of an array (6, 6) or (stations, 6, 6), as tuples unless JAX traces them.
+
+    InputError unless they have this shape and are finite.
     """
     matrices = array(name, value)
     traced = is_traced(matrices)
@@ -46,7 +47,7 @@ def listed(name: str, value: Any) -> tuple[Matrix, ...]:
 
 
 def refuse_impossible(dimensions: dict[str, tuple[Any, ...]]) -> None:
-    """Raise InputError if a matrix is not symmetric, the stiffness not positive definite, or the mass of no body."""
+    """Raise InputError if a matrix is not symmetric, a stiffness not positive definite, or a mass that of no body."""
     for name, matrices in dimensions.items():
         for i, matrix in enumerate(() if is_traced(*matrices) else np.asarray(matrices)):
             place = f"{name}[{i}]" if len(matrices) > 1 else name
@@ -69,14 +70,14 @@ def _least(matrix: Floats) -> float:
 
 
 def _refuse_no_body(place: str, matrix: Floats) -> None:
-    """Raise InputError unless a mass matrix (6, 6) is that of a rigid slice."""
+    """Raise InputError unless a mass matrix (6, 6) is a rigid slice's: m 1, m [c]× and moments of inertia."""
     if not matrix[0, 0] > 0:
         raise InputError(place, f"has the mass {matrix[0, 0]:g} kg/m", "give a positive one in the first three rows")
     mass, (x, y, z), _ = body_of(matrix)
     couples = mass * np.array([[0, z, -y], [-z, 0, x], [y, -x, 0]])
     size = mass * np.sqrt(max(float(np.abs(matrix[3:, 3:]).max()) / mass, 1e-300))
-    alike = np.abs(matrix[:3, :3] - mass * np.eye(3)).max() <= CLOSE * mass
-    if not alike or np.abs(matrix[:3, 3:] - couples).max() > CLOSE * size:
+    is_isotropic = np.abs(matrix[:3, :3] - mass * np.eye(3)).max() <= CLOSE * mass
+    if not is_isotropic or np.abs(matrix[:3, 3:] - couples).max() > CLOSE * size:
         fix = "give m 1, m [c]× and the moments of inertia about the axis of one and the same body"
         raise InputError(place, "is that of no rigid body", fix)
     if radii(matrix[None]) is None:
@@ -84,14 +85,15 @@ def _refuse_no_body(place: str, matrix: Floats) -> None:
 
 
 def body_of(matrix: Any) -> tuple[Any, Any, Any]:
-    """Mass kg/m, centre m and second moments ∫ r rᵀ dm about the centre, kg m, of mass matrices (..., 6, 6)."""
+    """Mass, kg/m, centre, m, and second moments ∫ r rᵀ dm about the centre, kg m, of mass matrices (..., 6, 6)."""
     xp, mass = namespace(matrix), matrix[..., 0, 0]
+    # The blocks beside the diagonal are m [c]×: each component of the centre stands there twice.
     z = (matrix[..., 0, 4] - matrix[..., 1, 3]) / 2 / mass
     y = (matrix[..., 2, 3] - matrix[..., 0, 5]) / 2 / mass
     x = (matrix[..., 1, 5] - matrix[..., 2, 4]) / 2 / mass
     centre = xp.stack([x, y, z], axis=-1)
-    about = (matrix[..., 3:, 3:] + xp.swapaxes(matrix[..., 3:, 3:], -1, -2)) / 2
-    second = xp.trace(about, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - about
+    inertia = (matrix[..., 3:, 3:] + xp.swapaxes(matrix[..., 3:, 3:], -1, -2)) / 2
+    second = xp.trace(inertia, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - inertia
     return mass, centre, second - mass[..., None, None] * centre[..., :, None] * centre[..., None, :]
 
 
@@ -105,7 +107,9 @@ def radii(matrix: Any) -> Any:
 
 
 def particles(matrix: Any, *, rotary: bool) -> tuple[Any, Any]:
-    """Shares of the mass (k, g) and places m (k, g, 3) of particles in place of slices (g, 6, 6)."""
+    """Particles that stand for slices with mass matrices (g, 6, 6): shares of the mass (k, g) and
+    places (k, g, 3), m.
+    """
     mass, centre, second = body_of(matrix)
     xp = namespace(mass)
     if not rotary:
@@ -113,25 +117,26 @@ def particles(matrix: Any, *, rotary: bool) -> tuple[Any, Any]:
     if not is_jax(mass):
         arms = np.moveaxis(radii(matrix) @ TETRAHEDRON.T, -1, 0)
         return np.full(arms.shape[:2], 1 / len(arms)), centre + arms
-    # A root has no derivative where a moment is zero, as along x in a slice: such moments move mass between places.
-    square = xp.trace(second, axis1=-2, axis2=-1) / mass
+    # A square root has no derivative at a moment of zero, as along x in a slice. Under JAX the places of a lattice are
+    # fixed, and the moments determine the shares of mass there.
+    square = xp.trace(second, axis1=-2, axis2=-1) / mass  # of the lattice's size
     square = xp.where(square > 0, square, 1.0)
-    about = second[:, *UPPER] / (mass * square)[:, None]
-    moments = xp.concatenate([xp.ones((len(mass), 1)), xp.zeros((len(mass), 3)), about], axis=1)
+    products_of_inertia = second[:, *UPPER] / (mass * square)[:, None]
+    moments = xp.concatenate([xp.ones((len(mass), 1)), xp.zeros((len(mass), 3)), products_of_inertia], axis=1)
     products = LATTICE[:, UPPER[0]] * LATTICE[:, UPPER[1]]
     to_shares = np.linalg.inv(np.column_stack([np.ones(len(LATTICE)), LATTICE, products]).T)
     return to_shares @ moments.T, centre + LATTICE[:, None] * xp.sqrt(square)[:, None]
 
 
 def between(stations: tuple[float, ...], matrices: tuple[Matrix, ...], x: Any) -> Floats:
-    """Matrices (..., 6, 6) at positions x (...), m, linear between the stations."""
+    """Matrices (..., 6, 6) at positions x (...), m, by linear interpolation between the stations."""
     xp = namespace(*matrices)
-    values, at = xp.asarray(matrices), np.asarray(x, dtype=float)
+    values, positions = xp.asarray(matrices), np.asarray(x, dtype=float)
     if not stations:
-        return xp.broadcast_to(values[0], (*at.shape, 6, 6))
-    i = np.clip(np.searchsorted(stations, at) - 1, 0, len(stations) - 2)
+        return xp.broadcast_to(values[0], (*positions.shape, 6, 6))
+    i = np.clip(np.searchsorted(stations, positions) - 1, 0, len(stations) - 2)
     low, high = np.asarray(stations)[i], np.asarray(stations)[i + 1]
-    share = np.clip((at - low) / (high - low), 0, 1)[..., None, None]
+    share = np.clip((positions - low) / (high - low), 0, 1)[..., None, None]
     return xp.asarray((1 - share) * values[i] + share * values[i + 1])
 
 
@@ -194,15 +199,17 @@ PROGRAMS = {
 
 
 def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str) -> tuple[Floats, Floats]:
-    """Stiffness and mass matrices (6, 6) of a file, in SI, whose unit of time is the second."""
+    """Stiffness and mass matrices (6, 6) of a file, in SI. The file's unit of time is the second."""
     if not existing(Path(path)):
         raise InputError("path", f"{path} is no file", "give the output of one section")
     refuse_large_file("path", path, TEXT_BYTES, "give the output of one section")
     lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    writers = [name for name, each in PROGRAMS.items() if _rows(lines, each.stiffness) or _rows(lines, each.mass)]
+    writers = [
+        name for name, program in PROGRAMS.items() if _rows(lines, program.stiffness) or _rows(lines, program.mass)
+    ]
     if not writers:
-        known = ", or ".join(f"the {each.ending} of {name}" for name, each in PROGRAMS.items())
-        raise InputError("path", f"{path} has no matrices of a section", f"give {known}; or the matrices themselves")
+        outputs = ", or ".join(f"the {program.ending} of {name}" for name, program in PROGRAMS.items())
+        raise InputError("path", f"{path} has no matrices of a section", f"give {outputs}; or the matrices themselves")
     program = PROGRAMS[writers[0]]
     matrices = []
     for kind, title in (("stiffness", program.stiffness), ("mass", program.mass)):
@@ -223,11 +230,11 @@ def _rows(lines: list[str], title: str) -> list[list[float]]:
 
 
 def _matrix(lines: list[str]) -> Iterator[list[float]]:
-    """Yield the first rows of six numbers that follow one another, six at most."""
+    """Yield the first six rows of six numbers that follow one another."""
     count = 0
     for line in lines:
         try:
-            row = [float(each.replace("D", "E")) for each in line.split()]
+            row = [float(number.replace("D", "E")) for number in line.split()]
         except ValueError:  # rules, names
             row = []
         if len(row) == 6:
@@ -249,8 +256,9 @@ ELEMENTS = 400  # in the area of a section, about, where no size is given
 
 
 def _analysed(outline: Any, holes: Any, element_size: float | None, ratio: float) -> Any:
-    """Return sectionproperties' analysis of an outline (k, 2) m with holes, by a Young's modulus of one and a Poisson's
-    ratio, and the size, m, that is its unit of length; InputError if the outline encloses no area.
+    """Analyse an outline (k, 2), m, with holes by sectionproperties, for a Young's modulus of one.
+
+    Returns its analysis and the size, m, that is its unit of length. InputError if the outline encloses no area.
     """
     try:
         from sectionproperties.analysis import Section
@@ -267,9 +275,8 @@ def _analysed(outline: Any, holes: Any, element_size: float | None, ratio: float
     area = polygon.area / ELEMENTS if element_size is None else np.sqrt(3) / 4 * element_size**2
     # In lengths of the section's own size: the mesher's slack is absolute.
     size = np.sqrt(polygon.area)
-    scaled = Polygon(
-        np.array(polygon.exterior.coords) / size, [np.array(each.coords) / size for each in polygon.interiors]
-    )
+    hole_corners = [np.array(hole.coords) / size for hole in polygon.interiors]
+    scaled = Polygon(np.array(polygon.exterior.coords) / size, hole_corners)
     geometry = Geometry(scaled, material=Unit("unit", 1.0, ratio, 1.0, 1.0, "grey"))
     section = Section(geometry.create_mesh(mesh_sizes=[area / size**2]))
     section.calculate_geometric_properties()
@@ -280,29 +287,33 @@ def _analysed(outline: Any, holes: Any, element_size: float | None, ratio: float
 def matrices_of(
     outline: Any, holes: Any, material: Material, axis: Any, element_size: float | None
 ) -> tuple[Floats, Floats]:
-    """Stiffness and mass matrices (6, 6) of a drawn section about an axis [y, z] m, or the centroid."""
+    """Stiffness and mass matrices (6, 6) of a drawn section about an axis [y, z], m, or about its centroid."""
     section, size = _analysed(outline, holes, element_size, material.ratio)
     modulus, shear = material.youngs_modulus, material.rigidity
     area = section.get_area() * size**2
-    about_y, about_z, product = (each * size**4 for each in section.get_eic())  # ∫z², ∫y² and ∫yz about the centroid
+    # ∫z² dA, ∫y² dA and ∫yz dA about the centroid.
+    about_y, about_z, product = (moment * size**4 for moment in section.get_eic())
     along_y, along_z, coupled = (getattr(section.section_props, name) for name in ("a_sx", "a_sy", "a_sxy"))
     # Shear flexibilities add as the energy of two shear forces does (Pilkey, Analysis and Design of Elastic Beams).
     flexibility = np.array([[1 / along_y, 1 / coupled], [1 / coupled, 1 / along_z]]) / (shear * size**2)
-    sheared = np.zeros((6, 6))
-    sheared[1:3, 1:3] = np.linalg.inv(flexibility)
-    sheared[3, 3] = shear * section.get_ej() * size**4
-    stretched, mass = np.zeros((6, 6)), np.zeros((6, 6))
-    stretched[0, 0] = modulus * area
-    stretched[4:, 4:] = modulus * np.array([[about_y, -product], [-product, about_z]])
+    shear_and_torsion = np.zeros((6, 6))
+    shear_and_torsion[1:3, 1:3] = np.linalg.inv(flexibility)
+    shear_and_torsion[3, 3] = shear * section.get_ej() * size**4
+    axial_and_bending, mass = np.zeros((6, 6)), np.zeros((6, 6))
+    axial_and_bending[0, 0] = modulus * area
+    axial_and_bending[4:, 4:] = modulus * np.array([[about_y, -product], [-product, about_z]])
     mass[:3, :3] = material.density * area * np.eye(3)
     mass[3, 3] = material.density * (about_y + about_z)
-    mass[4:, 4:] = stretched[4:, 4:] * material.density / modulus
-    centre, shear_centre = (np.array(each) * size for each in (section.get_c(), section.get_sc()))
+    mass[4:, 4:] = axial_and_bending[4:, 4:] * material.density / modulus
+    centre, shear_centre = np.array(section.get_c()) * size, np.array(section.get_sc()) * size
     origin = centre if axis is None else array("axis", axis)
     if origin.shape != (2,) or not np.isfinite(origin).all():
         raise InputError("axis", f"is {axis!r}", "give one place [y, z], m")
     at_centre, at_shear = _moved(*(centre - origin)), _moved(*(shear_centre - origin))
-    return at_centre.T @ stretched @ at_centre + at_shear.T @ sheared @ at_shear, at_centre.T @ mass @ at_centre
+    return (
+        at_centre.T @ axial_and_bending @ at_centre + at_shear.T @ shear_and_torsion @ at_shear,
+        at_centre.T @ mass @ at_centre,
+    )
 
 
 def _moved(y: float, z: float) -> Floats:

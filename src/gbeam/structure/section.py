@@ -176,13 +176,14 @@ class Section(Value):
         InputError
             If the shape, a dimension or a station is impossible.
         """
-        at = tuple(float(x) for x in np.atleast_1d(np.asarray(stations, dtype=float)))
+        positions = tuple(float(x) for x in np.atleast_1d(np.asarray(stations, dtype=float)))
         values: dict[str, tuple[Any, ...]] = {}
         for name, value in dimensions.items():
             if value is not None:
-                listed = (matrices if shape == MATRICES else _listed)(name, value)
-                values[name] = listed * len(at) if len(listed) == 1 and at else listed
-        return cls(shape, values, at, plate)
+                per_station = (matrices if shape == MATRICES else _listed)(name, value)
+                holds_everywhere = len(per_station) == 1 and positions
+                values[name] = per_station * len(positions) if holds_everywhere else per_station
+        return cls(shape, values, positions, plate)
 
     @property
     def arguments(self) -> dict[str, Any]:
@@ -310,7 +311,7 @@ class Section(Value):
         if not paths:
             raise InputError("paths", "are missing", "give a file of VABS or BECAS, or one per station")
         pairs = [read_matrices(path, length_unit, mass_unit) for path in paths]
-        stiffness, mass = (np.stack(each) for each in zip(*pairs, strict=True))
+        stiffness, mass = (np.stack(matrices) for matrices in zip(*pairs, strict=True))
         return cls.of(MATRICES, stations, stiffness=stiffness, mass=mass)
 
     @classmethod
@@ -358,8 +359,9 @@ class Section(Value):
         return xp.broadcast_to(y, np.shape(x)), xp.broadcast_to(z, np.shape(x))
 
     def stresses(self, x: ArrayLike) -> Floats | None:
-        """Stresses (points, 3, 6, s) Pa, normal and shear along two directions, by unit loads at positions `x` (s,), m;
-        None where the shape has no formulas, or JAX has the dimensions.
+        """Stresses (points, 3, 6, s), Pa, normal and along two shears, of unit loads at positions `x` (s,), m.
+
+        None if the shape has no formulas, or JAX has the dimensions.
         """
         formula, local = SHAPES[self.shape].stresses, self._local(x)
         if formula is None or any(map(is_jax, local.values())):
@@ -375,13 +377,14 @@ class Section(Value):
 
     def _local(self, x: ArrayLike) -> dict[str, Any]:
         """Dimensions at positions `x`, m, by name, linear between stations."""
-        at = array("x", x)
+        positions = array("x", x)
         if self.shape == MATRICES:
-            return {name: between(self.stations, each, at) for name, each in self.dimensions.items()}
-        xp = namespace(*(each for values in self.dimensions.values() for each in values))
-        if self.stations:
-            return {k: xp.interp(at, np.asarray(self.stations), xp.asarray(v)) for k, v in self.dimensions.items()}
-        return {k: v[0] + xp.zeros(at.shape) for k, v in self.dimensions.items()}
+            return {name: between(self.stations, matrices, positions) for name, matrices in self.dimensions.items()}
+        xp = namespace(*(value for values in self.dimensions.values() for value in values))
+        if not self.stations:
+            return {name: values[0] + xp.zeros(positions.shape) for name, values in self.dimensions.items()}
+        stations = np.asarray(self.stations)
+        return {name: xp.interp(positions, stations, xp.asarray(values)) for name, values in self.dimensions.items()}
 
 
 @record
@@ -415,19 +418,20 @@ _ROUND = 24  # directions of fibres of a round section; the worst lies within 7.
 
 
 def extreme_stresses(values: SectionValues, force: Any, moment: Any) -> tuple[Any, Any]:
-    """Largest and smallest normal stress (..., s) Pa, N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), or N/A ± √(M_y² + M_z²)
-    c/I of round sections, from force N and moment N m (..., s, 3) in section axes; NaN where extreme fibres are
-    unknown.
+    """Largest and smallest normal stress (..., s), Pa, from force, N, and moment, N m, (..., s, 3) in section axes.
+
+    They are N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), of round sections N/A ± √(M_y² + M_z²) c/I; NaN where extreme fibres
+    are unknown.
     """
     xp = namespace(force, moment, values.area)
-    along_z = moment[..., 1] * values.extreme_fibre_z / values.inertia_y
-    along_y = moment[..., 2] * values.extreme_fibre_y / values.inertia_z
+    bending_z = moment[..., 1] * values.extreme_fibre_z / values.inertia_y
+    bending_y = moment[..., 2] * values.extreme_fibre_y / values.inertia_z
     if values.round:
-        square = along_z**2 + along_y**2
-        bent = square > 0  # the root's derivative at zero is none that could be passed on
-        bending = xp.where(bent, xp.sqrt(xp.where(bent, square, 1.0)), square)
+        square = bending_z**2 + bending_y**2
+        is_bent = square > 0  # the root's derivative at zero is none that could be passed on
+        bending = xp.where(is_bent, xp.sqrt(xp.where(is_bent, square, 1.0)), square)
     else:
-        bending = xp.abs(along_z) + xp.abs(along_y)
+        bending = xp.abs(bending_z) + xp.abs(bending_y)
     mean = force[..., 0] / values.area
     return mean + bending, mean - bending
 
@@ -439,15 +443,16 @@ def fibre_stress(values: SectionValues, force: Any, moment: Any, y: Any, z: Any)
 
 
 def worst_fibres(values: SectionValues, force: Any, moment: Any) -> Any:
-    """Normal stress (t, s) Pa, N/A + M_y z/I_y − M_z y/I_z, at that corner of every section, or that of 24 points
-    around a round one, where it ranges most; force and moment (t, s, 3).
+    """Normal stress (t, s), Pa, of the fibre of every section whose stress ranges most; force and moment (t, s, 3).
+
+    It is N/A + M_y z/I_y − M_z y/I_z, compared at the corners of a section, or at 24 points around a round one.
     """
     points = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
     if values.round:
         points = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(_ROUND) / _ROUND]
     fibres = [(y * values.extreme_fibre_y, z * values.extreme_fibre_z) for y, z in points]
-    most = fibre_stress(values, force, moment, *fibres[0])
+    worst_stress = fibre_stress(values, force, moment, *fibres[0])
     for y, z in fibres[1:]:
         stress = fibre_stress(values, force, moment, y, z)
-        most = np.where(np.ptp(stress, axis=0) > np.ptp(most, axis=0), stress, most)
-    return most
+        worst_stress = np.where(np.ptp(stress, axis=0) > np.ptp(worst_stress, axis=0), stress, worst_stress)
+    return worst_stress

@@ -28,7 +28,11 @@ BLOCK = 1 << 21  # numbers at once
 
 
 def rectangle_stresses(width: Floats, thickness: Floats) -> Floats:
-    """Stresses of rectangles (s,) at points of their faces and at the centre, by unit loads, (points, 3, 6, s)."""
+    """Stresses (points, 3, 6, s) of rectangles (s,) under unit loads, at points of their faces and at the centre.
+
+    The components are normal stress and shear along y and z; the loads are axial force, shear along y and z, torque,
+    and moments about y and z.
+    """
     u, v = POINTS[:, :1], POINTS[:, 1:]
     area, about_y, about_z = width * thickness, width * thickness**3 / 12, thickness * width**3 / 12
     wide = width >= thickness
@@ -43,8 +47,9 @@ def rectangle_stresses(width: Floats, thickness: Floats) -> Floats:
 
 
 def saint_venant(long: Floats, thin: Floats, along: Floats, across: Floats) -> tuple[Floats, Floats]:
-    """Shear stresses of a rectangle, `long` by `thin` m, by a unit torque, in the directions of its long and short side
-    at places `along` and `across`, −1 to 1 of these (Timoshenko and Goodier, Theory of Elasticity, 109).
+    """Shear stresses of a rectangle, `long` by `thin` m, under a unit torque, along its long and its short side.
+
+    The places `along` and `across` are from −1 to 1 of these sides (Timoshenko and Goodier, Theory of Elasticity, 109).
     """
     n = TERMS[:, None, None] if np.ndim(along) > 1 else TERMS[:, None]
     half, reach = thin / 2, n * np.pi / 2
@@ -64,7 +69,9 @@ def saint_venant(long: Floats, thin: Floats, along: Floats, across: Floats) -> t
 
 
 def round_stresses(diameter: Floats, wall: Floats | None = None) -> Floats:
-    """Stresses of circles or tubes (s,) around their surface by unit loads, (points, 3, 6, s)."""
+    """Stresses (points, 3, 6, s) of circles or tubes (s,) around their surface under unit loads, as of
+    :func:`rectangle_stresses`.
+    """
     radius = diameter / 2
     inner = 0 * radius if wall is None else radius - wall
     area, inertia = np.pi * (radius**2 - inner**2), np.pi / 4 * (radius**4 - inner**4)
@@ -77,7 +84,7 @@ def round_stresses(diameter: Floats, wall: Floats | None = None) -> Floats:
 
 
 def von_mises(stresses: Floats | None, force: Any, moment: Any) -> Floats:
-    """Largest von Mises stress (t, s) Pa of sections by force and moment (t, s, 3); NaN where there are no formulas."""
+    """Largest von Mises stress (t, s), Pa, of sections under force and moment (t, s, 3); NaN without formulas."""
     carried = np.concatenate([force, moment], axis=-1)
     out = np.full(carried.shape[:2], np.nan)
     if stresses is None:
@@ -121,7 +128,7 @@ def general(
     extreme_fibre_z: Array | None = None,
     **_: Array,
 ) -> tuple[Array, ...]:
-    """Area, I_y, I_z, extreme fibres as they are given; fibres that are not are NaN, and there is no stress."""
+    """Area, I_y, I_z and extreme fibres as they are given. Fibres that are not given are NaN: there is no stress."""
     unknown = namespace(area).full_like(area, np.nan)
     return (
         area,

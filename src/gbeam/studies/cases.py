@@ -104,7 +104,10 @@ def read_cases(
 
 
 def _saltelli(points: np.ndarray) -> np.ndarray:
-    """Two halves A and B of points (n, 2 d), and A with each column of B in turn: ((d + 2) n, d); Saltelli (2010)."""
+    """Points ((d + 2) n, d) for Sobol indices, after Saltelli (2010), from the two halves A and B of points (n, 2 d).
+
+    They are A, B, and A with each column in turn taken from B.
+    """
     a, b = np.split(points, 2, axis=1)
     mixed = []
     for column in range(a.shape[1]):
@@ -114,7 +117,7 @@ def _saltelli(points: np.ndarray) -> np.ndarray:
 
 
 def _points(count: int, dimensions: int, sampler: str, seed: int) -> np.ndarray:
-    """Points in the open unit cube, (count, dimensions)."""
+    """Points (count, dimensions) in the open unit cube, by a sampler's name."""
     from scipy.stats import qmc  # half a second
 
     if sampler == "sobol":
@@ -193,7 +196,9 @@ def drawn_from(path: str, distribution: Distribution) -> Variation:
 
 
 def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
-    """Variation of a range FROM:TO:COUNT, both ends included."""
+    """Variation of a range FROM:TO:COUNT, which includes both ends, in equal steps or, if
+    `logarithmic`, equal ratios.
+    """
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError(OPTION, f"{path} has the range {text!r}", "write FROM:TO:COUNT, such as 1 m:12 m:12")
@@ -222,13 +227,13 @@ def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
 
 
 def _list(path: str, text: str) -> Variation:
-    """Variation of a list of quantities, which share a unit, or of words."""
+    """Variation of a list of words, or of quantities, which share a unit."""
     parts = [part.strip().strip('"') for part in text.split(",")]
     if not all(parts):
         raise InputError(OPTION, f"{path} has an empty value in {text.strip()!r}", "leave no comma without a value")
     if len(set(parts)) < len(parts):
-        twice = next(part for part in parts if parts.count(part) > 1)
-        raise InputError(OPTION, f"{path} has {twice!r} twice", "give each value once")
+        repeated = next(part for part in parts if parts.count(part) > 1)
+        raise InputError(OPTION, f"{path} has {repeated!r} twice", "give each value once")
     if all(NUMBER.fullmatch(part) for part in parts):
         with _of(path):
             values, unit = quantities(parts)

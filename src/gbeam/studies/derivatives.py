@@ -67,11 +67,14 @@ class Neighbourhood:
         adapt: Callable[[Any], Any] | None = None,
         progress: Progress = None,
     ) -> None:
+        """Build the case with these values of the parameters, and answer it, in the steps of `grids` if given."""
         self.inquiry, self.parameters, self.parts = inquiry, parameters, parts
         self._by_motion: dict[str, Differentiated] = {}
         self.edges = set[int]()  # parameters on one side of whose value the scenario refuses a step
         self.progress, self.adapt = progress, adapt or (lambda case: case)
-        self.values = [each.value for each in parameters] if values is None else [float(value) for value in values]
+        self.values = [parameter.value for parameter in parameters]
+        if values is not None:
+            self.values = [float(value) for value in values]
         self.case: Case = self._built(None, 0.0)
         # Runs are differentiated themselves, all other answers by differences.
         self.runs = inquiry.verb == "run" and _differentiable(self.case.system)
@@ -86,8 +89,10 @@ class Neighbourhood:
             self.answer = inquiry.facts(self.case)
 
     def slopes(self, read: Read, motions: Sequence[str] = (), *, rough: bool = False) -> Slopes:
-        """Derivatives of what `read` reads of the `motions`, all if empty. `rough` ones take half as many answers, on
-        one side of an edge of the scenario; those of other verbs then have no errors and bends.
+        """Derivatives, by all parameters, of the quantities that `read` takes from the answers in `motions`.
+
+        Without `motions` all are taken. `rough` ones take half as many answers: one-sided differences at an edge of the
+        scenario, and, of verbs other than run, no errors and bends.
         """
         if self.runs:
             return self._of_runs(read, motions or list(self.case.environments), rough)
@@ -97,9 +102,9 @@ class Neighbourhood:
             tell(self.progress, parameter.path, k / len(self.parameters))
             step = self._step(k, _FACTS)
             if rough:
-                less, more = (read(case, self.inquiry.facts(case)) for case in self._beside(k, step, rough))
+                smaller, larger = (read(case, self.inquiry.facts(case)) for case in self._beside(k, step, rough))
                 unknown = np.full(len(values), np.nan)
-                rows.append(((more - less) / (2 * step), unknown, unknown))
+                rows.append(((larger - smaller) / (2 * step), unknown, unknown))
                 continue
 
             def shifted(count: float, k: int = k, step: float = step) -> Floats:
@@ -175,8 +180,10 @@ class Neighbourhood:
         return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
 
     def _beside(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
-        """Cases with parameter `k` less and more by `step`. Where the scenario refuses one, `rough` takes the case
-        itself and one two steps to the other side, and notes that `k` is at an edge.
+        """Cases with parameter `k` smaller and larger by `step`.
+
+        Where the scenario refuses one of them, `rough` takes the case itself and one two steps to the other side, and
+        notes that `k` is at an edge.
         """
         ends = []
         for sign in (-1, 1):
@@ -186,12 +193,12 @@ class Neighbourhood:
                 if not rough:
                     raise
                 self.edges.add(k)
-                same, beyond = self._case(k, 0.0), self._case(k, -sign * 2 * step)
-                return (same, beyond) if sign < 0 else (beyond, same)
+                unchanged, beyond = self._case(k, 0.0), self._case(k, -sign * 2 * step)
+                return (unchanged, beyond) if sign < 0 else (beyond, unchanged)
         return ends[0], ends[1]
 
     def _case(self, k: int, step: float) -> Case:
-        """The case with parameter `k` more by `step`, a beam in the model of this case; InputError if refused."""
+        """Case with parameter `k` larger by `step`, and beams in the same model; InputError if it is refused."""
         parameter = self.parameters[k]
         try:
             case = self._built(k, step)
@@ -244,6 +251,7 @@ class Quantities:
         adapt: Callable[[Any], Any] = lambda case: case,
         progress: Progress = None,
     ) -> None:
+        """Prepare functions of the parameters; nothing is computed yet."""
         self._inquiry, self._parameters, self._read = inquiry, parameters, read
         self._motions, self._parts, self._adapt, self._progress = motions, parts, adapt, progress
         self._start = start if start is not None and start.runs else None
@@ -270,7 +278,7 @@ class Quantities:
         return tuple(nearby.edges)
 
     def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
-        """The values, the quantities at them and the neighbourhood, computed unless they are the last."""
+        """The values, the quantities at them, and the neighbourhood; computed unless the last values were the same."""
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
             try:
@@ -279,7 +287,8 @@ class Quantities:
                     adapt=self._shaped, progress=self._progress,
                 )  # fmt: skip
             except InputError as error:
-                tried = (f"{each.path} = {v:.6g} {each.unit}" for each, v in zip(self._parameters, values, strict=True))
+                pairs = zip(self._parameters, values, strict=True)
+                tried = (f"{parameter.path} = {value:.6g} {parameter.unit}" for parameter, value in pairs)
                 problem = f"allow {', '.join(tried)}, which the scenario refuses: {error.where} {error.problem}"
                 raise InputError("--bounds", problem, "give narrower ones") from None
             for name in self._motions if self._grids is not None else ():
@@ -296,13 +305,15 @@ class Quantities:
 
 
 def in_model_of(like: Case, case: Case) -> Case:
-    """The case with as many shapes as another, of every beam whose numbers are automatic there."""
-    bodies = {
-        name: remade(case.system.flexible[name], model_of(body), stations_asked(case.system.flexible[name]))
-        for name, body in like.automatic_beams.items()
-        if model_of(case.system.flexible[name]) != model_of(body)
-    }
-    return replace(case, system=replace(case.system, bodies={**case.system.bodies, **bodies})) if bodies else case
+    """Case whose beams have as many shapes as those of the case `like`, where the numbers are automatic there."""
+    changed = {}
+    for name, other in like.automatic_beams.items():
+        body = case.system.flexible[name]
+        if model_of(body) != model_of(other):
+            changed[name] = remade(body, model_of(other), stations_asked(body))
+    if not changed:
+        return case
+    return replace(case, system=replace(case.system, bodies={**case.system.bodies, **changed}))
 
 
 def _differentiable(system: System) -> bool:
@@ -329,8 +340,9 @@ def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Flo
 
 
 def _differences(shifted: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
-    """Central difference of fourth order, difference of the one-sided slopes, and difference from second order, (m,)
-    each; `shifted` gives the quantities a number of steps away.
+    """Difference of fourth order, difference of the one-sided slopes, and difference from second order, (m,) each.
+
+    `shifted` returns the quantities a number of steps away; `middle` are those at no steps.
     """
     inner = shifted(1.0), shifted(-1.0)
     slope, bend = _slope(inner[1], middle, inner[0], step)

@@ -97,7 +97,7 @@ class Inquiry:
         return answer_facts(answer, case.title)
 
     def row(self, number: int, overrides: Sequence[str]) -> Row:
-        """Compute one case; any exception becomes part of the row, so that the other cases go on."""
+        """Compute one case. An exception becomes part of its row, so that the other cases go on."""
         try:
             case = self.case(overrides)
             facts = self.facts(case) if self.keys or self.histories else NO_FACTS
@@ -106,11 +106,11 @@ class Inquiry:
         return self.measured(number, case, facts)
 
     def measured(self, number: int, case: Case, facts: Facts) -> Row:
-        """Row of a built case with the facts of the verb's answer to it."""
+        """Row of a built case, from the facts of the verb's answer to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys]
-            by_functions, problem = _measured(self.functions, case)
-            values += by_functions
+            function_values, problem = _measured(self.functions, case)
+            values += function_values
             for history in self.histories:
                 values += history.at(facts["study"], self.times).tolist()
         except Exception as error:
@@ -120,7 +120,7 @@ class Inquiry:
 
 
 def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
-    """Values of functions of a case, NaN of those that fail, and the reasons; raises the last one if all fail."""
+    """Values of functions of a case, NaN for those that fail, and the reasons. If all fail the last error is raised."""
     values, problems, last = [], [], Exception()
     for k, function in enumerate(functions):
         try:
@@ -135,7 +135,7 @@ def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], s
 
 
 def of_loads(keys: Keys) -> bool:
-    """True unless a figure is known to have the same digits where no loads are computed."""
+    """True if a figure may depend on the loads; False if it is known to be the same where none are computed."""
     match keys[0]:
         case "motions":
             keys = without_body(keys)
@@ -184,9 +184,9 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
 
 
 def settled(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
-    """Inquiry whose `together` stays true only if a case like this one gains by being integrated with the others.
+    """Inquiry that stays `together` only if cases like this one gain by being integrated together.
 
-    Automatic steps take several runs, which pay for many cases only; automatic numbers of shapes exclude it.
+    Automatic steps take several runs, which pay only for many cases. Automatic numbers of shapes exclude it.
     """
     settings = reduced(case, inquiry.needs).response
     if settings is None or not inquiry.together:
@@ -204,25 +204,26 @@ def rows(inquiry: Inquiry, tasks: Iterable[Task]) -> Iterator[Row]:
 
 
 def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
-    """Rows of cases, computed many at a time; neighbours with equal settings are integrated together."""
-    while many := list(islice(tasks, MANY)):
+    """Rows of cases, computed many at a time. Neighbours with equal settings are integrated together."""
+    while chunk := list(islice(tasks, MANY)):
         posed: list[Posed] = []
         systems: dict[tuple[str, ...], System] = {}
-        for number, overrides in many:
+        for number, overrides in chunk:
             try:
-                key = tuple(each for each in overrides if not each.startswith("motion."))  # motions share a structure
+                # Cases that differ only in their motion share a structure.
+                key = tuple(change for change in overrides if not change.startswith("motion."))
                 case = inquiry.template.changed(overrides).built(systems.get(key))
                 systems[key] = case.system
                 posed.append((number, case))
             except Exception as error:
                 yield without_figures(number, inquiry.width, error)
         # Settings differ where a motion's record ends at another time.
-        for _, group in groupby(posed, key=lambda each: each[1].response):
+        for _, group in groupby(posed, key=lambda numbered: numbered[1].response):
             yield from _answered(inquiry, list(group), one_structure=set(systems) == {()})
 
 
 def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:
-    """Rows of cases with the same settings, each as soon as all of its motions are answered."""
+    """Rows of cases with the same settings. Each is yielded as soon as all of its motions are answered."""
     settings = reduced(posed[0][1], inquiry.needs).response
     pairs = [(k, name) for k, (_, case) in enumerate(posed) for name in case.environments]
     answers: dict[int, dict[str, Response | Exception]] = {}  # of cases by index in `posed`, then by motion
@@ -238,25 +239,28 @@ def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) 
 def _responses(
     posed: Sequence[Posed], pairs: Sequence[tuple[int, str]], settings: Any, *, one_structure: bool
 ) -> Iterator[tuple[tuple[int, str], Response | Exception]]:
-    """Response, or exception, of each pair of a case's index in `posed` and a motion, in any order."""
-    left = dict.fromkeys(pairs)
+    """Response, or exception, for each pair of a case's index in `posed` and a motion, in any order.
+
+    An exception of one pair ends the batch: halves are then tried until the pair is alone.
+    """
+    pending = dict.fromkeys(pairs)
     try:
         cases = ((posed[k][1].system, posed[k][1].environments[name]) for k, name in pairs)
         for k, response in simulate_batch(cases, settings, one_structure=one_structure):
             case, name = pairs[k]
-            del left[case, name]
+            del pending[case, name]
             yield (case, name), replace(response, name=name, provenance=posed[case][1].provenance)
-    except Exception as error:  # of one pair, which ends the batch: halves are tried until it is alone
-        if len(left) == 1:
-            yield next(iter(left)), error
+    except Exception as error:
+        if len(pending) == 1:
+            yield next(iter(pending)), error
             return
-        rest, half = list(left), len(left) // 2
-        for part in (rest[:half], rest[half:]):
+        remaining, half = list(pending), len(pending) // 2
+        for part in (remaining[:half], remaining[half:]):
             yield from _responses(posed, part, settings, one_structure=one_structure)
 
 
 def _row(inquiry: Inquiry, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:
-    """Row of a case by its answers; a ComputationError is of one motion, any other exception ends the case."""
+    """Row of a case from its answers. A ComputationError concerns one motion; any other exception ends the case."""
     responses: dict[str, Response] = {}
     failures: dict[str, Failure] = {}
     try:

@@ -30,7 +30,7 @@ KIND = ""  # key in facts of the class of the answer; no figure's path begins so
 
 
 def answer_facts(answer: Any, title: str = "") -> Facts:
-    """Facts of an answer as of its JSON, but comparisons by the centrifuge's name and limits by axis and quantity."""
+    """Facts of an answer, as in its JSON, with comparisons by centrifuge and limits by axis and quantity."""
     from gbeam.results.facts import json_of
     from gbeam.results.study import by_motion
 
@@ -41,10 +41,11 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
             motion["limits"] = _by_axis(motion["limits"])
     if "comparisons" in facts:
         # The figures that may be limited stand under the verdict whether or not a limit is given.
-        facts["comparisons"] = {
-            each.centrifuge: {**compared, "verdict": each.figures | _accepted(compared.pop("accepted"))}
-            for each, compared in zip(answer.comparisons, facts["comparisons"], strict=True)
-        }
+        by_centrifuge = {}
+        for comparison, pair_facts in zip(answer.comparisons, facts["comparisons"], strict=True):
+            verdict = comparison.figures | _accepted(pair_facts["accepted"])
+            by_centrifuge[comparison.centrifuge] = {**pair_facts, "verdict": verdict}
+        facts["comparisons"] = by_centrifuge
     if hasattr(answer, "responses"):
         facts["study"] = answer  # for histories
     kind = type(answer[0]) if several else type(answer)
@@ -53,7 +54,7 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
 
 @cache  # by kind, whose declarations do not change; nobody writes into it
 def tree_of_figures(kind: type) -> dict[str, Any]:
-    """Declared entries of answers of a class, as a tree like that of `answer_facts`; ANY is any name."""
+    """Declared entries of the answers of a class, as a tree like `answer_facts`; the key ANY stands for any name."""
     from gbeam.results.criteria import RULES
     from gbeam.results.facts import ANY, Entry
     from gbeam.results.study import tree_of_answers
@@ -77,9 +78,9 @@ def choices(verb: str) -> dict[str, Entry]:
 
 
 def _message(answer: Any) -> str:
-    """Reasons, by motion, for which there is no answer or it is refused; empty if there are none."""
+    """Reasons, by motion, why there is no answer, or why it is refused; empty if there are none."""
     if isinstance(answer, tuple):
-        reasons = {each.name: each.message or each.refusal for each in answer if hasattr(each, "refusal")}
+        reasons = {plan.name: plan.message or plan.refusal for plan in answer if hasattr(plan, "refusal")}
     elif hasattr(answer, "unfinished"):
         reasons = {name: failure.message for name, failure in answer.unfinished.items()} or answer.refusals
     else:
@@ -113,29 +114,35 @@ def find(facts: Facts, name: str) -> Keys:
     # Of the only body that deforms, its name may be left out.
     fits = fits or [path for path, keys in keys_of.items() if f".{path_text(without_body(keys))}".endswith(wanted)]
     if not fits:
-        ends = {path[at:] for path in keys_of for at in [0, *(dot.end() for dot in re.finditer(r"\.", path))]}
-        near = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
-        fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
+        ends = set()
+        for path in keys_of:
+            steps = path.split(".")
+            ends |= {".".join(steps[first:]) for first in range(len(steps))}
+        guess = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
+        fix = f"did you mean {guess!r}?" if guess else "list names every figure, with its unit"
         if name.endswith("verdict.accepted"):
             fix = "a verdict is accepted or not by limits: set them in [motion.NAME.accept]"
         raise InputError(OPTION, f"{name!r} is no figure of this", fix)
     if len(fits) > 1 and name not in fits:
-        shown = ", ".join(fits[:_MANY]) + (", …" if len(fits) > _MANY else "")
-        raise InputError(OPTION, f"{name!r} could be any of {len(fits)} figures", f"name one of {shown}")
+        choices = ", ".join(fits[:_MANY]) + (", …" if len(fits) > _MANY else "")
+        raise InputError(OPTION, f"{name!r} could be any of {len(fits)} figures", f"name one of {choices}")
     return keys_of[name if name in fits else fits[0]]
 
 
 def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
-    """Refuse a name that no figure of a question can have, before anything is computed."""
+    """Refuse a name that no figure of a verb can have, before anything is computed."""
     paths = [_segments(path) for path in choices(verb)]
     for name in names:
         ends = _segments(name)
         if '"' not in name and not any(_fits(ends, path) for path in paths):
-            lasts = (path[-len(ends) :] for path in paths)
             # Ends of paths as long as the name, with the name's own words where any name may stand.
-            pairs_of = (zip(last, ends[-len(last) :], strict=True) for last in lasts)
-            near = closest(name, [".".join(end if key == "*" else key for key, end in pairs) for pairs in pairs_of])
-            fix = f"did you mean {near!r}?" if near else "list names every figure, with its unit"
+            candidates = []
+            for path in paths:
+                last = path[-len(ends) :]
+                pairs = zip(last, ends[-len(last) :], strict=True)
+                candidates.append(".".join(end if key == "*" else key for key, end in pairs))
+            guess = closest(name, candidates)
+            fix = f"did you mean {guess!r}?" if guess else "list names every figure, with its unit"
             raise InputError(option, f"{name!r} is no figure of {verb}", fix)
 
 
@@ -150,8 +157,9 @@ def _segments(path: str) -> list[str]:
 
 
 def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
-    """True if a path can end in these keys; its ``*`` are any names, which may contain dots, and a body's may be left
-    out.
+    """True if a path can end in the keys `ends`. Its ``*`` stand for any name, which may contain dots.
+
+    The name of a body may be left out.
     """
     if BODIES in path and _fits(ends, without_body(path)):
         return True
@@ -170,18 +178,19 @@ def _ending(path: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
-    """Figures of a verb that are taken where none is named; those of comparisons only if `judged`.
+    """Figures of a verb that are taken if none is named; those of comparisons only if `judged`.
 
     These begin with what the verdict is on: limits of acceptance, or the largest load where there is none.
     """
     case = template.built()
     patterns, deforming = question_of(verb).usual, tuple(case.system.flexible)
     limited = [name for name in case.tracks if case.accept.get(name)]
-    figures = [each for each in patterns if "{judged}" in each]  # the flight alone is in all cases of a machine
-    figures += [each.replace("{motion}", name) for name in case.environments for each in patterns if "{motion}" in each]
-    figures += [each for each in patterns if not any(key in each for key in ("{judged}", "{motion}"))]
+    figures = [pattern for pattern in patterns if "{judged}" in pattern]
+    for name in case.environments:
+        figures += [pattern.replace("{motion}", name) for pattern in patterns if "{motion}" in pattern]
+    figures += [pattern for pattern in patterns if not any(key in pattern for key in ("{judged}", "{motion}"))]
     if len(deforming) == 1:
-        figures = [each.replace(f"{BODIES}.{{body}}.", "") for each in figures]
+        figures = [figure.replace(f"{BODIES}.{{body}}.", "") for figure in figures]
     limits = ((name, limit) for name in case.tracks for limit in case.accept.get(name) or ("largest_load",))
     names_by_key: dict[str, Sequence[str]] = {
         "{body}": deforming,
@@ -190,8 +199,8 @@ def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, 
         "{judged}": [f"{name}.verdict.{limit}" for name, limit in limits],
     }
     for key, words in names_by_key.items():
-        figures = [each.replace(key, name) for each in figures for name in (words if key in each else ("",))]
-    return tuple(dict.fromkeys(each for each in figures if judged or not each.startswith("comparisons.")))
+        figures = [figure.replace(key, name) for figure in figures for name in (words if key in figure else ("",))]
+    return tuple(dict.fromkeys(figure for figure in figures if judged or not figure.startswith("comparisons.")))
 
 
 def value_at(facts: Facts, keys: Keys) -> float:
@@ -227,7 +236,7 @@ def own_keys(keys: Keys) -> Keys:
 
 
 def _figures(node: Any, keys: Keys = ()) -> Iterator[tuple[Keys, float]]:
-    """Keys and value of every number, truth and missing value (None) in the facts."""
+    """Keys and value of every number, truth value and missing value (None) in the facts."""
     if isinstance(node, Mapping):
         for key, value in node.items():
             yield from _figures(value, (*keys, str(key)))
@@ -259,7 +268,7 @@ class History:
     unit: str  # SI
 
     def at(self, study: Study, times: Floats) -> Floats:
-        """Values at times (t,); NaN where the response has none."""
+        """Values at times (t,), s; NaN where the response has none."""
         response = study.responses.get(self.motion)
         if response is None:
             return np.full(len(times), math.nan)
@@ -273,8 +282,9 @@ class History:
 
 
 def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History:
-    """Read a history of a case, a signal of its responses such as ``flight.tip.z``; the motion's name and a dot may be
-    left out where there is only one, or it is `chosen`.
+    """Read a history of a case: a signal of its responses, such as ``flight.tip.z``.
+
+    The motion's name may be left out if there is only one, or if it is the `chosen` one.
     """
     units, names = signals_of_case(case), list(case.environments)
     motion = next((name for name in names if text.startswith(f"{name}.") and text not in units), "")
@@ -287,15 +297,16 @@ def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None
     motion = motion or chosen or (names[0] if len(names) == 1 else "")
     if not motion:
         raise InputError(where, f"{text!r} leaves the motion out", f"write {names[0]}.{text}")
-    moved = case.environments[motion]
-    if signal in _OF_HUBS and HUB not in case.system.joints and (moved is None or moved.kind != HUB):
+    motion_object = case.environments[motion]
+    if signal in _OF_HUBS and HUB not in case.system.joints and (motion_object is None or motion_object.kind != HUB):
         raise InputError(where, f"has {text!r}, and {motion} is no hub", "leave it out")
     return History(text, motion, signal, units[signal])
 
 
 def signals_of_case(case: Case) -> dict[str, str]:
-    """SI units of the signals that responses to a case have, by name; those of a body that alone deforms are there
-    without its name too.
+    """SI units, by name, of the signals that responses to a case have.
+
+    If a single body deforms, its signals are also there without its name.
     """
     from gbeam.mechanics.tree.signals import signals_of
 
@@ -304,6 +315,8 @@ def signals_of_case(case: Case) -> dict[str, str]:
         units |= {f"{name}.{point}.{axis}": "m" for point in stations_of(body) for axis in "xyz"}
         units |= {f"{name}.{load}.{axis}": unit for load, unit in _LOADS.items() for axis in "xyz"}
     units |= signals_of(case.system)
-    only = [f"{name}." for name in owners if len(owners) == 1]
-    short = {each.removeprefix(of): unit for of in only for each, unit in units.items() if each.startswith(of)}
+    short = {}
+    if len(owners) == 1:
+        prefix = f"{next(iter(owners))}."
+        short = {signal.removeprefix(prefix): unit for signal, unit in units.items() if signal.startswith(prefix)}
     return short | units | _OF_HUBS

@@ -182,7 +182,10 @@ def _described(
 
 
 def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int) -> tuple[FittedColumn, ...]:
-    """Each measured column with the model's values, its noise and the correlation of neighbouring residuals."""
+    """Each measured column with the model's values, its noise, and the correlation of neighbouring residuals.
+
+    `size` is the number of parameters, `before` are the model's values before the fit.
+    """
     ends = np.cumsum([len(column.values) for column in measurement.columns])[:-1]
     share = 1 - size / len(fitted)  # of the degrees of freedom that the parameters leave
     columns = []
@@ -202,16 +205,17 @@ def _doubts(
     correlation: Floats,
     columns: Sequence[FittedColumn],
 ) -> Iterator[str]:
-    """Warn of values on bounds, pairs that are hardly told apart, and residuals that are not noise."""
-    names = [each.path for each in parameters]
+    """Warn of values on bounds, of pairs that the data hardly tell apart, and of residuals that are not noise."""
+    names = [parameter.path for parameter in parameters]
     for k, name in enumerate(names):
         if at_edge[k]:
             yield f"{name} lies at the edge of what the scenario allows, and has no error"
         elif at_bound[k]:
             yield f"{name} lies on its bound: the least squares are beyond, and it has no error"
         for j in range(k):
-            if abs(both := float(correlation[k, j])) > _HARDLY:
-                yield f"the data hardly tell {names[j]} and {name} apart: their errors have a correlation of {both:.4f}"
+            pair = float(correlation[k, j])
+            if abs(pair) > _HARDLY:
+                yield f"the data hardly tell {names[j]} and {name} apart: their errors have a correlation of {pair:.4f}"
     for column in columns:
         if column.correlation > _TIED and column.noise > _VISIBLE * np.abs(column.measured).max():
             yield (
@@ -242,7 +246,7 @@ class Solution:
 def _search(
     model: Quantities, measurement: Measurement, parameters: Sequence[PhysicalValue], start: Floats, limits: Floats
 ) -> Solution:
-    """Solve least squares from `start` (p,), again while the columns' weights, from the residuals, still change."""
+    """Solve the least squares from `start` (p,), again while the columns' weights, from the residuals, change."""
     from scipy.optimize import least_squares
 
     measured = measurement.values
@@ -280,11 +284,13 @@ def _search(
 
 
 def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
-    """Condition number of weighted derivatives (m, p), columns scaled to unit length; ComputationError if a parameter
-    changes no data, or two change them alike.
+    """Condition number of weighted derivatives (m, p), with columns scaled to unit length.
+
+    ComputationError if a parameter changes no data, or if parameters change them alike, so that a singular value
+    vanishes.
     """
     lengths = np.linalg.norm(jacobian, axis=0)
-    names = [each.path for each in parameters]
+    names = [parameter.path for parameter in parameters]
     least = max(_ALIKE * lengths.max(), _IDLE)
     idle = [name for name, length in zip(names, lengths, strict=True) if length <= least]
     if idle:

@@ -51,7 +51,7 @@ class Journal:
         return not first or len({row["case"] for row in rows if row}) >= first["cases"]
 
     def read(self) -> list[Row]:
-        """Return the cases done, none without a store; InputError if the store is another sweep's."""
+        """Return the cases that are done, none without a store. InputError if the store is another sweep's."""
         first, rows = self._known()
         if not first:
             return []
@@ -75,7 +75,7 @@ class Journal:
 
     @contextmanager
     def writing(self, *, resume: bool) -> Iterator[None]:
-        """Open the store for `add`; InputError if another process has it open, or it would be overwritten."""
+        """Open the store for `add`. InputError if another process has it open, or if its cases would be overwritten."""
         with ExitStack() as held:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
@@ -88,7 +88,7 @@ class Journal:
             yield
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Append rows and synchronise; ComputationError if the disk refuses, or the file was removed."""
+        """Append rows and synchronise the file. ComputationError if the disk refuses, or the file was removed."""
         assert self._out is not None
         text = b""
         for row in rows:
@@ -121,12 +121,13 @@ class Journal:
         self._seed = json.loads(whole[0])["crc32"]
         if lines and len(whole) == len(lines):
             return
-        beside = self._file.with_suffix(".new")
-        with open(beside, "wb") as out:
+        # A new file takes the place of the old one at once: an interruption leaves one of them whole.
+        new_file = self._file.with_suffix(".new")
+        with open(new_file, "wb") as out:
             out.writelines(whole)
             out.flush()
             os.fsync(out.fileno())
-        os.replace(beside, self._file)
+        os.replace(new_file, self._file)
         if os.name == "posix":  # synchronise the file's name too
             folder = os.open(self.folder, os.O_RDONLY)
             try:
@@ -189,14 +190,14 @@ def _row(line: Mapping[str, Any]) -> Row:
 def identity(inquiry: Inquiry, cases: Cases, measures: Sequence[str], histories: Sequence[Any]) -> dict[str, Any]:
     """Identity of a sweep, for JSON: version, scenario, question, values that vary, and measures."""
     digest = hashlib.sha256()
-    for each in cases.variations:
-        for text in each.texts:
+    for variation in cases.variations:
+        for text in variation.texts:
             digest.update(text.encode() + b"\n")
     return {
         "version": gbeam.__version__,
         **inquiry.template.identity,
         "question": [inquiry.verb, inquiry.motion, inquiry.at, dict(inquiry.options)],
-        "parameters": [each.path for each in cases.variations],
+        "parameters": [variation.path for variation in cases.variations],
         "values": digest.hexdigest(),
         "measures": list(measures),
         "histories": list(histories),
@@ -207,7 +208,7 @@ def identity(inquiry: Inquiry, cases: Cases, measures: Sequence[str], histories:
 def opened(
     store: str | os.PathLike[str] | None, resume: bool, sweep: Mapping[str, Any]
 ) -> tuple[Journal | None, list[Row]]:
-    """Journal of a sweep, None without a store, and the rows done in it; InputError if cases would be lost."""
+    """Journal of a sweep, None without a store, and the rows that it has. InputError if cases would be lost."""
     if store is None:
         if resume:
             raise InputError("--resume", "stands without a store", "name the folder with --out")

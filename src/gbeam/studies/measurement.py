@@ -80,8 +80,10 @@ class Measurement:
         return {"loads": any("root_" in each.quantity or each.face for each in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
-        """Reciprocals (m,) of the noise, estimated from residuals (m,) of a fit of `freed` values, or assumed for None.
-        It is the same at all times of a column, and in proportion to the values of modes.
+        """Reciprocals (m,) of the noise of the data.
+
+        The noise is estimated from residuals (m,) of a fit of `freed` values, or assumed if they are None. It is the
+        same at all times of a column, and in proportion to the values of modes.
         """
         weights, first = [], 0
         for column in self.columns:
@@ -92,19 +94,19 @@ class Measurement:
             noise = _USUAL[column.quantity] if self.modal else _USUAL["history"]
             if residuals is not None and len(size) > 2 * freed + 2:  # fewer data say nothing of the noise
                 shares = residuals[rows] / size
-                left = 1 - freed / len(self.values)
-                noise = max(float(np.sqrt(np.mean(shares**2) / left)), _LEAST * noise)
+                degrees_share = 1 - freed / len(self.values)
+                noise = max(float(np.sqrt(np.mean(shares**2) / degrees_share)), _LEAST * noise)
             weights.append(1 / (noise * size))
         return np.concatenate(weights)
 
     def instrumented(self, case: Case) -> Case:
-        """The case, its beams with the positions of strain gauges among their stations."""
+        """Case whose beams have the positions of the strain gauges among their stations."""
         bodies = dict(case.system.bodies)
-        for each in self.columns:
-            if isinstance(each.at, float) and each.at > 0:
-                body = case.system.flexible[each.body]
-                at = {gauge.at for gauge in self.columns if gauge.body == each.body}
-                bodies[each.body] = remade(body, model_of(body), sorted({*stations_asked(body), *at} - {0.0}))
+        for column in self.columns:
+            if isinstance(column.at, float) and column.at > 0:
+                body = case.system.flexible[column.body]
+                positions = {gauge.at for gauge in self.columns if gauge.body == column.body}
+                bodies[column.body] = remade(body, model_of(body), sorted({*stations_asked(body), *positions} - {0.0}))
         return replace(case, system=replace(case.system, bodies=bodies))
 
     def read(self, case: Case, answer: Any) -> Floats:
@@ -115,6 +117,7 @@ class Measurement:
         return np.concatenate([self._history(case, study, each) for each in self.columns])
 
     def _history(self, case: Case, answer: Study, column: Measured) -> Floats:
+        """Values at the measured times: a signal of the response, or the strain of a gauge."""
         if not column.face:
             return History(column.name, column.motion, column.quantity, column.unit).at(answer, self.at)
         from scipy.interpolate import CubicSpline
@@ -138,7 +141,7 @@ def read_measurement(path: str | os.PathLike[str], case: Case, motion: str | Non
 
 
 def _read(path: str, case: Case, motion: str | None) -> Measurement:
-    """The measurement in a file; InputError unless it has a clock, time or mode, and further columns."""
+    """Measurement in a file. InputError unless it has a column of times or modes, and further columns."""
     table = read_text(path)
     names = {(column.aliases or (column.name,))[0]: column.unit for column in table.columns}
     clock = next((name for name in names if name.lower() in (*_TIME, _MODE)), None)
@@ -147,24 +150,27 @@ def _read(path: str, case: Case, motion: str | None) -> Measurement:
     if motion is not None and motion not in case.environments:
         raise InputError("--motion", f"is {motion!r}", f"the scenario has {', '.join(case.environments)}")
     modal = clock.lower() == _MODE
-    at = table.numbers("file", clock) * _factor(names[clock], "time" if not modal else "ratio", clock)
-    others = [name for name in names if name != clock]
-    if not others:
+    clock_values = table.numbers("file", clock) * _factor(names[clock], "time" if not modal else "ratio", clock)
+    names_of_data = [name for name in names if name != clock]
+    if not names_of_data:
         examples = "frequency" if modal else "tip.z or root_moment.y"
         raise InputError(OPTION, f"{path} has nothing but {clock}", f"add columns such as {examples}")
-    _check_clock(at, path, modal, case, list(case.environments) if motion is None else [motion])
-    columns = tuple(_column(table, name, names[name], modal, case, motion) for name in others)
-    return Measurement(path, at, modal, columns)
+    _check_clock(clock_values, path, modal, case, list(case.environments) if motion is None else [motion])
+    columns = tuple(_column(table, name, names[name], modal, case, motion) for name in names_of_data)
+    return Measurement(path, clock_values, modal, columns)
 
 
 def _check_clock(at: Floats, path: str, modal: bool, case: Case, motions: Sequence[str]) -> None:
-    """Raise InputError unless times increase within the responses in motions, or modes are numbered once each."""
+    """Raise InputError unless times increase within the responses in all motions, or each mode is numbered once."""
     if modal:
         if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
         return
     settings = [case.settings_of(name) for name in motions]
-    start, end = max(each.start for each in settings), min(each.start + each.duration for each in settings)
+    start, end = (
+        max(setting.start for setting in settings),
+        min(setting.start + setting.duration for setting in settings),
+    )
     if len(at) < 2:
         raise InputError(OPTION, f"{path} has one time", "give two or more, which increase")
     if (np.diff(at) <= 0).any():
@@ -176,14 +182,15 @@ def _check_clock(at: Floats, path: str, modal: bool, case: Case, motions: Sequen
 
 
 def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion: str | None) -> Measured:
-    """A column of the file in SI, with its quantity and the motion that its name or `motion` says."""
+    """A column of the file in SI, with its quantity and the motion that its name or else `motion` says."""
     values = table.numbers("file", name)
     if modal:
         if name not in _MODAL:
             raise InputError(OPTION, f"has the column {name!r}", advise(name, _MODAL))
         kind, si = _MODAL[name]
         return Measured(name, motion or "", name, values * _factor(unit, kind, name), si)
-    if (strain := _STRAIN.fullmatch(name)) is not None:
+    strain = _STRAIN.fullmatch(name)
+    if strain is not None:
         return _gauge(name, unit, values, strain, case, motion)
     signal = read_history(name, case, OPTION, motion)
     factor = _factor(unit, _KIND_OF[signal.unit], name)
@@ -191,8 +198,9 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion:
 
 
 def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Case, motion: str | None) -> Measured:
-    """A column of a strain gauge, ``flight.strip.strain.z@10 mm``: of a motion, and a body that deforms, whose names
-    may be left out where there is only one.
+    """A column of a strain gauge, such as ``flight.strip.strain.z@10 mm``.
+
+    Its name has the motion and the body that deforms; each may be left out if there is only one.
     """
     owners, (prefix, face, place) = case.system.flexible, strain.groups()
     names = prefix.split(".")[:-1]
@@ -204,8 +212,8 @@ def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Ca
     if body.source is not None and face.endswith("x"):
         raise InputError(OPTION, f"has the column {name!r}", "write strain.z@10 mm: the face is towards y or z")
     factor = _MICROSTRAIN.get(unit) or _factor(unit, "ratio", name)
-    at: float | str = (_gauged if body.source is None else _position)(place, face, body)
-    return Measured(name, run, "strain", values * factor, unit="", at=at, face=face, body=owner)
+    gauge_place: float | str = (_gauge_point if body.source is None else _position)(place, face, body)
+    return Measured(name, run, "strain", values * factor, unit="", at=gauge_place, face=face, body=owner)
 
 
 def _factor(unit: str, kind: str, name: str) -> float:
@@ -213,8 +221,8 @@ def _factor(unit: str, kind: str, name: str) -> float:
     return read_quantity(OPTION, f"1 {unit}" if unit else "1", kind, f"has the column {name!r} in {unit!r}: ")
 
 
-def _gauged(text: str, axis: str, solid: Structure) -> str:
-    """Return the gauge's point, stripped; InputError unless the solid has a strain there along `axis`."""
+def _gauge_point(text: str, axis: str, solid: Structure) -> str:
+    """Return the name of the gauge's point. InputError unless the solid has a strain there along `axis`."""
     name, recovery = text.strip(), solid.recovery
     if recovery is None:
         raise InputError(OPTION, f"has a gauge at {name!r}, on no mesh", "leave it out")
@@ -230,16 +238,18 @@ def _way(axis: str) -> Floats:
 
 
 def _position(text: str, face: str, structure: Structure) -> float:
-    """Position of a gauge on a face of the beam, m."""
+    """Position of a gauge on a face of a beam, m, from a named point or a length."""
     assert structure.source is not None
     beam = structure.source.beam
-    at = beam.named_points.get(text.strip())
-    at = read_quantity(OPTION, text.strip(), "length", f"has a gauge at {text!r}: ") if at is None else at
+    position = beam.named_points.get(text.strip())
+    position = (
+        read_quantity(OPTION, text.strip(), "length", f"has a gauge at {text!r}: ") if position is None else position
+    )
     try:
-        surface_gauge(beam, at, face)
+        surface_gauge(beam, position, face)
     except InputError as error:
         raise InputError(OPTION, f"has a gauge that {error.problem}", error.fix) from None
-    return float(at)
+    return float(position)
 
 
 def _only_motion(case: Case, name: str) -> str:
@@ -257,7 +267,7 @@ def _modal(facts: Mapping[str, Any], quantity: str, mode: int) -> float:
 
 
 def _strain(case: Case, response: Response, column: Measured) -> Floats:
-    """History, at the response's own times, of the strain of a gauge."""
+    """Strain of a gauge over the response's own times: of a solid at a point, of a beam by the section's loads."""
     body, source = response.bodies[column.body], case.system.flexible[column.body].source
     if isinstance(column.at, str):
         return body.strain_at(column.at, _way(column.face).tolist())

@@ -162,7 +162,7 @@ def _error(answer: Any) -> float:
 
 
 def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) -> Goal:
-    """Goal by the texts of its figures, which must have values in these facts; InputError unless they do."""
+    """Goal from the texts of objective and requirements. InputError unless their figures have values in `facts`."""
     objective = figure(facts, minimise, OPTION)
     required: list[tuple[str, Keys, float, float]] = []
     for text in subject_to:
@@ -173,17 +173,17 @@ def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) ->
                 raise InputError(SUBJECT, "names limits, of which the scenario has none", fix)
             required += limits
             continue
-        match = _BOUND.fullmatch(text)
-        if match is None:
+        bound = _BOUND.fullmatch(text)
+        if bound is None:
             raise InputError(SUBJECT, f"is {text!r}", 'write "limits", or "tip.z.max_abs <= 2 mm"')
-        keys = figure(facts, match[1], SUBJECT)
-        value = _bound(match[3], unit_at(facts, keys), match[1])
-        required.append((match[1], keys, -math.inf, value) if match[2] == "<=" else (match[1], keys, value, math.inf))
+        keys = figure(facts, bound[1], SUBJECT)
+        value = _bound(bound[3], unit_at(facts, keys), bound[1])
+        required.append((bound[1], keys, -math.inf, value) if bound[2] == "<=" else (bound[1], keys, value, math.inf))
     return Goal(objective, tuple(required), unit_at(facts, objective))
 
 
 def _machine_limits(facts: Facts) -> Any:
-    """Name, keys and bounds of every finite limit of a machine, as requirements of a Goal."""
+    """Yield name, keys and bounds of every finite limit of a machine, as the requirements of a Goal have them."""
     for name, motion in facts.get("motions", {}).items():
         for axis, uses in motion.get("limits", {}).items():
             for quantity, use in uses.items():

@@ -61,7 +61,7 @@ class PhysicalValue:
 
 
 def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[PhysicalValue]:
-    """Return the values of these paths or patterns; by default every usual one that is not zero."""
+    """Return the physical values at these paths or patterns; by default every usual one that is not zero."""
     quantities = scenario.quantities()
     possible = [path for path in quantities if _why_fixed(path) is None]
     if not names:
@@ -70,18 +70,21 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
     chosen: list[PhysicalValue] = []
     for name in names:
         places = _matching(name, possible) or ((name,) if name in quantities else ())
-        if twice := [path for path in places if any(path in each.places for each in chosen)]:
-            raise InputError("--with", f"names {twice[0]} twice", "name each value once")
+        repeated = [path for path in places if any(path in value.places for value in chosen)]
+        if repeated:
+            raise InputError("--with", f"names {repeated[0]} twice", "name each value once")
         if not places:
             path, equals, _ = name.partition("=")
             fix = advise(path, possible, listed="the scenario has")
             if equals and path in possible:
                 fix = f"give {path} alone; a range is one of the bounds"
             raise InputError("--with", f"{name!r} is no physical value that the scenario gives", fix)
-        if (why := _why_fixed(name)) is not None:
-            raise InputError("--with", f"{name} {why}", "leave it out, or compare runs by gbeam sweep")
-        if other := [path for path in places if quantities[path] != quantities[places[0]]]:
-            pair = ((path, *quantities[path]) for path in (places[0], other[0]))
+        reason = _why_fixed(name)
+        if reason is not None:
+            raise InputError("--with", f"{name} {reason}", "leave it out, or compare runs by gbeam sweep")
+        differing = [path for path in places if quantities[path] != quantities[places[0]]]
+        if differing:
+            pair = ((path, *quantities[path]) for path in (places[0], differing[0]))
             texts = (f"{path} = {value:g} {KINDS[kind].unit}".strip() for path, value, kind in pair)
             raise InputError("--with", f"{name!r} names values that differ, {' and '.join(texts)}", "make them alike")
         chosen.append(_made(name, places, quantities))
@@ -104,8 +107,9 @@ def _made(name: str, places: tuple[str, ...], quantities: dict[str, tuple[float,
 
 
 def _at_tip(path: str, quantities: dict[str, tuple[float, str]]) -> Iterator[tuple[str, float]]:
-    """Path and value of positions at the tip of the beam whose length, or length of a piece, is at `path`."""
-    if (match := _LENGTH.fullmatch(path)) is None:
+    """Path and value of positions at the tip of a beam, whose length, or a piece's length, is at `path`."""
+    match = _LENGTH.fullmatch(path)
+    if match is None:
         return
     beam = match[1]
     pieces = re.compile(rf"{re.escape(beam)}\.line\.pieces\[\d+\]\.length")
@@ -117,7 +121,7 @@ def _at_tip(path: str, quantities: dict[str, tuple[float, str]]) -> Iterator[tup
 
 
 def changed(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> dict[str, float]:
-    """Values to change in the scenario, by path, so that the parameters have `values`; followers move along."""
+    """Values to change in the scenario, by path, so that the parameters have `values`. Their followers move along."""
     changes: dict[str, float] = {}
     for parameter, value in zip(parameters, values, strict=True):
         if value != parameter.value:
@@ -146,23 +150,29 @@ def named(template: Template, names: Sequence[str], option: str) -> list[Physica
         return physical_values(template, names)
 
 
-def bounds_of(each: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:
-    """Return the bounds of a value, by default a tenth to ten times it; InputError unless they contain it."""
-    if each.path in bounds:
+def bounds_of(parameter: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:
+    """Return the bounds of a value, by default a tenth to ten times it. InputError unless they contain the value."""
+    if parameter.path in bounds:
         low, high = (
-            read_quantity("--bounds", end, each.kind, f"of {each.path}: ") if isinstance(end, str) else float(end)
-            for end in bounds[each.path]
+            read_quantity("--bounds", end, parameter.kind, f"of {parameter.path}: ")
+            if isinstance(end, str)
+            else float(end)
+            for end in bounds[parameter.path]
         )
         if not low < high:
-            raise InputError("--bounds", f"of {each.path} go from {low:g} to {high:g}", "give the smaller one first")
-        if not low <= each.value <= high:
-            fix = f"begin between them: --set {each.path}={(low + high) / 2:g}"
-            raise InputError("--bounds", f"of {each.path} leave out the scenario's value, {each.value:g}", fix)
+            raise InputError(
+                "--bounds", f"of {parameter.path} go from {low:g} to {high:g}", "give the smaller one first"
+            )
+        if not low <= parameter.value <= high:
+            fix = f"begin between them: --set {parameter.path}={(low + high) / 2:g}"
+            raise InputError(
+                "--bounds", f"of {parameter.path} leave out the scenario's value, {parameter.value:g}", fix
+            )
         return low, high
-    if each.value == 0:
-        fix = f"give a value to begin with (--set {each.path}=...), or bounds"
-        raise InputError(option, f"names {each.path}, which is zero", fix)
-    ends = sorted((_NEAR * each.value, _FAR * each.value))
+    if parameter.value == 0:
+        fix = f"give a value to begin with (--set {parameter.path}=...), or bounds"
+        raise InputError(option, f"names {parameter.path}, which is zero", fix)
+    ends = sorted((_NEAR * parameter.value, _FAR * parameter.value))
     return ends[0], ends[1]
 
 
@@ -192,9 +202,9 @@ _WIDE = 10.0  # ratio of bounds above which starting points are spread in equal 
 def searched(
     parameters: Sequence[PhysicalValue], limits: Floats, count: int, search: Callable[[Floats], Answer]
 ) -> list[Answer]:
-    """Answers of searches from the scenario's values and from further points; of these, failed ones are left out."""
+    """Answers of searches from the scenario's values and from further points. Searches from further points may fail."""
     answers: list[Answer] = []
-    for start in _starting_points(np.array([each.value for each in parameters]), limits, count):
+    for start in _starting_points(np.array([parameter.value for parameter in parameters]), limits, count):
         try:
             answers.append(search(start))
         except GbeamError:  # the scenario refuses the values, or its run is not done
@@ -210,7 +220,10 @@ def on_bound(values: Floats, limits: Floats) -> Flags:
 
 
 def _starting_points(start: Floats, limits: Floats, count: int) -> list[Floats]:
-    """The scenario's values (p,), and further ones spread evenly between bounds (p, 2), by a Sobol sequence."""
+    """Starting points (p,) of searches: the scenario's values, and further points spread evenly between bounds (p, 2).
+
+    They are Sobol points; between bounds far apart they are spread in equal ratios.
+    """
     if count < 1:
         raise InputError("--starts", f"is {count}", "give one or more")
     refuse_more("--starts", "searches", count, MAX_STARTS, 1e5, "give fewer")

@@ -138,13 +138,14 @@ def sensitivity(
 
 
 def _run_error(answer: Any, motions: Sequence[str]) -> float:
-    """Largest estimated error of the runs in some environments; NaN where there are none."""
+    """Largest estimated error of the runs in some motions; NaN if none is known."""
     if not isinstance(answer, Study):
         return math.nan
-    errors = [answer.responses[name].errors for name in motions]
-    return max(
-        (total for e in errors for total in (e.displacement.total, e.loads.total) if total == total), default=math.nan
-    )
+    totals = []
+    for name in motions:
+        errors = answer.responses[name].errors
+        totals += [errors.displacement.total, errors.loads.total]
+    return max((total for total in totals if not math.isnan(total)), default=math.nan)
 
 
 def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Flags:
@@ -156,7 +157,7 @@ def _kinks(slopes: Slopes, values: Sequence[float], units: Sequence[str]) -> Fla
 
 
 def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
-    """Keys of a figure; InputError unless it has a finite value and can have a derivative."""
+    """Keys of a figure. InputError unless it has a finite value and can have a derivative."""
     with naming(option):
         keys = find(facts, name)
     if isinstance(node_at(facts, keys), (bool, int)) or _NOT_PHYSICAL.search(path_text(own_keys(keys))):
@@ -167,7 +168,7 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
 
 
 def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
-    """Motions whose responses figures of ``run`` are read from, and whether loads and axes of these are."""
+    """Motions whose responses the figures of ``run`` are read from, and whether their loads and axes are needed."""
     motions: dict[str, None] = {}  # an ordered set
     axes = False
     for table, *rest in keys:
@@ -191,7 +192,7 @@ def values_at(facts: Facts, keys: Sequence[Keys]) -> Floats:
 def _possible(
     inquiry: Inquiry, values: Sequence[PhysicalValue], *, strict: bool
 ) -> tuple[list[PhysicalValue], list[str]]:
-    """Values that the scenario allows to be a little less and more, and path and reason of each that it does not.
+    """Values that the scenario allows to be a little smaller and larger, and the others with reasons.
 
     `strict` raises InputError for the first of these.
     """

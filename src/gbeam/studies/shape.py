@@ -153,7 +153,7 @@ class Driven:
 
 
 def driven_of(case: Case, motion: str | None, joint: str | None) -> Driven:
-    """Hub that turns a body alone, or coordinate of a joint, that a command drives."""
+    """Hub or joint that a command drives: a hub that turns a single body, or a coordinate of a joint of a system."""
     notes = notes_on(case.motions)
     if case.system.alone is None:
         name, hub = driven_joint(case.system, joint)
@@ -164,14 +164,14 @@ def driven_of(case: Case, motion: str | None, joint: str | None) -> Driven:
         fix = "name it by --motion"
         raise InputError("--joint", f"is {joint!r}, and {case.system.order[0]} is on a hub, without joints", fix)
     name, hub = hub_of(case, motion)
-    # Mounted as it is: free, or at rate zero.
-    turned: Hub = altered(hub, **{"torque" if hub.free else "rate": constant(0.0)})
-    return Driven(name, hub, turned, f"motion.{name}", f"motion.{name}.gravity", case, notes)
+    # The hub with its mounting, at rest: without torque, or at rate zero.
+    hub_at_rest: Hub = altered(hub, **{"torque" if hub.free else "rate": constant(0.0)})
+    return Driven(name, hub, hub_at_rest, f"motion.{name}", f"motion.{name}.gravity", case, notes)
 
 
 def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
-    """Name and hub of a case, chosen by `name` where there are several; InputError if there is none."""
-    hubs = {each: motion for each, motion in case.motions.items() if isinstance(motion, Hub)}
+    """Name and hub of a case, chosen by `name` if there are several. InputError if there is none."""
+    hubs = {key: motion for key, motion in case.motions.items() if isinstance(motion, Hub)}
     if not hubs:
         raise InputError("motion", "has no hub", "add a motion of kind hub")
     if name is not None and name not in hubs:
@@ -181,7 +181,7 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
 
 
 def driven_joint(system: System, name: str | None) -> tuple[str, Hub]:
-    """Coordinate of a system that a command moves, `name` or the only one driven, and a hub with its rate, or free."""
+    """Coordinate that a command moves, `name` or the only one driven, and a hub with its rate, or a free one."""
     commands = {
         f"{owner}.{coordinate}": joint.rates.get(coordinate)
         for owner, joint in system.joints.items()
@@ -208,7 +208,7 @@ def slides(coordinate: str) -> bool:
 
 
 def _grounded(case: Case, name: str | None) -> System:
-    """The system on the ground, under gravity that equals the constant load of the motion that carries it.
+    """The system on the ground, with gravity in place of the constant load of the motion that carries it.
 
     InputError unless that motion has a constant acceleration and does not turn.
     """
@@ -219,7 +219,7 @@ def _grounded(case: Case, name: str | None) -> System:
     times = np.linspace(settings.start, settings.start + settings.duration, _POINTS)
     base = case.motions[chosen].base(times)
     load = np.asarray(base.a_WO_B)
-    turning = max(float(np.abs(each).max()) for each in (base.w_WB_B, base.alpha_WB_B))
+    turning = max(float(np.abs(rates).max()) for rates in (base.w_WB_B, base.alpha_WB_B))
     if turning > 0 or np.ptp(load, axis=0).max() > _REST * max(float(np.abs(load).max()), 1e-300):
         fix = "give a flight of constant acceleration, or leave it out"
         raise InputError(f"motion.{chosen}", "shakes or turns the system, which no command undoes", fix)
@@ -235,7 +235,7 @@ def _end(hub: Hub, name: str) -> float:
 
 
 def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
-    """Angle to turn by, or rate to reach, of the scenario's own rate; the other one is None."""
+    """Angle to turn by, or rate to reach, of the scenario's own command; the other one is None."""
     if hub.free or hub.rate is None:
         fix = "give --angle or --rate"
         raise InputError("--angle", f"is missing, and the torque of {name} says of no angle or rate", fix)
@@ -249,7 +249,7 @@ def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
 def scenario_with(
     command: ShapedCommand, scenario: str | os.PathLike[str] | Case, overrides: Sequence[str] = ()
 ) -> str:
-    """Return a scenario, as JSON, in which the shaped command, as a table, drives the hub or joint."""
+    """Return a scenario, as JSON, in which a table of the shaped command drives the hub or joint."""
     base = scenario_of(scenario, overrides)
     assert base.source is not None  # it was read from a file
     data: dict[str, Any] = json.loads(json.dumps(base.source.data))

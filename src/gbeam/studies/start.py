@@ -39,9 +39,10 @@ class OverTime:
         """Return the inquiry with these histories, at times over their responses in `case`."""
         if not self.names:
             return inquiry
-        histories = tuple(read_history(each, case) for each in self.names)
-        settings = [case.settings_of(each.motion) for each in histories]
-        first, last = min(each.start for each in settings), max(each.start + each.duration for each in settings)
+        histories = tuple(read_history(name, case) for name in self.names)
+        settings = [case.settings_of(history.motion) for history in histories]
+        first = min(response.start for response in settings)
+        last = max(response.start + response.duration for response in settings)
         return replace(inquiry, histories=histories, times=np.linspace(first, last, self.count))
 
 
@@ -119,7 +120,10 @@ def go_on(
     figures: Figures,
     histories: OverTime = NO_HISTORIES,
 ) -> Start:
-    """Start of a resumed sweep, whose `figures` are known from the cases `done`; `missing` may be empty."""
+    """Start of a resumed sweep, with the time that a first few of its `missing` cases take, if there are any.
+
+    Its `figures` are known from the cases `done`.
+    """
     inquiry = replace(inquiry, keys=tuple(tuple(keys) for keys, *_ in figures if keys))
     possible = [row for row in done if row.outcome != "refused"] or done
     example = inquiry.template.changed(cases.overrides(possible[0].case))
@@ -129,8 +133,10 @@ def go_on(
     rows: list[Row] = []
     seconds = 0.0
     few = min(_FEW, width(inquiry))
-    for first in (0, few):  # twice: the first time includes imports and compilation
-        if chosen := missing[first : first + few]:
+    # The first time includes imports and compilation. Where these may be most of it, a second batch is timed.
+    for first in (0, few):
+        chosen = missing[first : first + few]
+        if chosen:
             timed, seconds = _timed(inquiry, cases, chosen)
             rows += timed
         if seconds >= _IMPORTS:

@@ -58,7 +58,7 @@ def _probability(draws: Floats) -> Floats:
 
 
 def _moments_and_quantiles(draws: Floats) -> Floats:
-    """Mean, standard deviation and q quantiles of sorted draws (m, n), with both bounds, (m, 2 + q, 3)."""
+    """Mean, standard deviation and q quantiles of sorted draws (m, n), with lower and upper bounds, (m, 2 + q, 3)."""
     from scipy.stats import binom, norm, t
 
     n, tail = draws.shape[-1], (1 - CONFIDENCE) / 2

@@ -190,7 +190,7 @@ def sweep(
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
-    """Histories to measure; InputError unless the verb has them."""
+    """Histories to measure at a number of times. InputError unless the verb has them."""
     if not histories:
         return NO_HISTORIES
     if verb != "run":
@@ -245,7 +245,7 @@ def _collected(
     progress: Progress,
     journal: Journal | None = None,
 ) -> list[Row]:
-    """Rows of all batches; each batch is written to the journal and reported before the next is awaited."""
+    """Rows of all batches. Each batch is written to the journal and reported before the next one is awaited."""
     rows: list[Row] = []
     failed = sum(row.failed for row in before)
     tell(progress, len(before), failed, count)
@@ -259,7 +259,7 @@ def _collected(
 
 
 def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
-    """Return the result of rows in any order; cases without a row are pending."""
+    """Return the sweep of rows in any order. Cases without a row are pending."""
     inquiry = begun.inquiry
     values = np.full((inquiry.width, len(cases)), math.nan)
     outcome = np.full(len(cases), "pending", dtype=object)
@@ -270,13 +270,14 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
     shape, times = cases.shape, len(inquiry.times)
     measures = {name: values[k].reshape(shape) for k, name in enumerate(names)}
     over_time = values[len(names) :].reshape(len(inquiry.histories), times, *shape)
-    histories = {each.name: np.moveaxis(over_time[k], 0, -1) for k, each in enumerate(inquiry.histories)}
+    histories = {history.name: np.moveaxis(over_time[k], 0, -1) for k, history in enumerate(inquiry.histories)}
     answer = Sweep(
         title=title,
         verb=inquiry.verb,
-        parameters=tuple(each.parameter(begun.example.unit(each.path)) for each in cases.variations),
+        parameters=tuple(varied.parameter(begun.example.unit(varied.path)) for varied in cases.variations),
         measures=measures,
-        units=dict(zip(names, begun.units, strict=True)) | {each.name: each.unit for each in inquiry.histories},
+        units=dict(zip(names, begun.units, strict=True))
+        | {history.name: history.unit for history in inquiry.histories},
         outcome=outcome.reshape(shape),
         message=message.reshape(shape),
         histories=histories,
@@ -286,7 +287,7 @@ def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows
 
 
 def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed: int) -> Sweep:
-    """Return the sweep with statistics over its samples, the last dimension of the measures."""
+    """Return the sweep with statistics over its samples, which are the last dimension of its measures."""
     independent = slice(cases.independent)
     # Figures of cases that were cut off are left out, such as the peak before a run diverged.
     done = sweep.computed
@@ -298,6 +299,6 @@ def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed
     }
     sobol = {}
     if cases.sampler == "saltelli":
-        paths = [each.path for each in cases.drawn]
+        paths = [variation.path for variation in cases.drawn]
         sobol = {name: indices(values, paths, seed) for name, values in measures.items()}
     return replace(sweep, statistics=estimates, indices=sobol)

@@ -94,7 +94,7 @@ class ScenarioTemplate:
         return quantities(self.scenario)
 
     def unit(self, path: str) -> str:
-        """SI unit of the quantity at a path; empty where it has none."""
+        """SI unit of the quantity at a path; empty if it has none."""
         node: Any = self.scenario
         kind = ""
         for step in parse_path(path) or ():
@@ -147,12 +147,13 @@ class CaseTemplate:
 
     @property
     def identity(self) -> dict[str, Any]:
+        """Identity of the case for the store of a sweep: a digest of what it is made of."""
         case = self.case
         # Of a beam what its structure is made of: numbers that are computed may differ on another machine.
         system: Any = case.system if case.only_beam is None else case.stations
-        others = case.title, case.tracks, case.accept, case.sensors
+        other_parts = case.title, case.tracks, case.accept, case.sensors
         try:
-            content = pickle.dumps((system, self._tree, *others))
+            content = pickle.dumps((system, self._tree, *other_parts))
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             fix = "define its classes at the top level of a module, or leave the store out"
             raise InputError("store", f"cannot know the case again, which cannot be pickled ({error})", fix) from None
@@ -160,7 +161,7 @@ class CaseTemplate:
 
     @property
     def _tree(self) -> dict[str, Any]:
-        """Objects of the case by the tables of a scenario, in which paths are looked up."""
+        """Objects of the case, by the tables of a scenario in which paths are looked up."""
         case, system = self.case, self.case.system
         common = {"motion": case.motions, "response": case.response}
         if case.only_beam is not None and system.order == (BEAM,):
@@ -171,13 +172,14 @@ class CaseTemplate:
                 bodies[name] = body
             elif body.source is not None:  # None: made of particles, without values to vary
                 bodies[name] = _BeamBody(body, body.source.beam)
-        if system.alone is not None:
+        if system.alone is not None:  # a body on the base, without joints to vary
             return ({"bodies": bodies} if bodies else {}) | common
         gravity = {} if system.gravity is None else {"gravity": system.gravity}
         parts = {name: getattr(system, name) for name in ("joints", "forces", "controllers")}
         return {"bodies": bodies} | parts | {"system": gravity} | common
 
     def changed(self, changes: Sequence[str]) -> CaseTemplate:
+        """Template of the case with other values, from texts such as "beam.length=250 mm"."""
         if not changes:
             return self
         wanted: dict[Any, Any] = {}  # a tree: all of one object at once, as a mass at the tip moves with the length
@@ -200,9 +202,9 @@ class CaseTemplate:
         case = replace(self.case, response=parts.pop("response"), motions=motions)
         if not parts.keys() & wanted.keys():
             return CaseTemplate(case)
-        return CaseTemplate(
-            case.remade(**parts) if BEAM in parts else replace(case, system=_joined(case.system, parts))
-        )
+        if BEAM in parts:
+            return CaseTemplate(case.remade(**parts))
+        return CaseTemplate(replace(case, system=_joined(case.system, parts)))
 
     def built(self, system: System | None = None) -> Case:
         return self.case
@@ -241,29 +243,32 @@ def template_of(
 
 
 def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
-    """Children of a node by name or number, each with its kinds of quantity: its own, or else those of the node."""
+    """Children of a node by name or number. Each has the kinds of quantity of its own name, or else
+    those of the node.
+    """
     if isinstance(node, (tuple, list)) or np.ndim(node):
-        return {k: (each, only(kinds)) for k, each in enumerate(node)}
+        return {k: (child, only(kinds)) for k, child in enumerate(node)}
     if isinstance(node, Mapping):
-        return {name: (each, below(kinds, name)) for name, each in node.items()}
+        return {name: (child, below(kinds, name)) for name, child in node.items()}
     owner = getattr(node, "owner", type(node).__name__)
     arguments = arguments_of(node) or {}
-    return {name: (each, kind_of_argument(owner, name, arguments) or kinds) for name, each in arguments.items()}
+    return {name: (child, kind_of_argument(owner, name, arguments) or kinds) for name, child in arguments.items()}
 
 
 def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
-    """The node with the values of `wanted`, a tree of texts, SI or with a unit, in place of its own."""
+    """The node with the values of `wanted`, a tree of texts in SI or with a unit, in place of its own values."""
     if isinstance(wanted, str):
         return _read(node, only(kinds), wanted, path)
     children = _below(node, kinds)
     for step in wanted:
         if step not in children:
-            varied = [
-                str(name) for name, (at, _) in children.items() if isinstance(at, str) or any(_numbers(at, "", ()))
-            ]
+            varied = []
+            for name, (child, _) in children.items():
+                if isinstance(child, str) or any(_numbers(child, "", ())):
+                    varied.append(str(name))
             fix = advise(str(step), varied) if varied else "vary one of its numbers"
             raise InputError(path_text((*path, step)), "is no value that the case gives", fix)
-    changed = {step: _with(*children[step], each, (*path, step)) for step, each in wanted.items()}
+    changed = {step: _with(*children[step], texts, (*path, step)) for step, texts in wanted.items()}
     values = {step: child for step, (child, _) in children.items()} | changed
     if isinstance(node, Mapping):
         return values
@@ -276,7 +281,7 @@ def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
 
 
 def _read(current: Any, kind: str, text: str, path: Path) -> Any:
-    """Value written as text, of the type of the current one: a truth, a word, or a number in SI or with a unit."""
+    """Value of a text, in the type of the current value: a truth value, a word, or a number in SI or with a unit."""
     if isinstance(current, bool):
         if text not in ("true", "false"):
             raise InputError(path_text(path), f"is {text!r}", "write true or false")
@@ -288,7 +293,7 @@ def _read(current: Any, kind: str, text: str, path: Path) -> Any:
 
 
 def _numbers(node: Any, kinds: Kinds, path: Path) -> Iterator[tuple[Path, float, str]]:
-    """Path, value and kind of every real number below a node; counts (int) and long arrays are left out."""
+    """Path, value and kind of every real number below a node. Counts (int) and long arrays are left out."""
     if isinstance(node, (bool, str, int)) or np.size(node) > _LONGEST:
         return
     if isinstance(node, float) or (hasattr(node, "dtype") and np.ndim(node) == 0):

@@ -41,15 +41,15 @@ _ELSEWHERE = "define it at the top level of a module that you import, or leave t
 
 
 def serially(inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
-    """Compute all batches as one sequence of cases in this process, and yield the rows every half second."""
-    done, began = list[Row](), time.perf_counter()
+    """Compute all batches in this process as one sequence of cases, and yield the rows every half second."""
+    finished, began = list[Row](), time.perf_counter()
     for row in rows(inquiry, chain.from_iterable(batches)):
-        done.append(row)
+        finished.append(row)
         if time.perf_counter() - began > KEPT:
-            yield done
-            done, began = [], time.perf_counter()
-    if done:
-        yield done
+            yield finished
+            finished, began = [], time.perf_counter()
+    if finished:
+        yield finished
 
 
 @dataclass
@@ -81,6 +81,7 @@ class Workers:
     """Processes of this machine, each with its own pipe and batch: if one dies, only its batch is lost."""
 
     def __init__(self, count: int, functions: Sequence[Function]) -> None:
+        """Start `count` processes, which load the `functions`; InputError if these cannot be sent or loaded."""
         try:
             self._functions = pickle.dumps(functions)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
@@ -106,13 +107,14 @@ class Workers:
             raise
 
     def rows(self, inquiry: Inquiry, batches: Iterable[Sequence[Task]]) -> Iterator[list[Row]]:
-        """Compute the batches. One whose process dies is halved until the case is known; if that ends another process
-        when it is tried again, its row says that it failed.
+        """Compute the batches. One whose process dies is halved until the case that ends it is known.
+
+        That case is tried once more. If it ends a process again, its row says that it failed.
         """
-        left, again, suspects = iter(batches), deque[Sequence[Task]](), set[int]()
+        pending, retries, suspects = iter(batches), deque[Sequence[Task]](), set[int]()
         while True:
             for worker in self._workers:
-                if worker.batch is None and (batch := again.popleft() if again else next(left, None)):
+                if worker.batch is None and (batch := retries.popleft() if retries else next(pending, None)):
                     worker.send(inquiry, batch)
             busy = {worker.pipe: k for k, worker in enumerate(self._workers) if worker.batch}
             if not busy:
@@ -130,17 +132,17 @@ class Workers:
                     self._workers[k] = self._started()
                     number, half = batch[0][0], len(batch) // 2
                     if half:
-                        again += [batch[:half], batch[half:]]
+                        retries += [batch[:half], batch[half:]]
                     elif number in suspects:
                         yield [died(inquiry, batch[0])]
                     else:
                         suspects.add(number)
-                        again.append(batch)
+                        retries.append(batch)
                     continue
                 worker.batch = None
                 if isinstance(answer, str):
                     raise RuntimeError(f"a worker failed:\n{answer}")
-                if following := again.popleft() if again else next(left, None):
+                if following := retries.popleft() if retries else next(pending, None):
                     worker.send(inquiry, following)  # while this process keeps the rows
                 yield answer
 
@@ -151,7 +153,7 @@ class Workers:
         self._workers.clear()
 
     def _started(self) -> _Worker:
-        """A new process, which imports while this one goes on."""
+        """Start a new process. It imports modules while this one goes on."""
         pipe, worker_end = self._context.Pipe()
         process = self._context.Process(target=_work, args=(worker_end, self._functions), daemon=True)
         with _program(needed=b"__main__" in self._functions, path=self._path):
@@ -160,11 +162,11 @@ class Workers:
         return _Worker(process, pipe)
 
     def _check(self, worker: _Worker) -> None:
-        """Wait until a process is ready; InputError if it cannot load the functions, or none can start."""
+        """Wait until a process is ready. InputError if it cannot load the functions, or if none can start."""
         try:
             problem = worker.pipe.recv()
         except (EOFError, OSError):
-            if any(each.ready for each in self._workers):
+            if any(other.ready for other in self._workers):
                 raise EOFError from None  # it was killed as it began
             worker.process.join()
             fix = 'put what your script does under if __name__ == "__main__":, or leave the workers out'
@@ -178,7 +180,7 @@ class Workers:
 
 @contextmanager
 def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
-    """Start processes, which import while this one goes on; close them at the end."""
+    """Start processes, which import while this one goes on, and close them at the end."""
     inherited = variables() | {_THREADS: os.environ.get(_THREADS, "1")}
     before = {name: os.environ.get(name) for name in inherited}
     os.environ |= inherited
@@ -197,7 +199,7 @@ def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
 
 @contextmanager
 def _program(*, needed: bool, path: list[str]) -> Iterator[None]:
-    """Let processes that start import from a path, and the main program again only where it defines functions."""
+    """Let new processes import from `path`, and the main program only if it is `needed`, as it defines functions."""
     main, before = sys.modules["__main__"], sys.path
     if not needed or not os.path.exists(getattr(main, "__file__", None) or ""):  # of a notebook, or typed in
         sys.modules["__main__"] = ModuleType("__main__")
@@ -209,7 +211,10 @@ def _program(*, needed: bool, path: list[str]) -> Iterator[None]:
 
 
 def _work(pipe: Connection, functions: bytes) -> None:
-    """Send why the functions cannot be loaded, or ""; then answer batches of the last inquiry until the pipe closes."""
+    """Answer batches of cases in a worker, until the pipe closes.
+
+    It first sends why the functions cannot be loaded, or "". An Inquiry that arrives holds for the batches after it.
+    """
     _begin()
     with suppress(EOFError, OSError):
         try:
@@ -234,7 +239,7 @@ def _work(pipe: Connection, functions: bytes) -> None:
 
 
 def _begin() -> None:
-    """Make this process a worker, which ends when its parent ends, even if that is killed."""
+    """Prepare this process as a worker, which ends when its parent ends, even if that is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # left to the parent
     driver = multiprocessing.parent_process()
     assert driver is not None
@@ -280,7 +285,7 @@ def on_scheduler(inquiry: Inquiry, batches: Iterable[Sequence[Task]], address: s
 
 @contextmanager
 def _connected(address: str) -> Iterator[Any]:
-    """Client of the scheduler, once that has a worker; InputError if none answers."""
+    """Client of the scheduler, once it has a worker. InputError if none answers."""
     try:
         from distributed import Client
     except ImportError:
@@ -301,7 +306,7 @@ def _connected(address: str) -> Iterator[Any]:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Silence Dask's loggers: errors whose tracebacks they would print become one message here."""
+    """Silence Dask's loggers: one message here replaces the tracebacks that they would print."""
     loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
@@ -314,6 +319,7 @@ def _silent() -> Iterator[None]:
 
 
 def _with_worker(client: Any, address: str) -> Iterator[Any]:
+    """Yield the client once a worker is there; InputError if none appears."""
     with client:
         try:
             client.wait_for_workers(1, timeout=CONNECTION)
@@ -339,7 +345,7 @@ class _Dispatch:
     looked: float = -PATIENCE  # monotonic time at which there was a worker last, s
 
     def rows(self) -> Iterator[list[Row]]:
-        """Send batches, a few ahead for every worker, until all have come back."""
+        """Send batches, a few ahead for every worker, and yield their rows until all have come back."""
         try:
             while True:
                 self._look()
@@ -355,7 +361,7 @@ class _Dispatch:
             self._interrupted(f"the scheduler at {self.address} is lost ({_first(error) or type(error).__name__})")
 
     def _send(self) -> None:
-        """Submit batches until enough are under way; cases of killed workers first, each alone."""
+        """Submit batches until enough are under way. Cases of killed workers come first, each alone."""
         while len(self.under_way) < _AHEAD * self.threads:
             single = bool(self.again)
             batch = [self.again.popleft()] if single else next(self.left, None)
@@ -368,7 +374,9 @@ class _Dispatch:
             future.add_done_callback(self.done.put)
 
     def _received(self, future: Any, batch: Sequence[Task]) -> list[Row]:
-        """Rows of a batch; an empty list if its cases are to be computed again, one by one."""
+        """Rows of a batch; an empty list if its cases are to be computed again one by one, as their
+        worker was killed.
+        """
         from distributed import KilledWorker
 
         try:
@@ -387,7 +395,7 @@ class _Dispatch:
             raise InputError(_OPTION, f"has a worker that lacks what it needs ({_first(error)})", fix) from None
 
     def _look(self) -> None:
-        """Count the workers' threads, at most once a second; ComputationError if there was none for a minute."""
+        """Count the workers' threads, at most once a second. ComputationError if there was none for a minute."""
         now = time.monotonic()
         if now - self.looked < _TICK:
             return

@@ -47,7 +47,7 @@ def sparse_parts(matrix: Any) -> dict[str, Any]:
 
 
 def mirrored(values: Any, rows: Any, columns: Any, size: int) -> dict[str, Any]:
-    """Return a symmetric sparse matrix in parts, from the entries of one triangle or of both."""
+    """Return a symmetric sparse matrix, in parts, from the entries of one of its triangles or of both."""
     from scipy.sparse import coo_array, diags_array
 
     matrix = coo_array((np.asarray(values, dtype=float), (rows, columns)), shape=(size, size)).tocsr()
@@ -58,7 +58,7 @@ def mirrored(values: Any, rows: Any, columns: Any, size: int) -> dict[str, Any]:
 
 
 def read(path: str) -> Contents:
-    """Read the matrices of numbers in a file, and places of nodes, or of the frames of Simscape, by their names."""
+    """Read the matrices of numbers in a file, and the places of nodes, or of Simscape's frames, by their names."""
     from scipy.sparse import issparse
 
     contents: Contents = {"matrices": {}}
@@ -88,7 +88,7 @@ def read(path: str) -> Contents:
 
 
 def everything(path: str) -> dict[str, Any]:
-    """Return what a file holds by name, with the fields of structures; what has no name by that of the file."""
+    """Return all that a file holds, by name, with the fields of structures. A single array goes by the file's name."""
     from scipy.io import loadmat, mmread
     from scipy.sparse import load_npz
 
@@ -103,8 +103,8 @@ def everything(path: str) -> dict[str, Any]:
                 loaded = {k: v for k, v in loadmat(path, spmatrix=False).items() if not k.startswith("__")}
         except NotImplementedError:  # of version 7.3, which is HDF5
             return _of_hdf5(path)
-        fields = [each[0, 0] for each in loaded.values() if each.dtype.names and each.shape == (1, 1)]
-        return loaded | {name: each[name] for each in fields for name in each.dtype.names}
+        structures = [value[0, 0] for value in loaded.values() if value.dtype.names and value.shape == (1, 1)]
+        return loaded | {name: fields[name] for fields in structures for name in fields.dtype.names}
     loaded = np.load(path, allow_pickle=False)
     if isinstance(loaded, np.ndarray):
         return {stem: loaded}
@@ -112,7 +112,7 @@ def everything(path: str) -> dict[str, Any]:
 
 
 def _of_hdf5(path: str) -> dict[str, Any]:
-    """Matrices in a file of MATLAB's version 7.3, which has them transposed, and the fields of structures."""
+    """Matrices in a file of MATLAB's version 7.3, which stores them transposed, and the fields of structures."""
     import h5py  # 0.2 s to import
     from scipy.sparse import csc_array
 
@@ -124,15 +124,15 @@ def _of_hdf5(path: str) -> dict[str, Any]:
             values, rows, starts = (node[key][()] if key in node else np.zeros(0) for key in ("data", "ir", "jc"))
             arrays[name] = csc_array((values, rows, starts), shape=(int(sparse), len(starts) - 1))
         elif isinstance(node, h5py.Group):
-            for key, each in node.items():
-                add(key, each)
+            for key, child in node.items():
+                add(key, child)
         elif node.dtype.kind in "fiu" and "MATLAB_empty" not in node.attrs:
             arrays[name] = node[()].T
 
     with opened(path) as file:
-        for key, each in file.items():
+        for key, child in file.items():
             if not key.startswith("#"):
-                add(key, each)
+                add(key, child)
     return arrays
 
 
@@ -156,7 +156,7 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
     else:
         refuse_large_file("file", path, BINARY_BYTES, "reduce the law before it is saved")
         arrays = confined(_numbers, os.fspath(path), refuse=refuse)
-    named = {key.lower(): each for key, each in arrays.items()}
+    named = {key.lower(): value for key, value in arrays.items()}
     lacking = ", ".join(name.upper() for name in NAMES if name not in named)
     if lacking:
         raise refuse(f"holds no {lacking}")
@@ -164,25 +164,25 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
         parts = {name: np.atleast_2d(np.asarray(named[name], dtype=float)) for name in NAMES}
     except (TypeError, ValueError):
         raise refuse("holds what are no numbers") from None
-    if not all(np.isfinite(each).all() for each in parts.values()):
+    if not all(np.isfinite(value).all() for value in parts.values()):
         raise refuse("holds numbers that are not finite")
     steps = {key: _step(key, named[key]) for key in STEPS if key in named}
     if len(set(steps.values())) > 1:
-        raise refuse(f"says {' and '.join(f'{key} = {each:g}' for key, each in steps.items())}")
+        raise refuse(f"says {' and '.join(f'{key} = {value:g}' for key, value in steps.items())}")
     return SimpleNamespace(**parts, dt=next(iter(steps.values()), 0.0))
 
 
 def _step(key: str, value: Any) -> float:
     """Step of a law, s.
 
-    Discrete time of which the step is not said is True in python-control and -1 in MATLAB; MATLAB's true is a number
-    of eight bits in its files.
+    Where discrete time is said without its step, it is True in python-control and -1 in MATLAB. MATLAB's true is a
+    number of eight bits in its files.
     """
     array = np.asarray(value)
     number = array.dtype.kind in "fiu" and array.dtype != np.uint8 and array.size == 1
     if not number or not 0 <= array.item() < math.inf:
-        said = shortened(str(array.item() if array.size == 1 else value), 40)
-        problem = f"says {key} = {said}: discrete, and the sample time is not said"
+        text = shortened(str(array.item() if array.size == 1 else value), 40)
+        problem = f"says {key} = {text}: discrete, and the sample time is not said"
         raise InputError("file", problem, f"save {key} as the sample time in s, such as 0.01, or 0 in continuous time")
     return float(array.item())
 
@@ -195,5 +195,5 @@ def _numbers(path: str) -> dict[str, Any]:
         raise
     except Exception as error:  # of many kinds
         raise InputError("file", f"cannot be read: {shortened(str(error), 100)}", FIX) from None
-    arrays = {key: np.asarray(each) for key, each in contents.items() if hasattr(each, "dtype")}
-    return {key: each for key, each in arrays.items() if each.dtype.kind in "fiu" or key.lower() in STEPS}
+    arrays = {key: np.asarray(value) for key, value in contents.items() if hasattr(value, "dtype")}
+    return {key: value for key, value in arrays.items() if value.dtype.kind in "fiu" or key.lower() in STEPS}

@@ -43,7 +43,7 @@ def _parts(matrix: Any) -> Any:
 
 
 def read_bulk(path: str) -> Contents:
-    """Read the grid points of bulk data, direct matrix input, and the rows of an external superelement."""
+    """Read from bulk data the grid points, matrices by direct input, and the rows of an external superelement."""
     bulk, n2p, *_ = _pyyeti()
     text = Path(path).read_text(encoding="utf-8", errors="replace").upper()
     words = {match[1] for match in re.finditer(r"^ *([A-Z]+)", text, re.MULTILINE)}
@@ -60,7 +60,7 @@ def read_bulk(path: str) -> Contents:
 
 
 def _places(uset: Any, n2p: Any) -> Contents:
-    """Places and axes of grid points, by how they move as one rigid body."""
+    """Places and axes of grid points, from how they move as one rigid body."""
     rows = np.array(uset.index.to_list(), dtype=int)
     first = np.flatnonzero(rows[:, 1] == 1)
     rigid = n2p.rbgeom_uset(uset)
@@ -74,7 +74,9 @@ AGAIN = "write it again"
 
 
 def read_matrix(path: str) -> Contents:
-    """Read a substructure, or entries `node, direction, node, direction, value` or `row, column, value`."""
+    """Read a substructure, or lines with the entries of a matrix: `node, direction, node, direction, value` or `row,
+    column, value`.
+    """
     lines = [line for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines() if line.strip()]
     if any(line.upper().startswith("*MATRIX") for line in lines):
         return _substructure(lines)
@@ -97,7 +99,7 @@ def read_rows(path: str) -> Contents:
 
 
 def read_nodes(path: str) -> Contents:
-    """Read the nodes of an input file."""
+    """Read the numbers and places of the nodes of an input file."""
     place_of: dict[int, list[float]] = {}
     inside = False
     for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines():
@@ -116,7 +118,7 @@ def _numbers(line: str) -> list[float]:
 
 
 def _entries(rows: np.ndarray, name: str) -> Contents:
-    """Matrix of entries (n, 3) by row and column, or (n, 5) by node and direction of each."""
+    """Matrix from entries: (n, 3) by row and column, or (n, 5) by node and direction of the row and of the column."""
     if rows.shape[1] == 3:
         i, j = rows[:, :2].astype(int).T - 1
         return {"matrices": {name: mirrored(rows[:, 2], i, j, int(max(i.max(), j.max())) + 1)}}
@@ -128,7 +130,7 @@ def _entries(rows: np.ndarray, name: str) -> Contents:
 
 
 def _substructure(lines: list[str]) -> Contents:
-    """Read user elements: nodes in a comment, directions by node, and lower triangles, row by row."""
+    """Read a substructure: its nodes in a comment, directions by node, and lower triangles of matrices, row by row."""
     nodes: list[int] = []
     unknowns: list[tuple[int, int]] = []
     contents: Contents = {"matrices": {}, "unknowns": {}}
@@ -151,7 +153,7 @@ def _substructure(lines: list[str]) -> Contents:
 
 
 def _blocks(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
-    """Yield headings, in capitals, with the lines below each; first those before any heading."""
+    """Yield headings, in capitals, each with the lines below it. The first block is before any heading."""
     head: str = ""
     body: list[str] = []
     for line in lines:
@@ -165,7 +167,7 @@ def _blocks(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
 
 
 def _directions(nodes: list[int], directions: list[list[int]]) -> Iterator[tuple[int, int]]:
-    """Nodes and directions of the rows: a list of directions holds until a node, by its place, begins another."""
+    """Nodes and directions of the rows. A list of directions holds until a node, by its place, begins another."""
     if not directions:
         return
     changes = {1: directions[0]} | {first: rest for first, *rest in directions[1:]}

@@ -24,7 +24,7 @@ DERIVATIVES = {0: 0, 1: 0, 8: 0, 11: 1, 12: 2}  # of displacements by time: data
 
 
 def read_universal(path: str) -> Contents:
-    """Read the nodes, and the modes that are normal or complex ones, in SI by the units of the file."""
+    """Read the nodes and the modes, normal or complex, of a universal file, in SI by the file's units."""
     import pyuff  # 0.2 s to import
 
     with open(path, "rb") as opened:
@@ -36,43 +36,42 @@ def read_universal(path: str) -> Contents:
     contents: Contents = {}
     numbers, places = np.empty(0, dtype=int), np.empty((0, 3))
     length = mass = 1.0  # units of the file
-    for each in (sets[i] for i, kind in enumerate(kinds) if kind == UNITS):
-        length, mass = 1 / each["length"], each["length"] / each["force"]
-    for i, each in sets.items():
+    for units in (sets[i] for i, kind in enumerate(kinds) if kind == UNITS):
+        length, mass = 1 / units["length"], units["length"] / units["force"]
+    for i, data_set in sets.items():
         if kinds[i] in NODES:
-            node_numbers, node_places = _nodes(path, each, length)
+            node_numbers, node_places = _nodes(path, data_set, length)
             new = ~np.isin(node_numbers, numbers)
             numbers, places = np.append(numbers, node_numbers[new]), np.concatenate([places, node_places[new]])
             contents |= {"numbers": numbers, "places": places}
     # Results are of many kinds, as of stress beside displacements.
     results = [_as_mode(sets[i]) for i, kind in enumerate(kinds) if kind == RESULTS and _moves(sets[i])]
     modes = [sets[i] for i, kind in enumerate(kinds) if kind == MODES] or results
-    modes = [each for each in modes if each["analysis_type"] in (NORMAL, *COMPLEX)]
-    # Of pairs that are conjugate one tells all.
-    modes = [each for each in modes if each["analysis_type"] == NORMAL or complex(each["eig"]).imag >= 0]
+    modes = [mode for mode in modes if mode["analysis_type"] in (NORMAL, *COMPLEX)]
+    # Of a conjugate pair one mode is enough.
+    modes = [mode for mode in modes if mode["analysis_type"] == NORMAL or complex(mode["eig"]).imag >= 0]
     if modes:
         numbers = np.asarray(modes[0]["node_nums"], dtype=int)
-        if any(not np.array_equal(numbers, np.asarray(each["node_nums"], dtype=int)) for each in modes):
+        if any(not np.array_equal(numbers, np.asarray(mode["node_nums"], dtype=int)) for mode in modes):
             raise InputError("path", f"{path} has modes at different nodes", "export them at the same ones")
-        parts = [_mode(path, each) for each in modes]
-        for each in parts:
-            each["modal_mass"] *= mass
-        keys = ("frequency", "damping_ratio", "modal_mass", "shape")
-        contents["modes"] = {"numbers": numbers} | {
-            key: np.stack([each[key] for each in parts], axis=-1) for key in keys
-        }
+        parts = [_mode(path, mode) for mode in modes]
+        for part in parts:
+            part["modal_mass"] *= mass
+        contents["modes"] = {"numbers": numbers}
+        for key in ("frequency", "damping_ratio", "modal_mass", "shape"):
+            contents["modes"][key] = np.stack([part[key] for part in parts], axis=-1)
     return contents
 
 
-def _nodes(path: str, each: dict[str, Any], length: float) -> tuple[Any, Any]:
-    """Numbers and places of the nodes of a data set."""
-    for system in np.unique([each["def_cs"], each["disp_cs"]]).astype(int):
+def _nodes(path: str, data_set: dict[str, Any], length: float) -> tuple[Any, Any]:
+    """Numbers and places of the nodes of a data set; InputError unless they are in the global coordinate system."""
+    for system in np.unique([data_set["def_cs"], data_set["disp_cs"]]).astype(int):
         if system not in GLOBAL:
             raise InputError(
                 "path", f"{path} has nodes in coordinate system {system}", "export them in the global one, 0 or 1"
             )
-    places = length * np.column_stack([each[axis] for axis in "xyz"]).astype(float)
-    return np.asarray(each["node_nums"], dtype=int), places
+    places = length * np.column_stack([data_set[axis] for axis in "xyz"]).astype(float)
+    return np.asarray(data_set["node_nums"], dtype=int), places
 
 
 def _moves(each: dict[str, Any]) -> bool:
@@ -81,19 +80,19 @@ def _moves(each: dict[str, Any]) -> bool:
     return moves and each["dataset_location"] == AT_NODES and each["analysis_type"] in (NORMAL, *COMPLEX)
 
 
-def _as_mode(each: dict[str, Any]) -> dict[str, Any]:
+def _as_mode(data_set: dict[str, Any]) -> dict[str, Any]:
     """Return a data set 2414 with the keys of a data set 55."""
-    shape = np.array(each["data_at_node"], dtype=float)
-    if each["data_type"] in OF_COMPLEX:
+    shape = np.array(data_set["data_at_node"], dtype=float)
+    if data_set["data_type"] in OF_COMPLEX:
         shape = shape[:, ::2] + 1j * shape[:, 1::2]
-    _, frequency, _, mass, viscous, hysteretic = (each[f"record12_field{i}"] for i in range(1, 7))
-    real, imaginary, *a = (each[f"record13_field{i}"] for i in range(1, 5))
+    _, frequency, _, mass, viscous, hysteretic = (data_set[f"record12_field{i}"] for i in range(1, 7))
+    real, imaginary, *a = (data_set[f"record13_field{i}"] for i in range(1, 5))
     return {
-        "analysis_type": each["analysis_type"],
-        "spec_data_type": each["result_type"],
-        "data_ch": each["data_characteristic"],
-        "node_nums": each["node_nums"],
-        "mode_n": each["record10_field6"],
+        "analysis_type": data_set["analysis_type"],
+        "spec_data_type": data_set["result_type"],
+        "data_ch": data_set["data_characteristic"],
+        "node_nums": data_set["node_nums"],
+        "mode_n": data_set["record10_field6"],
         "freq": frequency,
         "modal_m": mass,
         "modal_damp_vis": viscous,
@@ -104,24 +103,24 @@ def _as_mode(each: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _mode(path: str, each: dict[str, Any]) -> dict[str, Any]:
-    """Frequency, Hz, damping ratio, modal mass and shape (k, 3); NaN for a modal mass that is not given."""
-    kind = int(each["spec_data_type"])
-    if kind not in DERIVATIVES or each["data_ch"] not in MOVES:
-        problem = f"{path} has mode {each['mode_n']} in data of type {kind}, characteristic {each['data_ch']}"
+def _mode(path: str, data_set: dict[str, Any]) -> dict[str, Any]:
+    """Frequency, Hz, damping ratio, modal mass and shape (k, 3) of a mode; a modal mass that is not given is NaN."""
+    kind = int(data_set["spec_data_type"])
+    if kind not in DERIVATIVES or data_set["data_ch"] not in MOVES:
+        problem = f"{path} has mode {data_set['mode_n']} in data of type {kind}, characteristic {data_set['data_ch']}"
         raise InputError("path", problem, "export displacements along x, y and z: type 8, characteristic 2")
-    shape = np.column_stack([each[f"r{i}"] for i in (1, 2, 3)])
-    root = 2j * np.pi * float(each["freq"]) if each["analysis_type"] == NORMAL else complex(each["eig"])
+    shape = np.column_stack([data_set[f"r{i}"] for i in (1, 2, 3)])
+    root = 2j * np.pi * float(data_set["freq"]) if data_set["analysis_type"] == NORMAL else complex(data_set["eig"])
     if DERIVATIVES[kind] and root:
         shape = shape / root ** DERIVATIVES[kind]
-    if each["analysis_type"] == NORMAL:
-        mass = float(each["modal_m"]) or np.nan
-        ratio = float(each["modal_damp_vis"]) or float(each["modal_damp_his"]) / 2
-        return {"frequency": float(each["freq"]), "damping_ratio": ratio, "modal_mass": mass, "shape": shape}
+    if data_set["analysis_type"] == NORMAL:
+        mass = float(data_set["modal_m"]) or np.nan
+        ratio = float(data_set["modal_damp_vis"]) or float(data_set["modal_damp_his"]) / 2
+        return {"frequency": float(data_set["freq"]), "damping_ratio": ratio, "modal_mass": mass, "shape": shape}
     size = abs(root)
-    modal = complex(each["modal_a"]) / (2j * root.imag) if root.imag else 0j
-    known = {"frequency": size / (2 * np.pi), "damping_ratio": -root.real / size, "modal_mass": modal or np.nan}
-    return known | {"shape": shape}
+    modal = complex(data_set["modal_a"]) / (2j * root.imag) if root.imag else 0j
+    mode = {"frequency": size / (2 * np.pi), "damping_ratio": -root.real / size, "modal_mass": modal or np.nan}
+    return mode | {"shape": shape}
 
 
 OF_NODES = ("origin", "phi", "psi", "AP")
@@ -132,7 +131,10 @@ SYMMETRIC, UNIT = 2, 4
 
 
 def read_standard_input(path: str) -> Contents:
-    """Read standard input data (SID, Wallrapp): body and nodes by name, each m0 + Σ m1 q with arrays m0 and m1."""
+    """Read standard input data (SID, Wallrapp): the body's and the nodes' quantities by name.
+
+    Each quantity is m0 + Σ m1 q with arrays m0 and m1.
+    """
     body: dict[str, Any] = {"nodes": [], "numbers": []}
     names = {name.lower(): name for name in (*OF_NODES, *OF_BODY)}
     block: dict[str, Any] | None = None
@@ -150,11 +152,12 @@ def read_standard_input(path: str) -> Contents:
             block = None
         elif match := _ENTRY.match(line):
             assert block is not None
-            at = tuple(int(each) - 1 for each in match[2].split(","))
-            block[f"m{match[1]}"][at] = _number(match[3])
+            index = tuple(int(number) - 1 for number in match[2].split(","))
+            block[f"m{match[1]}"][index] = _number(match[3])
         elif match := _SIZE.match(line):
             (body if block is None else block)[match[1].lower()] = _number(match[2])
-    if missing := [name for name in OF_BODY if name not in body and name not in ("ksigma", "Gr", "De")]:
+    missing = [name for name in OF_BODY if name not in body and name not in ("ksigma", "Gr", "De")]
+    if missing:
         raise InputError("path", f"{path} lacks {', '.join(missing)}", "export the whole body, after Wallrapp")
     blocks = [(name, block) for name, block in body.items() if name in OF_BODY]
     blocks += [pair for node in body["nodes"] for pair in node.items()]
@@ -172,7 +175,10 @@ def _number(text: str) -> float:
 
 
 def _arrays(block: dict[str, Any], swapped: bool) -> dict[str, Any]:
-    """Constant (rows, columns), and change with each coordinate (rows, coordinates, columns)."""
+    """Constant part (rows, columns), and change with each coordinate (rows, coordinates, columns).
+
+    The indices of coordinate and column are exchanged if `swapped`. One half of a symmetric array gives the other.
+    """
     rows, columns, count = (int(block.get(key, 0)) for key in ("nrow", "ncol", "nq"))
     indices = {index for index in block["m1"]}
     count = max([count, *(index[2 if swapped else 1] + 1 for index in indices)])

@@ -98,8 +98,8 @@ class Model:
     body: dict[str, Any] | None = None
 
     def matrix(self, role: str, name: str) -> tuple[Any, Any]:
-        """Matrix of a role, by its name or by a usual one, and what its rows are, or None."""
-        usual = [each for each in self.matrices if each.upper() in NAMES[role]]
+        """Matrix of a role, by its name or a usual one, and what its rows are, or None."""
+        usual = [matrix for matrix in self.matrices if matrix.upper() in NAMES[role]]
         if name and name not in self.matrices:
             fix = f"choose from {', '.join(self.matrices)}" if self.matrices else "give a file with matrices"
             raise InputError(role, f"is {name!r}, which is no matrix of the files", fix)
@@ -110,7 +110,7 @@ class Model:
         return _sparse(self.matrices[chosen]), self.unknowns.get(chosen, self.unknowns.get(""))
 
     def pair(self, mass: str, stiffness: str) -> tuple[Any, Any, Any]:
-        """Mass and stiffness of the same rows, and what these are, (u, 2), or None."""
+        """Mass and stiffness with the same rows, and what these are, (u, 2), or None if the files do not say."""
         m, of_m = self.matrix("mass", mass)
         k, of_k = self.matrix("stiffness", stiffness)
         if of_m is None or of_k is None or np.array_equal(of_m, of_k):
@@ -121,12 +121,14 @@ class Model:
                 problem = f"are {k.shape[0]}, and the files name {len(unknowns)} unknowns"
                 raise InputError("stiffness", f"has rows that {problem}", "give the files of one export")
             return m, k, unknowns
+        # Each gets rows of zeros for unknowns that only the other has.
         all_unknowns = np.unique(np.concatenate([of_m, of_k]), axis=0)
-        return *(_spread(each, rows, all_unknowns) for each, rows in ((m, of_m), (k, of_k))), all_unknowns
+        return _spread(m, of_m, all_unknowns), _spread(k, of_k, all_unknowns), all_unknowns
 
     def nodes_of(self, nodes: Any, unknowns: Any) -> tuple[Any, Any, Any, Any]:
-        """Return places (k, 3), numbers (k,), unknowns (u, 2) by index of the node and direction, and axes (k, 3, 3),
-        of the nodes that have unknowns; None for what is not known.
+        """Return places (k, 3), numbers (k,), unknowns (u, 2) and axes (k, 3, 3) of the nodes that have unknowns.
+
+        Unknowns are by the node's index and the direction. What the files do not say is None.
         """
         if nodes is not None:
             if self.places is not None:
@@ -141,24 +143,27 @@ class Model:
             return places, numbers, None, axes
         modal = unknowns[:, 1] == 0
         used = np.unique(unknowns[~modal, 0])
-        known = np.arange(len(places)) if numbers is None else np.asarray(numbers)
-        lacking = np.setdiff1d(used, known)
+        node_numbers = np.arange(len(places)) if numbers is None else np.asarray(numbers)
+        lacking = np.setdiff1d(used, node_numbers)
         if lacking.size:
-            listed = ", ".join(map(str, lacking[:3])) + (", ..." if lacking.size > 3 else "")
+            examples = ", ".join(map(str, lacking[:3])) + (", ..." if lacking.size > 3 else "")
             raise InputError(
-                "nodes", f"lack {lacking.size} that matrices or shapes are of: {listed}", "give the file that has them"
+                "nodes",
+                f"lack {lacking.size} that matrices or shapes are of: {examples}",
+                "give the file that has them",
             )
-        order = np.argsort(known, kind="stable")
-        chosen = order[np.searchsorted(known[order], used)]
+        order = np.argsort(node_numbers, kind="stable")
+        chosen = order[np.searchsorted(node_numbers[order], used)]
         rows = np.column_stack([np.where(modal, 0, np.searchsorted(used, unknowns[:, 0])), unknowns[:, 1]])
-        return places[chosen], known[chosen], rows, None if axes is None else axes[chosen]
+        return places[chosen], node_numbers[chosen], rows, None if axes is None else axes[chosen]
 
 
 def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
-    """Read files that complete one another: no reader opens another file than its own."""
+    """Read files that complete one another. No reader opens another file than its own."""
     endings = {Path(path).suffix.lower() for path in paths}
     for file in map(Path, paths):
-        if (rows := ROWS.get(file.suffix.lower())) and rows not in endings:
+        rows = ROWS.get(file.suffix.lower())
+        if rows and rows not in endings:
             problem = f"{file} is given without {file.with_suffix(rows).name}, which says what its rows are"
             raise InputError("path", problem, "name that file too")
     parts: dict[str, Any] = {"matrices": {}, "unknowns": {}}
@@ -173,7 +178,10 @@ def model_of(paths: Sequence[str | os.PathLike[str]]) -> Model:
 
 
 def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
-    """Return the contents of the second file with the nodes of both, each with the axes of the file that turns it."""
+    """Return the contents of the second file with the nodes of both files.
+
+    A node's axes are those of the file that turns it, or of the first if both do.
+    """
     if not ("numbers" in first and "numbers" in then):
         raise InputError("nodes", "are in two of the files", "give them once")
     new = ~np.isin(then["numbers"], first["numbers"])
@@ -188,7 +196,7 @@ def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
 
 
 def _spread(matrix: Any, rows: Any, all_unknowns: Any) -> Any:
-    """Return a matrix with a row and a column for each of `all_unknowns`, zero for those that `rows` lack."""
+    """Return a matrix with a row and a column for each of `all_unknowns`; those that `rows` lack are zero."""
     from scipy.sparse import coo_array
 
     index_of = {tuple(row): i for i, row in enumerate(all_unknowns.tolist())}
@@ -199,7 +207,7 @@ def _spread(matrix: Any, rows: Any, all_unknowns: Any) -> Any:
 
 
 def contents_of(path: str | os.PathLike[str]) -> Contents:
-    """Read a file in a process of its own; InputError if it ends otherwise than models do, or cannot be read."""
+    """Read a file in a process of its own. InputError if no reader has its ending, or if it cannot be read."""
     ending = Path(path).suffix.lower()
     if ending not in READERS:
         raise InputError("path", f"{path} ends in {ending or 'nothing'}", f"give one of {', '.join(READERS)}")
@@ -213,7 +221,7 @@ def contents_of(path: str | os.PathLike[str]) -> Contents:
 
 
 def _reading(path: str) -> Contents:
-    """Contents of a file by the reader of its ending; InputError whatever is wrong with it."""
+    """Contents of a file by the reader of its ending. Any exception of the reader becomes an InputError."""
     reader = READERS[Path(path).suffix.lower()]
     if Path(path).suffix.lower() == ".mtx":
         with open(path, "rb") as file:

@@ -18,7 +18,9 @@ CLOSE, NOTHING = 1e-9, 1e-13  # of the coordinates, and m or rad: a last correct
 
 @jax.jit
 def resting(equations: Any, base: Base, loads: Array | None) -> Array:
-    """Coordinates (n,) at which equations on a base hold at rest; NaN where Newton's method does not converge."""
+    """Coordinates (n,) of the equilibrium on a base with constant motion; NaN where Newton's method
+    does not converge.
+    """
     still = jnp.zeros(equations.size)
 
     def force(q: Array, share: Any) -> Array:
@@ -31,25 +33,30 @@ def resting(equations: Any, base: Base, loads: Array | None) -> Array:
 
 @partial(jax.jit, static_argnames=("stations", "axes"))
 def displaced(structure: Any, stations: tuple[int, ...], axes: tuple[int, ...], wanted: Array) -> Array:
-    """Coordinates (n,) of least strain energy at which `stations` are displaced along `axes` by `wanted`, m; NaN where
-    Newton's method does not converge.
+    """Coordinates (n,) of least strain energy at which `stations` are displaced along `axes` by `wanted`, m.
+
+    NaN where Newton's method does not converge.
     """
     n, equations = structure.size, structure.equations
 
-    def energy(z: Array, share: Any) -> Array:
-        q, pull = z[:n], z[n:]
-        moved = structure.displacement(q)[jnp.array(stations), jnp.array(axes)]
-        return equations.strain_energy(q) - pull @ (moved - share * wanted)
+    def lagrangian(z: Array, share: Any) -> Array:
+        """Strain energy less the work of the forces that hold the displacements, its multipliers."""
+        q, holding_forces = z[:n], z[n:]
+        displacement = structure.displacement(q)[jnp.array(stations), jnp.array(axes)]
+        return equations.strain_energy(q) - holding_forces @ (displacement - share * wanted)
 
-    return root(jax.grad(energy), jnp.zeros(n + len(axes)))[:n]
+    return root(jax.grad(lagrangian), jnp.zeros(n + len(axes)))[:n]
 
 
 def root(function: Any, start: Array) -> Array:
-    """Root x of ``function(x, share)`` at a share of 1, approached as the share grows; NaN where Newton's method does
-    not converge. Derivatives are implicit.
+    """Root x of ``function(x, share)`` at a share of 1; NaN where Newton's method does not converge.
+
+    The share grows in strides of some iterations each. Derivatives are implicit: they need no iterations.
     """
 
     def newton(_: Any, start: Array) -> tuple[Array, Array]:
+        """Solution and the size of the last correction; the share grows after every :data:`ITERATIONS` steps."""
+
         def correct(k: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
             x, _ = state
             value, slope = with_slope(partial(function, share=(k // ITERATIONS + 1) / STRIDES))(x)
@@ -58,5 +65,5 @@ def root(function: Any, start: Array) -> Array:
 
         return jax.lax.fori_loop(0, STRIDES * ITERATIONS, correct, (start, jnp.inf))
 
-    x, left = jax.lax.custom_root(partial(function, share=1.0), start, newton, linear_root, has_aux=True)
-    return jnp.where(left <= NOTHING + CLOSE * jnp.abs(x).max(), 1.0, jnp.nan) * x
+    x, last_correction = jax.lax.custom_root(partial(function, share=1.0), start, newton, linear_root, has_aux=True)
+    return jnp.where(last_correction <= NOTHING + CLOSE * jnp.abs(x).max(), 1.0, jnp.nan) * x

@@ -46,12 +46,13 @@ class Complete:
     def demanded(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
     ) -> tuple[Array, Array, Array]:
-        """Forces on the coordinates (..., n), and force N and moment N m at the root (..., 3), that a motion demands,
-        less those of the loads.
+        """Forces that a motion demands, less those of the loads: on the coordinates (..., n), and force, N, and moment,
+        N m, at the root (..., 3).
         """
-        along, force, moment = self.inertia.forces(q, qd, qdd, a, w, alpha)
-        along = along + (q @ self.stiffness + qd @ self.damping)
+        generalised, force, moment = self.inertia.forces(q, qd, qdd, a, w, alpha)
+
+        generalised = generalised + (q @ self.stiffness + qd @ self.damping)
         if self.work is None or loads is None:
-            return along, force, moment
-        load, pull, turn = self.work.generalised(q, loads)
-        return along - load, force - pull, moment - turn
+            return generalised, force, moment
+        load_generalised, load_force, load_moment = self.work.generalised(q, loads)
+        return generalised - load_generalised, force - load_force, moment - load_moment

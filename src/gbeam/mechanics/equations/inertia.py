@@ -59,8 +59,9 @@ class Particles:
     def forces(
         self, q: Array, qd: Array, qdd: Array, a: Vector, w: Vector, alpha: Vector
     ) -> tuple[Array, Vector, Vector]:
-        """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), and resultant and moment about the root, by components, on
-        a base with components (..., 1).
+        """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), and the resultant and moment about the root, by components.
+
+        The base's motion has components (..., 1), which are spread over the particles.
         """
         field: Any = self.field
         r, rd, rdd = field.components(q, qd, qdd)
@@ -94,8 +95,11 @@ class Bodies:
         return self.field.pulled(tangents, demanded.force, demanded.moment), demanded.total, demanded.about
 
     def _demanded(self, tangents: Tangents, a: Vector) -> Demanded:
-        """Forces at the nodes that the rates of the tangents t and the base's acceleration a demand, and resultants at
-        the root: of mass on the axis, of the sections' own inertia (`turn`), of particles beside the axis (`push`).
+        """Forces at the nodes that the motion demands, and resultants at the root.
+
+        `turn` is the part of the sections' own rotary inertia, `push` that of particles beside the axis; mass on the
+        axis makes the rest. `a` is the base's acceleration. Forces and moments are on the tangents and on the angles of
+        the nodes.
         """
         force, moment = add(mapped(tangents.tdd, self.pairs), scaled(self.first, a)), NONE
         base: Any = tuple(part if absent(part) else part[..., 0] for part in a)  # without the axis of nodes
@@ -107,16 +111,20 @@ class Bodies:
             on_sections = turn
             if self.aside is not None:
                 aside, lever = self._aside(tangents, a)
-                force, on_sections = add(force, mapped(aside, self.field.node_cumulative.T)), add(turn, lever)
+                force = add(force, mapped(aside, self.field.node_cumulative.T))
+                on_sections = add(turn, lever)
                 place = mapped(tangents.t, self.field.node_cumulative)
-                total, about = add(total, _summed(aside)), add(about, _summed(cross(place, aside)))
-            moment, about = mapped(on_sections, self.field.node_cumulative.T), add(about, _summed(on_sections))
+                total = add(total, _summed(aside))
+                about = add(about, _summed(cross(place, aside)))
+            moment = mapped(on_sections, self.field.node_cumulative.T)
+            about = add(about, _summed(on_sections))
         if len(self.beside):
             r, _, rdd = self.field.carried(tangents)
             push = scaled(self.beside, add(rdd, a))
-            along, bent = self.field.at_nodes(tangents, push)
-            force, moment = add(force, along), add(moment, bent)
-            total, about = add(total, _summed(push)), add(about, _summed(cross(r, push)))
+            node_force, node_moment = self.field.at_nodes(tangents, push)
+            force, moment = add(force, node_force), add(moment, node_moment)
+            total = add(total, _summed(push))
+            about = add(about, _summed(cross(r, push)))
         return Demanded(force, moment, total, about, turn, push)
 
     def slopes(
@@ -170,7 +178,7 @@ class Bodies:
         return concatenated(value)[..., 0, :], out
 
     def _turning_changes(self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side) -> Vector:
-        """Derivatives of :meth:`_turning`, whose value is `turn`, in the columns of `side`."""
+        """Derivatives of the sections' torque, which :meth:`_turning` returns as `turn`, in the columns of `side`."""
         (angle, rate, change), rotation, w = columns.angle, tangents.rotation, tangents.w
         relative = add(w, scaled(-1.0, tangents.base[0]))
         # Derivatives of ω and α as seen in axes that turn with the sections.
@@ -182,7 +190,8 @@ class Bodies:
             cross(side.units, relative),
             side.units,
         )
-        w, by_w, by_alpha = (turned_back(rotation, each) for each in (w, by_w, by_alpha))
+        # In the sections' axes the torque is J α + ω × J ω, with constant J.
+        w, by_w, by_alpha = (turned_back(rotation, vector) for vector in (w, by_w, by_alpha))
         torque = add(self._about_axes(by_alpha), cross(by_w, self._about_axes(w)), cross(w, self._about_axes(by_w)))
         return add(turned(rotation, torque), side.joined(cross(angle, turn), NONE, NONE, NONE, NONE))
 
@@ -194,7 +203,7 @@ class Bodies:
         return turned(inward, add(torque, cross(rate, momentum)))
 
     def _about_axes(self, vector: Vector) -> Vector:
-        """J v of vectors in the sections' axes."""
+        """Moments of inertia J times vectors in the sections' axes; J has three principal moments, or products, too."""
         x, y, z, *products = self.turning  # type: ignore[misc]
         if not products:
             return times(x, vector[0]), times(y, vector[1]), times(z, vector[2])
@@ -203,8 +212,9 @@ class Bodies:
         return turned(rows, vector)
 
     def _aside(self, tangents: Tangents, base: Vector) -> tuple[Vector, Vector]:
-        """Forces that the sections' first moments of mass demand beside those of their mass on the axis, and their
-        moments about the axis, at the nodes.
+        """Forces and moments about the axis, at the nodes, of sections whose centres of mass lie off the axis.
+
+        They come on top of those of the sections' mass on the axis.
         """
         assert self.aside is not None
         x, y, z = self.aside
@@ -222,8 +232,9 @@ class Inertia:
     same: Particles | Bodies
 
     def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Array, Array]:
-        """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), and resultant of m a and moment about the root (..., 3), of
-        particles on a base with acceleration (or specific force), angular velocity and angular acceleration (..., 3):
+        """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), resultant of m a, and moment about the root (..., 3).
+
+        The base has the acceleration (or specific force) a_O, angular velocity ω and angular acceleration α, (..., 3):
         a = a_O + α × r + ω × (ω × r) + 2 ω × ṙ + r̈.
         """
         motion = (q, qd, qdd, a, w, alpha)
@@ -231,24 +242,27 @@ class Inertia:
             stepped = self._stepped(motion)
             if stepped is not None:
                 return stepped[..., :-6], stepped[..., -6:-3], stepped[..., -3:]
-        xp, shape = namespace(self.mass, q, a), np.broadcast_shapes(*(each.shape[:-1] for each in motion))
-        along, total, moment = self.same.forces(q, qd, qdd, *(_components(each) for each in (a, w, alpha)))
+        xp = namespace(self.mass, q, a)
+        shape = np.broadcast_shapes(*(array.shape[:-1] for array in motion))
+        along, total, moment = self.same.forces(q, qd, qdd, *(_components(vector) for vector in (a, w, alpha)))
         along = xp.broadcast_to(along, (*shape, along.shape[-1]))
         return along, joined(xp, total, shape), joined(xp, moment, shape)
 
     def _stepped(self, motion: tuple[Array, ...]) -> Array | None:
-        """Forces, resultant and moment (..., n + 6) of one real motion with complex steps along the first axis, by the
-        derivatives at the real motion; None where :meth:`Bodies.slopes` does not apply.
+        """Forces, resultant and moment (..., n + 6) of a real motion with complex steps along the first axis.
+
+        They come from derivatives at the real motion, computed once for all steps. None where :meth:`Bodies.slopes`
+        does not apply.
         """
-        axes = max(each.ndim for each in motion)
-        real = [_common(each, axes) for each in motion]
+        axes = max(array.ndim for array in motion)
+        real = [_common(array, axes) for array in motion]
         if axes < 2 or not isinstance(self.same, Bodies) or self.same.aside is not None or any(x is None for x in real):
             return None
         q, qd, qdd, a, w, alpha = real
-        turns = [k for k in range(3) if any(np.imag(each[..., k]).any() for each in motion[4:])]
+        turns = [k for k in range(3) if any(np.imag(vector[..., k]).any() for vector in motion[4:])]
         still = not any(map(np.iscomplexobj, motion[:2]))
         out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns, still=still)
-        steps = np.moveaxis(concatenated([each.imag for each in motion]), 0, -2)
+        steps = np.moveaxis(concatenated([array.imag for array in motion]), 0, -2)
         return out + 1j * np.moveaxis(steps @ slope, -2, 0)
 
     def about(self, q: Array) -> tuple[Places, Geometric | None]:
@@ -291,17 +305,17 @@ class _Side(NamedTuple):
         return self._joined((by_coordinate, by_turn), (self.n, 3))
 
     def _joined(self, parts: tuple[Vector, ...], counts: tuple[int, ...]) -> Vector:
-        """Vectors with components (..., Σ counts, points) of `parts` with so many columns each."""
-        ends, columns = np.cumsum(counts), list[Any]()
+        """Join vectors along their columns, `counts` of each: components (..., Σ counts, points) of `parts`."""
+        ends, components = np.cumsum(counts), list[Any]()
         for component in zip(*parts, strict=True):
             if all(map(absent, component)):
-                columns.append(0)
+                components.append(0)
                 continue
             points = max(part.shape[-1] for part in component if not absent(part))
-            columns.append(np.empty((*self.shape, ends[-1], points)))
+            components.append(np.empty((*self.shape, ends[-1], points)))
             for part, end, count in zip(component, ends, counts, strict=True):
-                columns[-1][..., end - count : end, :] = part
-        x, y, z = columns
+                components[-1][..., end - count : end, :] = part
+        x, y, z = components
         return x, y, z
 
     def changes(self, columns: Columns, r: Vector, rd: Vector, w: Vector) -> Vector:
@@ -314,8 +328,9 @@ class _Side(NamedTuple):
 
 
 def _work(forces: Vector, slopes: Vector) -> Array:
-    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points), or (..., n, 1) alike at all points;
-    zero () where all are absent, as of a beam that only twists.
+    """Work (..., c, n) of forces (..., c, points) along slopes (..., n, points), or (..., n, 1) if alike at all points.
+
+    It is zero () where all are absent, as of a beam that only twists.
     """
     pairs = [(f, s) for f, s in zip(forces, slopes, strict=True) if not (absent(f) or absent(s))]
     if not pairs:
@@ -357,8 +372,10 @@ def _weighted(vectors: Vector, weight: Array) -> Vector:
 def inertia_of(
     field: StrainField | SeriesField | Places, mass: Array, line: int = 0, nodes: int = 0, *, symmetric: bool = False
 ) -> Inertia:
-    """Inertia of a field's particles (p,) kg. The first `line` of them are the sections at the `nodes`, one particle or
-    several a node; where they are `symmetric`, their axes y and z are principal and their centres on the beam's axis.
+    """Inertia of a field's particles (p,), kg.
+
+    The first `line` particles are the sections at the `nodes`, one or several a node. If the sections are `symmetric`,
+    their axes y and z are principal and their centres lie on the beam's axis.
     """
     if not isinstance(field, StrainField):
         return Inertia(field, mass, Particles(field, mass))
@@ -370,8 +387,8 @@ def inertia_of(
     c, axis_mass = field.cumulative[on_axis], mass[on_axis]
     turning, aside = None, None
     if offset is not None and line and not (symmetric and line == nodes):
-        before = field.strains.shape[1] - nodes
-        turning, aside = _moments(mass[:line], offset[:line], nodes, before, symmetric=symmetric)
+        root_nodes = field.strains.shape[1] - nodes
+        turning, aside = _moments(mass[:line], offset[:line], nodes, root_nodes, symmetric=symmetric)
     points = field[off_axis] if len(off_axis) else field.points(off_axis)
     pairs, first = c.T @ (axis_mass[:, None] * c), c.T @ axis_mass
     return Inertia(field, mass, Bodies(points, mass[off_axis], axis_mass.sum(), pairs, first, turning, aside))
@@ -380,8 +397,10 @@ def inertia_of(
 def _moments(
     mass: Array, offset: Array, nodes: int, before: int, *, symmetric: bool
 ) -> tuple[Array | None, Array | None]:
-    """Moments of inertia (3 or 6, G), kg m², and first moments (3, G), kg m, of the sections, as :class:`Bodies` takes
-    them, zero at the `before` nodes of the root; each is None where it is rounding.
+    """Moments of inertia (3 or 6, G), kg m², and first moments of mass (3, G), kg m, of the sections, as
+    :class:`Bodies` takes them.
+
+    They are zero at the `before` nodes of the root. What is only rounding is None.
     """
     xp = namespace(mass, offset)
 
@@ -399,6 +418,7 @@ def _moments(
     size = principal.max(initial=0.0)
     if size == 0:
         return None, None
-    coupled, beside = np.abs(products).max() > NOTHING * size, np.abs(aside).max() > NOTHING * mass.max()
-    turning = np.concatenate([principal, products]) if coupled else principal
-    return turning, aside if beside else None
+    has_products = np.abs(products).max() > NOTHING * size
+    is_off_axis = np.abs(aside).max() > NOTHING * mass.max()
+    turning = np.concatenate([principal, products]) if has_products else principal
+    return turning, aside if is_off_axis else None

@@ -138,8 +138,9 @@ class Coefficients:
     def frozen(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array]:
-        """C + G and K, (..., n, n), that decide whether the motion of an instant is stable: as :meth:`at`, without the
-        skew part of α's stiffness, which feeds no energy.
+        """C + G and K, (..., n, n), that decide whether the motion of an instant is stable.
+
+        They are those of :meth:`at`, without the skew part of α's stiffness: it feeds no energy.
         """
         xp = namespace(self.k_al, alpha_WB_B)
         velocity, stiffness, _ = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
@@ -148,9 +149,10 @@ class Coefficients:
 
     @property
     def terms(self) -> LinearTerms:
-        """Velocity (k, n, n), stiffness (k, n, n) and force (k, n) per unit of each of the k :meth:`features`."""
+        """Velocity (k, n, n), stiffness (k, n, n) and force (k, n) of a unit of each of the k :meth:`features`."""
         xp, n = namespace(self.mass), self.size
-        k_ww, f_ww = (xp.reshape(each, (9, *each.shape[2:])) for each in (self.k_ww, self.f_ww))
+        k_ww = xp.reshape(self.k_ww, (9, *self.k_ww.shape[2:]))
+        f_ww = xp.reshape(self.f_ww, (9, *self.f_ww.shape[2:]))
         stiffness = [self.stiffness[None], xp.zeros((3, n, n)), k_ww, self.k_al, self.k_a]
         force = [xp.zeros((4, n)), f_ww, self.f_al, self.f_a]
         if self.loads is not None:
@@ -160,7 +162,9 @@ class Coefficients:
         return LinearTerms(*map(xp.concatenate, (velocity, stiffness, force)))
 
     def features(self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None) -> Array:
-        """1, ω, ω ωᵀ, α, a_O and the components of the loads, (..., k), at base motions (..., 3)."""
+        """Quantities (..., k) that the coefficients are linear in, of base motions (..., 3): 1, ω, ω ωᵀ, α, a_O and
+        load components.
+        """
         xp, shape = namespace(a_WO_B, w_WB_B, load_values), w_WB_B.shape[:-1]
         w2 = w_WB_B[..., :, None] * w_WB_B[..., None, :]
         parts = [xp.ones((*shape, 1)), w_WB_B, xp.reshape(w2, (*shape, 9)), alpha_WB_B, a_WO_B]
@@ -181,8 +185,8 @@ class Coefficients:
         """Residual on a base whose motion is given, (..., n); zero where the equations hold."""
         velocity, stiffness, force = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         internal = velocity @ qd[..., None] + stiffness @ q[..., None]
-        left = qdd @ self.mass + internal[..., 0] - force
-        return left if self.bending is None else left + self.bending.forces(q)
+        residual = qdd @ self.mass + internal[..., 0] - force
+        return residual if self.bending is None else residual + self.bending.forces(q)
 
     def elastic(self, q: Array) -> Array:
         """Elastic forces (..., n) at coordinates (..., n)."""
@@ -308,7 +312,9 @@ def rest_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
 
 
 def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
-    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n), of one ratio ζ or one per mode, ascending in frequency."""
+    """Modal damping matrix M Φ diag(2ζω) Φᵀ M, (n, n), of one ratio ζ, or of one ratio a mode,
+    ascending in frequency.
+    """
     n, ratio = mass.shape[0], as_array(ratio)
     if ratio.ndim and len(ratio) != n:
         raise InputError(
@@ -330,7 +336,10 @@ def damping_matrix(ratio: Any, mass: Array, stiffness: Array) -> Array:
 
 
 def _weighted_root(mass: Array, stiffness: Array) -> Array:
-    """M Φ diag(ω) Φᵀ M = L √(L⁻¹KL⁻ᵀ) Lᵀ with M = LLᵀ, differentiable also at equal frequencies."""
+    """Matrix M Φ diag(ω) Φᵀ M of all modes, differentiable also at equal frequencies.
+
+    It is L √(L⁻¹KL⁻ᵀ) Lᵀ with M = LLᵀ: a root of a matrix, whose derivative solves a Sylvester equation.
+    """
     import jax
     import jax.numpy as jnp
 

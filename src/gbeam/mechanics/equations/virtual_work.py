@@ -45,8 +45,10 @@ class LoadWork:
         return force.sum(axis=-2), (turn + moment).sum(axis=-2)
 
     def forces(self, rotation: Array, values: Array) -> tuple[Array, Array]:
-        """Forces and moments (..., p, 3) at the loaded points, base axes, by rotations of their sections (..., p, 3, 3)
-        and load components (..., loads, 6).
+        """Forces and moments (..., p, 3) at the loaded points, base axes.
+
+        The points' sections have the rotations (..., p, 3, 3), with which follower loads turn. `values` (..., loads, 6)
+        are the components of the loads, each given to its points by their weights.
         """
         xp = namespace(rotation, values, self.weight)
         local = xp.asarray(self.weight)[:, None] * values[..., self.load, :]
@@ -67,7 +69,11 @@ class LoadWork:
         return self.terms(count, places, rotation, turns.first, turns.second)
 
     def terms(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
-        """Load terms by places, section rotations (p, 3, 3), and the first and second derivatives `turn` and `bend`."""
+        """Constant part and slope of the loads' generalised forces about a shape, for each of `count` loads.
+
+        The shape is given by `places`, by section rotations (p, 3, 3), and by their first and second derivatives `turn`
+        and `bend`.
+        """
         xp = namespace(places.first, rotation, self.weight)
         r, slope, second = places.r0, places.first, places.second
         epsilon = xp.asarray(EPSILON)
@@ -92,18 +98,20 @@ class LoadWork:
             xp.einsum("paij,pac->pcij", second, axes) + xp.einsum("pai,pacj->pcij", slope, turned),
         ]
         # A moment works along θ_i of [θ_i]× = ∂R/∂q_i Rᵀ.
-        once = angle(turn, rotation, "padi,pbd->pabi")
-        twice = angle(bend, rotation, "padij,pbd->pabij") + angle(turn, turn, "padi,pbdj->pabij")
-        moment = [xp.zeros_like(axes), rows(axes), xp.einsum("pei,pec->pci", once, axes)]
+        first_angle = angle(turn, rotation, "padi,pbd->pabi")
+        second_angle = angle(bend, rotation, "padij,pbd->pabij") + angle(turn, turn, "padi,pbdj->pabij")
+        moment = [xp.zeros_like(axes), rows(axes), xp.einsum("pei,pec->pci", first_angle, axes)]
         moment_slope = [
             xp.zeros_like(turned),
             rows(turned),
-            xp.einsum("peij,pec->pcij", twice, axes) + xp.einsum("pei,pecj->pcij", once, turned),
+            xp.einsum("peij,pec->pcij", second_angle, axes) + xp.einsum("pei,pecj->pcij", first_angle, turned),
         ]
-        onto = (np.arange(count)[:, None] == xp.asarray(self.load)) * xp.asarray(self.weight)  # (loads, p)
+        weight_of_load = (np.arange(count)[:, None] == xp.asarray(self.load)) * xp.asarray(self.weight)  # (loads, p)
 
         def summed(force: list[Array], moment: list[Array]) -> Array:
-            return xp.tensordot(onto, xp.concat([xp.concat(force, axis=2), xp.concat(moment, axis=2)], axis=1), axes=1)
+            return xp.tensordot(
+                weight_of_load, xp.concat([xp.concat(force, axis=2), xp.concat(moment, axis=2)], axis=1), axes=1
+            )
 
         return LoadTerms(summed(force, moment), summed(force_slope, moment_slope))
 

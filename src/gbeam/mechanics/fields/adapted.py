@@ -18,7 +18,7 @@ from gbeam.structure.beam import Beam
 
 
 def _family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool) -> Family:
-    """Shapes with nodal curvatures (g, shapes), slopes if `axial`: clamped at the root, scaled to ∫f² dx = L."""
+    """Shapes with nodal curvatures (g, shapes), or slopes if `axial`: clamped at the root, scaled to ∫f² dx = L."""
     integral = rule.cumulative(rule.node)
     slope = nodal if axial else integral @ nodal
     # As the closed forms do, each shape leaves the root upwards: by its curvature there, whatever the nodes are.
@@ -86,7 +86,10 @@ def spaces_of(beam: Beam, rule: Quadrature, counts: Counts) -> tuple[Space, ...]
 
 
 def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
-    """Space of displacements along x, y or z (0, 1, 2), or about x (3); panels of `rule` end at corners and bodies."""
+    """Space of displacements along x, y or z (`along` 0, 1, 2), or of turning about x (3), by nodal strains.
+
+    Panels of `rule` end at corners and bodies.
+    """
     first, *others = GROUPS[along]
     families = (first, *(family for family in others if counts[family]))
     section, stiffnesses = beam.section.at(rule.node), beam.stiffnesses(rule.node)
@@ -99,7 +102,7 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
     sums = rule.cumulative(rule.node)
 
     def sensitivity(x: Floats) -> tuple[Floats, Floats]:
-        """Displacements and the sections' angles (points, n)."""
+        """Displacements and section angles (points, n) of unit nodal strains, then of unit motions of the root."""
         first = rule.cumulative(x)
         move, turn = {0: (first, 0 * first), 3: (0 * first, first)}.get(along, (first @ sums, first))
         value, angle = [move, *[first] * len(families[1:])], [turn, *[0 * first] * len(families[1:])]
@@ -124,7 +127,10 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
 
 
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:
-    """Modes at rest of the beam by direction, from M κ = μ K κ with μ = 1/ω²: K is diagonal, M nearly singular."""
+    """Modes at rest of the beam by direction, as shapes.
+
+    They solve M κ = μ K κ with μ = 1/ω² for the nodal strains κ: K is diagonal and M is nearly singular.
+    """
     families: list[Family] = [lambda x: Shapes(*np.zeros((3, len(x), 0)))] * 6
     for motions in spaces_of(beam, rule, counts):
         scale = 1 / np.sqrt(motions.stiffness)
@@ -132,6 +138,5 @@ def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:
         for family in motions.families:
             if counts[family]:
                 families[family] = motions.family(family, modes[:, : counts[family]])
-    axial, along_y, along_z, *others = families
-    twist, shear_y, shear_z = others
+    axial, along_y, along_z, twist, shear_y, shear_z = families
     return axial, along_y, along_z, twist, shear_y, shear_z

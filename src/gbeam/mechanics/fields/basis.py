@@ -40,7 +40,7 @@ def bending_roots(count: int) -> Floats:
     guess = (np.arange(1, count + 1) - 0.5) * np.pi
     # The root leaves (i − ½)π by about 2 e^{−λ}, alternately up and down.
     root = guess - 2 * (-1.0) ** np.arange(1, count + 1) * np.exp(-guess)
-    for _ in range(8):
+    for _ in range(8):  # Newton's method
         sech = 2 * np.exp(-root) / (1 + np.exp(-2 * root))
         root = root - (np.cos(root) + sech) / (-np.sin(root) - sech * np.tanh(root))
     root.flags.writeable = False
@@ -48,23 +48,25 @@ def bending_roots(count: int) -> Floats:
 
 
 def bending_shapes(x: Floats, length: float, count: int) -> Shapes:
-    """Clamped-free shapes cosh βx − cos βx − σ(sinh βx − sin βx), ∫f² dx = L, by decaying exponentials, which do not
-    cancel: c/2 e^{β(x−L)} + (1+σ)/2 e^{−βx} − cos βx + σ sin βx, c = (1−σ) e^{λ}.
+    """Clamped-free shapes cosh βx − cos βx − σ(sinh βx − sin βx) with ∫f² dx = L.
+
+    They are written by decaying exponentials, which do not cancel: c/2 e^{β(x−L)} + (1+σ)/2 e^{−βx} − cos βx + σ sin
+    βx, c = (1−σ) e^{λ}.
     """
     lam = bending_roots(count)
     beta = lam / length
-    decay = np.exp(-lam)
-    den = 1 - decay**2 + 2 * decay * np.sin(lam)
-    sigma = (1 + decay**2 + 2 * decay * np.cos(lam)) / den
-    half_c = (np.sin(lam) - np.cos(lam) - decay) / den
+    exp_lam = np.exp(-lam)
+    den = 1 - exp_lam**2 + 2 * exp_lam * np.sin(lam)
+    sigma = (1 + exp_lam**2 + 2 * exp_lam * np.cos(lam)) / den
+    half_c = (np.sin(lam) - np.cos(lam) - exp_lam) / den
     phase = np.outer(x, beta)
-    tip = half_c * np.exp(phase - lam)
-    root = (1 + sigma) / 2 * np.exp(-phase)
+    growing = half_c * np.exp(phase - lam)
+    decaying = (1 + sigma) / 2 * np.exp(-phase)
     sine, cosine = np.sin(phase), np.cos(phase)
     return Shapes(
-        tip + root - cosine + sigma * sine,
-        beta * (tip - root + sine + sigma * cosine),
-        beta**2 * (tip + root + cosine - sigma * sine),
+        growing + decaying - cosine + sigma * sine,
+        beta * (growing - decaying + sine + sigma * cosine),
+        beta**2 * (growing + decaying + cosine - sigma * sine),
     )
 
 
@@ -89,30 +91,37 @@ def legendre_bending(x: Floats, length: float, count: int) -> Shapes:
 
 
 def closed_forms(length: float, counts: Counts) -> Families:
-    """Fixed-free bar and clamped-free bending shapes: of the bare uniform beam, rigid in twist and shear."""
+    """Families of the bare uniform beam: fixed-free bar and clamped-free bending shapes, Legendre's in
+    twist and shear.
+    """
 
     def family(shapes: Callable[[Floats, float, int], Shapes], count: int) -> Family:
         return lambda x: shapes(x, length, count)
 
-    axial, along_y, along_z, *others = counts
-    twist, shear_y, shear_z = (family(legendre_shapes, count) for count in others)
+    axial, along_y, along_z, twist, shear_y, shear_z = counts
     bending = family(bending_shapes, along_y), family(bending_shapes, along_z)
-    return family(bar_shapes, axial), *bending, twist, shear_y, shear_z
+    strains = family(legendre_shapes, twist), family(legendre_shapes, shear_y), family(legendre_shapes, shear_z)
+    return family(bar_shapes, axial), *bending, *strains
 
 
 def between_corners(x: Floats, edges: Sequence[float], count: int) -> Floats:
-    """Legendre polynomials between corners, (points, count): the constants of all pieces, then the next degree."""
+    """Legendre polynomials between corners, (points, count): the constants of all pieces, then the next degree of all.
+
+    Each is zero outside its piece.
+    """
     pieces, out = len(edges) - 1, np.zeros((len(x), count))
-    within = np.searchsorted(edges[1:-1], x)
+    piece_of_point = np.searchsorted(edges[1:-1], x)
     for k in range(count):
         degree, piece = divmod(k, pieces)
         low, high = edges[piece : piece + 2]
-        out[within == piece, k] = legendre.Legendre.basis(degree, domain=[low, high])(x[within == piece])
+        out[piece_of_point == piece, k] = legendre.Legendre.basis(degree, domain=[low, high])(
+            x[piece_of_point == piece]
+        )
     return out
 
 
 def polynomials(length: float, counts: Counts, corners: Sequence[float] = ()) -> Families:
-    """Legendre polynomials as strains, twist and curvatures of the exact field, between the `corners` of its line."""
+    """Legendre polynomials as strains, twist and curvatures of the exact field, in pieces between the `corners`."""
     if corners:
 
         def broken(count: int, scale: float) -> Family:
@@ -156,7 +165,7 @@ class Quadrature(NamedTuple):
         return self._matrix(x, integrate=False)
 
     def _matrix(self, x: Floats, *, integrate: bool) -> Floats:
-        """Matrix (points, g) of :meth:`cumulative` or :meth:`interpolation`."""
+        """Matrix (points, g) of :meth:`cumulative` or :meth:`interpolation`, by Legendre series in each panel."""
         per_panel = len(self.node) // (len(self.edges) - 1)
         to_coefficients = _operator(per_panel, integrate=integrate)
         panel = np.clip(np.searchsorted(self.edges, x, side="left") - 1, 0, len(self.edges) - 2)
@@ -165,7 +174,9 @@ class Quadrature(NamedTuple):
         node_panel = np.arange(len(self.node)) // per_panel
         out = np.zeros((len(x), len(self.node)))
         out[node_panel == panel[:, None]] = (in_panel * ((high - low) / 2)[:, None] if integrate else in_panel).ravel()
-        return np.where(node_panel < panel[:, None], self.weight, out) if integrate else out
+        if integrate:  # panels before the point's count whole
+            return np.where(node_panel < panel[:, None], self.weight, out)
+        return out
 
 
 @cache
@@ -176,7 +187,7 @@ def _gauss(nodes: int) -> tuple[Floats, Floats]:
 
 @cache
 def _operator(nodes: int, *, integrate: bool) -> Floats:
-    """Matrix from values at Gauss-Legendre nodes on [−1, 1] to Legendre coefficients of their polynomial, or of its
+    """Matrix from values at Gauss-Legendre nodes on [−1, 1] to the Legendre coefficients of their polynomial, or of its
     integral from −1.
     """
     xi, _ = _gauss(nodes)
@@ -187,11 +198,11 @@ def _operator(nodes: int, *, integrate: bool) -> Floats:
 
 
 def quadrature(length: float, per_panel: int, breaks: Sequence[float] = ()) -> Quadrature:
-    """Gauss-Legendre rule on [0, length], `per_panel` nodes between the `breaks` (corners of the section)."""
-    near = 1e-9 * length
+    """Gauss-Legendre rule on [0, length], `per_panel` nodes between neighbouring `breaks` (corners of the section)."""
+    slack = 1e-9 * length
     inner: list[float] = []
     for b in sorted(breaks):
-        if near < b < length - near and (not inner or b - inner[-1] > near):
+        if slack < b < length - slack and (not inner or b - inner[-1] > slack):
             inner.append(b)
     edges = np.array([0.0, *inner, length])
     xi, w = _gauss(per_panel)

@@ -50,7 +50,11 @@ class Frames:
     angles: Array
 
     def at(self, curvatures: Vector, *, points: bool) -> tuple[Rotation, Rotation]:
-        """Rotations by curvatures (..., G) at the nodes, (..., G), and at the points, (..., p), or the nodes' again."""
+        """Rotations of the sections at the nodes, (..., G), and the points, (..., p), by curvatures at the nodes.
+
+        Without `points` the second are the nodes' again. Curvature about one axis is integrated; about several it takes
+        :meth:`between`.
+        """
         axes = [axis for axis in range(3) if not absent(curvatures[axis])]
         if not axes:
             return UNTURNED, UNTURNED
@@ -65,7 +69,10 @@ class Frames:
         return rotations[0], rotations[-1]
 
     def between(self, curvatures: Vector) -> Array:
-        """Unit quaternions (4, ..., 1 + i) of the sections between the steps, the root's first (Magnus' expansion)."""
+        """Unit quaternions (4, ..., 1 + i) of the sections between the steps, beginning at the root.
+
+        Each step turns by Magnus' expansion of sixth order; the products of all steps before a section are its turn.
+        """
         shape = next(part.shape for part in curvatures if not absent(part))
         xp = namespace(*curvatures)
         count = len(self.size)
@@ -108,19 +115,19 @@ def _spread(about: tuple[int, ...], parts: tuple[Array, ...]) -> Vector:
 
 @cache
 def _differentiable() -> Any:
-    """Return :func:`_turns` for JAX with its own derivatives, by the integral of R δκ: no step is differentiated."""
+    """Return :func:`_turns` for JAX, with derivatives by the integral of R δκ: no step is differentiated."""
     import jax
 
     turns = jax.custom_jvp(_turns, nondiff_argnums=(0, 1))
 
     @turns.defjvp
-    def _(about: tuple[int, ...], points: bool, primals: Any, tangents: Any) -> Any:
+    def _(axes: tuple[int, ...], points: bool, primals: Any, tangents: Any) -> Any:
         frames, parts = primals
-        values = turns(about, points, frames, parts)
-        turning = turned(_matrix(values[0]), _spread(about, tangents[1]))
+        values = turns(axes, points, frames, parts)
+        turning = turned(_matrix(values[0]), _spread(axes, tangents[1]))
         changes = []
         for (w, x, y, z), sums in zip(values, (frames.node_angles, frames.angles), strict=False):
-            half = scaled(0.5, mapped(turning, sums))  # of the turn of each section
+            half = scaled(0.5, mapped(turning, sums))  # δq = ½ δθ q, as quaternions
             changes.append((-dot(half, (x, y, z)), *add(scaled(w, half), cross(half, (x, y, z)))))
         return values, tuple(changes)
 
@@ -133,7 +140,7 @@ def _bracket(left: Vector, right: Vector) -> Vector:
 
 
 def _product(p: Array, q: Array) -> Array:
-    """Products of quaternions (4, ...)."""
+    """Products of quaternions (4, ...), a row of the table at a time."""
     total = p[0] * q
     for part, (order, signs) in zip(p[1:], _UNITS, strict=True):
         if is_jax(total):
@@ -155,9 +162,11 @@ def _matrix(turn: Turn) -> Rotation:
 
 
 def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
-    """Nodes (r,) that stand for a root that moves and turns by columns (3, n), one that moves, then some that turn:
-    weights (r,) by which they move all that is outboard, weights (r, r) by which they move one another, and flags of
-    those that turn. The turn is that of a piece of unit length without extent, bent evenly.
+    """Nodes (r,) that stand for a root on springs, which moves by `move` q and turns by `turn` q, (3, n) each.
+
+    The turn is that of a piece of unit length without extent, bent evenly. A first node moves; others, if any, turn.
+    Returns weights (r,) by which they move all that is outboard, weights (r, r) by which they move one another, and
+    flags (r,) of those that turn.
     """
     turning_axes = int(np.any(turn, axis=1).sum())
     moves = int(np.any(move))
@@ -166,9 +175,9 @@ def root_rule(move: Array, turn: Array) -> tuple[Array, Array, Array]:
     values = np.linalg.inv(np.polynomial.legendre.legvander(xi, len(xi) - 1))
     inner = np.polynomial.legendre.legvander(xi, len(xi)) @ np.polynomial.legendre.legint(values, lbnd=-1) / 2
     weights = np.concatenate([np.ones(moves), w[:turns] / 2])
-    onto = np.zeros((moves + turns, moves + turns))
-    onto[moves:, moves:] = inner[:turns, :turns]
-    return weights, onto, np.arange(moves + turns) >= moves
+    among = np.zeros((moves + turns, moves + turns))
+    among[moves:, moves:] = inner[:turns, :turns]
+    return weights, among, np.arange(moves + turns) >= moves
 
 
 def beyond(corners: Numbers, x: Array) -> Array:
@@ -186,8 +195,10 @@ def frames_along(
     node_cumulative: Array,
     corners: Numbers = (),
 ) -> Frames:
-    """Frames at the quadrature nodes and at points x (p,) m of a beam whose nodes follow those of its root, with flags
-    `turning` (r,) and weights `root` (r, r) of :func:`root_rule`, and those of its corners, m.
+    """Frames at the quadrature nodes and at points x (p,), m, of a beam.
+
+    The nodes of the root come first, with flags `turning` (r,) and weights `root` (r, r) of :func:`root_rule`, then
+    those of the beam's corners, m.
     """
     before = len(turning) + len(corners)
     stops = np.unique(np.concatenate([rule.edges, rule.node, x]))

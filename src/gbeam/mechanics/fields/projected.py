@@ -31,7 +31,10 @@ class ProjectedField(Expanded):
     foreshortening: bool = static()
 
     def rotation(self, q: Array, at: Any = slice(None)) -> Array:
-        """Rotations (..., points, 3, 3) to second order: along the tangent, whose slopes the strain lessens."""
+        """Rotations (..., points, 3, 3) to second order: along the tangent, which the stretch flattens, and twist.
+
+        The twist is what a section turns about the tangent when it bends along y and z: ½ ∫ (v' w'' − w' v'') dx.
+        """
         xp = namespace(self.x, q)
         slope_s, slope_v, slope_w = at_nodes(self.slopes[:, at], q)
         slope_v, slope_w = (1 - slope_s) * slope_v, (1 - slope_s) * slope_w
@@ -41,27 +44,27 @@ class ProjectedField(Expanded):
         return arc @ about_x(twist)
 
     def places(self) -> Places:
-        """The positions, which are a polynomial of second degree."""
+        """Positions as polynomials of second degree: bending shortens the beam along x by ½ ∫ (v'² + w'²) dx."""
         xp = namespace(self.cumulative, self.shapes)
-        o = xp.zeros_like(self.x)
+        zeros = xp.zeros_like(self.x)
         _, points, n = self.shapes.shape
         second = xp.zeros((points, 3, n, n))
         if self.foreshortening:
             square = xp.einsum("cpi,cpj->pij", self.node_slopes, self.node_slopes)
             short = -xp.reshape(self.cumulative @ xp.reshape(square, (-1, n * n)), (points, n, n))
             second = xp.stack([short, 0 * short, 0 * short], axis=1)
-        return Places(xp.stack([self.x, o, o], -1), xp.moveaxis(self.shapes, 0, 1), second)
+        return Places(xp.stack([self.x, zeros, zeros], -1), xp.moveaxis(self.shapes, 0, 1), second)
 
     def turns(self) -> Turns:
-        """Taylor polynomial of the rotations."""
+        """Taylor polynomial of the rotations, as :meth:`rotation` has them."""
         xp = namespace(self.cumulative, self.shapes)
         (v, w), (bend_v, bend_w), (s, slope_v, slope_w) = self.node_slopes, self.curvatures, self.slopes
         twist = _products(xp, v, bend_w) - _products(xp, w, bend_v)
         points, n = s.shape
         twist = 0.5 * xp.reshape(self.cumulative @ xp.reshape(twist, (-1, n * n)), (points, n, n))
         first = xp.stack([0 * s, -slope_w, slope_v], axis=1)
-        lessened = [_products(xp, s, slope) for slope in (slope_w, -slope_v)]
-        second = xp.stack([twist, *lessened], axis=1)
+        reduced_slopes = [_products(xp, s, slope) for slope in (slope_w, -slope_v)]
+        second = xp.stack([twist, *reduced_slopes], axis=1)
         return exponential(first, second + xp.swapaxes(second, -1, -2))
 
 
@@ -73,7 +76,7 @@ def _products(xp: Any, left: Array, right: Array) -> Array:
 def projected_field(
     rule: Quadrature, x: np.ndarray, counts: tuple[int, ...], families: Families, *, foreshortening: bool
 ) -> ProjectedField:
-    """Build the field of TLAM (without foreshortening), FOAM, SFOAM and CFOAM at points (p,) m."""
+    """Build the field of TLAM (without foreshortening), FOAM, SFOAM and CFOAM at points x (p,), m."""
     n = sum(counts)
     starts = (0, counts[0], counts[0] + counts[1])
 
@@ -137,23 +140,23 @@ class RootedField(Expanded):
         return rotation_matrix(root @ self.turn.T)[..., None, :, :] @ self.inner.rotation(beam, at)
 
     def places(self) -> Places:
-        """Taylor polynomial of the positions."""
+        """Taylor polynomial of the positions: the inner field's, moved and turned with the root."""
         xp = namespace(self.x, self.inner.x)
         inner, springs = self.inner.places(), self.move.shape[1]
         n = inner.first.shape[-1]
         # p + φ × r, and to second order φ × (J q) and ½ φ × (φ × r).
-        about = xp.einsum("acb,ci,pb->pai", EPSILON, self.turn, inner.r0)
-        first = xp.concat([inner.first, about + self.move], axis=-1)
+        turned_rest = xp.einsum("acb,ci,pb->pai", EPSILON, self.turn, inner.r0)
+        first = xp.concat([inner.first, turned_rest + self.move], axis=-1)
         second = xp.pad(inner.second, ((0, 0), (0, 0), (0, springs), (0, springs)))
         if not self.linear:
-            mixed = xp.einsum("acb,ci,pbj->paij", EPSILON, self.turn, inner.first)
-            twice = 0.5 * xp.einsum("acb,ci,pbj->paij", EPSILON, self.turn, about)
-            half = xp.pad(xp.concat([mixed, twice], axis=-1), ((0, 0), (0, 0), (n, 0), (0, 0)))
+            turned_shapes = xp.einsum("acb,ci,pbj->paij", EPSILON, self.turn, inner.first)
+            turned_twice = 0.5 * xp.einsum("acb,ci,pbj->paij", EPSILON, self.turn, turned_rest)
+            half = xp.pad(xp.concat([turned_shapes, turned_twice], axis=-1), ((0, 0), (0, 0), (n, 0), (0, 0)))
             second = second + half + xp.swapaxes(half, -1, -2)
         return Places(inner.r0, first, second)
 
     def turns(self) -> Turns:
-        """Taylor polynomial of the rotations."""
+        """Taylor polynomial of the rotations: the root's after the inner field's."""
         xp = namespace(self.x, self.inner.x)
         inner, springs = self.inner.turns(), self.move.shape[1]
         points, _, _, n = inner.first.shape

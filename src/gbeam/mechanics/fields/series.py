@@ -118,7 +118,7 @@ class SeriesField:
         return self._moved(self._strains(q), self._strains(qd), self._strains(qdd))
 
     def _moved(self, at: Strains, rate: Strains = STILL, change: Strains = STILL) -> Rates:
-        """Places of the points and their first and second rates, by strains (d, k) at the nodes and their rates."""
+        """Positions of the points with first and second rates, by strains (d, k) at the nodes and their rates."""
         (d, k), (dd, kd), (ddd, kdd) = at, rate, change
         _, t, arm = self._at_rest()
         *_, lower, rows = self._rows((k, kd, kdd))
@@ -162,15 +162,18 @@ class SeriesField:
     # --- forces come back
 
     def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
-        """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
+        """Generalised forces (..., n) of forces `push` and moments `turn` on the points, base axes, (..., p) each.
+
+        The series is gone through from its highest order to its lowest.
+        """
         d, k = self._strains(q)
         axes, t, arm = self._at_rest()
         *lower, _ = ([row[0] for row in rows] for rows in self._rows((k, NONE, NONE)))
         force = mapped(push, self.exact.cumulative.T)
-        on_strain = add(*(scaled(each, row) for each, row in zip(force, lower[-1], strict=True)))
-        # On the rows of an order, and what the points' own arms and d add to those of the highest but one.
-        pulls, strained = ([scaled(each, by) for each in force] for by in (t, d))
-        on_arms = [mapped(scaled(each, arm), self.exact.cumulative.T) for each in push]
+        on_strain = add(*(scaled(component, row) for component, row in zip(force, lower[-1], strict=True)))
+        # Forces on the rows of an order, and what the points' own arms and d add to those of the highest but one.
+        pulls, strained = ([scaled(component, by) for component in force] for by in (t, d))
+        on_arms = [mapped(scaled(component, arm), self.exact.cumulative.T) for component in push]
         on_turn, outboard = NONE, self.exact.node_cumulative.T
         for rows in reversed(lower):
             inward = [add(mapped(pull, outboard), moment) for pull, moment in zip(pulls, on_arms, strict=True)]
@@ -198,7 +201,7 @@ class SeriesField:
         return Places(self.positions(rest), self.slopes(rest))
 
     def about(self, q: Array) -> Places:
-        """Places of the points about coordinates (n,), to second order."""
+        """Positions of the points near coordinates (n,), to second order."""
         xp, unit = namespace(self.exact.strains, self.arm, q), np.eye(self.size)
         pairs = unit[:, None] + unit  # D²(a, b) = ½ (D²(a + b, a + b) − D²(a, a) − D²(b, b))
         bent = self._joined(self._moved(self._strains(q), self._strains(pairs))[2], pairs)

@@ -106,10 +106,11 @@ class StrainField:
         return self.points(at)
 
     def joined(self, axis: StrainField) -> StrainField:
-        """Field of these points and, behind them, of those of `axis`, on the axis of the same beam."""
+        """Field of these points followed by the points of `axis`, a field of the same beam's axis."""
         xp, offset, count = namespace(self.cumulative, self.offset), self.offset, len(axis.cumulative)
-        parts = ((each.cumulative, each.frames.points, each.frames.angles) for each in (self, axis))
-        cumulative, points, angles = (xp.concatenate(pair) for pair in zip(*parts, strict=True))
+        cumulative = xp.concatenate([self.cumulative, axis.cumulative])
+        points = xp.concatenate([self.frames.points, axis.frames.points])
+        angles = xp.concatenate([self.frames.angles, axis.frames.angles])
         if offset is not None:
             offset = xp.pad(offset, ((0, count), (0, 0)))
         return replace(
@@ -148,17 +149,22 @@ class StrainField:
     def moving(
         self, q: Array, qd: Array, qdd: Array, base: tuple[Vector, Vector] = (NONE, NONE), *, points: bool = False
     ) -> Tangents:
-        """Motion at coordinates and rates (..., n) on a base with ω and α, with rotations at `points` if wanted."""
-        still = self.tangents(q, points=points)
-        rotation, t = still.rotation, still.t
+        """Motion of tangents and sections at coordinates and rates (..., n), on a base with angular rate ω and
+        acceleration α.
+
+        Rotations at the points are returned if `points`.
+        """
+        at_rest = self.tangents(q, points=points)
+        rotation, t = at_rest.rotation, at_rest.t
         rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
         stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
+        # ω and α are sums of the nodes' turning up to a section: ω' = R κ̇, α' = R κ̈ + ω × R κ̇.
         w = add(base[0], mapped(turn, self.node_cumulative))
         turnd = add(turned(rotation, change[3:]), cross(w, turn))
         alpha = add(base[1], mapped(turnd, self.node_cumulative))
         td = add(cross(w, t), stretching)
         tdd = add(cross(alpha, t), cross(w, add(td, stretching)), turned(rotation, change[:3]))
-        return Tangents(rotation, t, still.arm, td, tdd, turn, turnd, w, alpha, still.at_points, base)
+        return Tangents(rotation, t, at_rest.arm, td, tdd, turn, turnd, w, alpha, at_rest.at_points, base)
 
     def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
@@ -245,13 +251,15 @@ class StrainField:
     # --- how it changes
 
     def _slopes(self, q: Array) -> tuple[Tangents, Vector, Vector, Vector]:
-        """Tangents, and by coordinate (..., G, n) Rε and Rκ of the shapes and the angle by which each node turns."""
+        """Tangents and, by coordinate (..., G, n), strains Rε and curvatures Rκ of the shapes, and
+        angles of the nodes.
+        """
         tangents = self.tangents(q)
         rotation: Any = tuple(
             tuple(part if isinstance(part, int) else part[..., None] for part in row) for row in tangents.rotation
         )
         s, t, u, x, y, z = (part if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
-        strain, turn = (turned(rotation, each) for each in ((s, t, u), (x, y, z)))
+        strain, turn = turned(rotation, (s, t, u)), turned(rotation, (x, y, z))
         return tangents, strain, turn, self._summed(self.node_cumulative, turn)
 
     @staticmethod
@@ -261,10 +269,10 @@ class StrainField:
         return x, y, z
 
     def columns(self, tangents: Tangents) -> Columns:
-        """Columns of t and of the nodes' sections, by tangents whose components are (..., 1, G)."""
+        """Derivatives of tangents and section angles, a column a coordinate; tangents' components are (..., 1, G)."""
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
         fixed = (turned(tangents.rotation, part) for part in (shapes[:3], shapes[3:]))
-        strain, turn = (_carried(each, tangents.w, tangents.alpha) for each in fixed)
+        strain, turn = (_carried(vector, tangents.w, tangents.alpha) for vector in fixed)
         angle = mapped_rates(turn, self.node_cumulative)
         swung = cross_rates(angle, (tangents.t, tangents.td, tangents.tdd))
         return Columns(added_rates(swung, strain), angle, turn)
@@ -282,7 +290,7 @@ class StrainField:
         return self.jacobians(q)[0]
 
     def jacobians(self, q: Array) -> tuple[Array, Array]:
-        """∂r/∂q of the points, and the angles by which their sections turn with q, (..., p, 3, n) each."""
+        """Derivatives ∂r/∂q of the points and of their sections' angles by the coordinates, (..., p, 3, n) each."""
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative), self.size)
         tangents, strain, turn, angle = self._slopes(q)
         x, y, z = (part if absent(part) else part[..., None] for part in tangents.t)
@@ -291,12 +299,14 @@ class StrainField:
         if self.offset is not None:
             arm: Any = tuple(part if absent(part) else part[..., None] for part in tangents.arm)
             first = add(first, cross(at_points, arm))
-        slopes, angles = (xp.swapaxes(joined(xp, each, shape), -1, -2) for each in (first, at_points))
+        slopes, angles = (xp.swapaxes(joined(xp, vector, shape), -1, -2) for vector in (first, at_points))
         return slopes, angles
 
     def weighted(self, q: Array, weight: Array, arm: Array | None = None) -> Array:
-        """Second derivatives summed over the points, (k, 3, n, n): Σ w ∂²r/∂q² with weights w (k, p); where weighted
-        arms Ra (k, 3, p), base axes, are given, Σ w ∂²r/∂q² of the axis and Σ ∂²R/∂q² a.
+        """Weighted sums over the points of second derivatives by the coordinates, (k, 3, n, n).
+
+        With weights w (k, p) they are Σ w ∂²r/∂q². If weighted arms Ra (k, 3, p), base axes, are given, they are Σ w
+        ∂²r/∂q² of the axis and Σ ∂²R/∂q² a.
         """
         tangents, strain, turn, angle = self._slopes(q)
         xp, n = namespace(self.strains, self.offset, q), self.size
@@ -305,10 +315,10 @@ class StrainField:
             if self.offset is not None:
                 arm = weight[:, None] * joined(xp, tangents.arm, weight.shape[-1:]).T
         at_nodes = weight @ self.cumulative
-        along = arm @ self.cumulative
+        arm_sums = arm @ self.cumulative
         levers = [part if absent(part) else at_nodes * part for part in tangents.t]
         moved = [part if absent(part) else part @ self.node_cumulative for part in levers]
-        along = xp.stack([plus(part, along[:, axis]) for axis, part in enumerate(moved)], axis=1)
+        arm_sums = xp.stack([plus(part, arm_sums[:, axis]) for axis, part in enumerate(moved)], axis=1)
         out = [xp.zeros((len(weight), n, n)) for _ in range(3)]
 
         def add_to(axis: int, weights: Array, left: Array, right: Array) -> None:
@@ -319,8 +329,8 @@ class StrainField:
             add_to(a, EPSILON[a, b, c] * at_nodes, angle[b], strain[c])
         for a in range(3):  # θ × (κ × d) = κ (θ·d) − d (θ·κ)
             for b in range(3):
-                add_to(a, along[:, b], angle[b], turn[a])
-                add_to(a, -along[:, a], angle[b], turn[b])
+                add_to(a, arm_sums[:, b], angle[b], turn[a])
+                add_to(a, -arm_sums[:, a], angle[b], turn[b])
         whole = xp.stack(out, axis=1)
         return whole + xp.swapaxes(whole, -1, -2)
 
@@ -331,7 +341,7 @@ class StrainField:
         return Places(r, self.slopes(q)), self.weighted(q, xp.concatenate([mass[None], mass * r.T]))
 
     def curved(self, q: Array) -> tuple[Places, Array, Turns]:
-        """Places about coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
+        """Positions near coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
         xp, count = namespace(self.strains, self.offset, q), len(self.cumulative)
         slopes, angle = self.jacobians(q)
         rotation, unit = self.rotation(q), xp.eye(count)  # of weights: each point by itself
@@ -348,7 +358,7 @@ def _carried(vector: Vector, w: Vector, alpha: Vector) -> tuple[Vector, Vector, 
 
 
 def cross_rates(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
-    """Products θ × r with their rates."""
+    """Vector product θ × r with its first and second rates, from those of θ and r."""
     (turn, rate, change), (r, rd, rdd) = angle, arm
     return (
         cross(turn, r),
@@ -401,11 +411,14 @@ def strain_field(
     turn: Array | None = None,
     line: Line | None = None,
 ) -> StrainField:
-    """Field of a beam at points x (p,) m by the `strains` (6, g, n) of its shapes at the quadrature nodes. Without a
-    `line` it is straight at rest; its root moves by `move` q and turns by `turn` q, (3, n) each, m and rad.
+    """Field of a beam at points x (p,), m, by the `strains` (6, g, n) of its shapes at the quadrature nodes.
+
+    Without a `line` the beam is straight at rest. Its root moves by `move` q, m, and turns by `turn` q, rad, (3, n)
+    each.
     """
     n = strains.shape[-1]
-    shift, spin = (np.zeros((3, n)) if each is None else each for each in (move, turn))
+    shift = np.zeros((3, n)) if move is None else move
+    spin = np.zeros((3, n)) if turn is None else turn
     weights, root, turning = root_rule(shift, spin)
     corners = () if line is None else line.corners
     before, nodes = len(weights) + len(corners), len(rule.node)
@@ -420,14 +433,14 @@ def strain_field(
         rest[3:, len(weights) : before] = np.reshape(line.turns, (-1, 3)).T
     # A corner is a node without extent that turns at rest, and with it all that lies beyond.
     cumulative, node_cumulative = (
-        np.concatenate([np.tile(weights, (len(at), 1)), beyond(corners, at), rule.cumulative(at)], axis=1)
-        for at in (x, rule.node)
+        np.concatenate([np.tile(weights, (len(places), 1)), beyond(corners, places), rule.cumulative(places)], axis=1)
+        for places in (x, rule.node)
     )
     root_rows = np.pad(root, ((0, len(corners)), (0, len(corners) + nodes)))
     node_cumulative = np.concatenate([root_rows, node_cumulative])
     frames = frames_along(rule, x, turning, root, cumulative, node_cumulative, corners)
-    shaped = tuple(bool(np.any(each)) for each in all_strains)
-    present = tuple(has_shapes or bool(np.any(each)) for has_shapes, each in zip(shaped, rest, strict=True))
+    shaped = tuple(bool(np.any(strain)) for strain in all_strains)
+    present = tuple(has_shapes or bool(np.any(strain)) for has_shapes, strain in zip(shaped, rest, strict=True))
     return StrainField(cumulative, node_cumulative, all_strains, rest, frames, None, shaped, present)
 
 
@@ -436,7 +449,7 @@ STRAINS = (0, 5, 4, 3, 1, 2)
 
 
 def shaped_strains(rule: Quadrature, families: Families) -> Array:
-    """Values (6, g, n) of the strains of shapes: the curvatures of the bending families, the slopes of the others."""
+    """Values (6, g, n) of the strains of shapes. Bending families give curvatures, the others slopes."""
     columns = []
     for strain, family in zip(STRAINS, families, strict=True):
         shape = family(rule.node)

@@ -45,7 +45,7 @@ class Places:
         return self.first + xp.einsum("paij,...j->...pai", self.second, q)
 
     def positions(self, q: Any) -> Any:
-        """Places at coordinates (..., n), (..., p, 3) m."""
+        """Positions (..., p, 3), m, at coordinates (..., n)."""
         points, axes, n = self.first.shape
         if self.second is None:
             return self.r0 + self._linear(q)
@@ -69,7 +69,9 @@ class Places:
         return r, rd, rdd
 
     def along(self, q: Any, push: Vector) -> Any:
-        """Generalised forces (..., n) of forces on the points, by components (..., p)."""
+        """Generalised forces (..., n) of forces on the points, by components (..., p): the slopes at q, transposed,
+        times the forces.
+        """
         xp, (points, axes, n) = namespace(self.first, q), self.first.shape
         force = xp.stack(xp.broadcast_arrays(*push), axis=-1)
         flat = xp.reshape(force, (*force.shape[:-2], points * axes))
@@ -123,7 +125,7 @@ class Turns:
         return Turns(self.first + other.first, self.second + other.second + cross + xp.swapaxes(cross, -1, -2))
 
     def carry(self, places: Places, offset: Any) -> Places:
-        """Places of points that are fixed to the sections, `offset` (p, 3) m from `places`, section axes."""
+        """Positions of points that are fixed to the sections at `offset` (p, 3), m, from `places`, in section axes."""
         xp = namespace(self.first, places.first, offset)
         return Places(
             places.r0 + (offset if self.rest is None else xp.einsum("pab,pb->pa", self.rest, offset)),
@@ -154,7 +156,7 @@ class Polynomials:
         return (xp.eye(3) if rest is None else rest) + change
 
     def along(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
-        """Generalised forces (..., n) of forces and moments on the points, by components (..., p)."""
+        """Generalised forces (..., n) of forces `push` and moments `turn` on the points, by components (..., p)."""
         straight = self.places.along(q, push)
         if all(map(absent, turn)):
             return straight

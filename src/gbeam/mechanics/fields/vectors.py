@@ -116,7 +116,7 @@ def split(vectors: Any) -> Vector:
 
 
 def joined(xp: Any, parts: tuple[Scalar, ...], shape: tuple[int, ...]) -> Any:
-    """Array (*shape, k) of k components; where one has more axes or is longer, `shape` is broadcast to it."""
+    """Join k components to an array (*shape, k). Components that are larger than `shape` enlarge it."""
     sizes = {shape, *(part.shape for part in parts if not isinstance(part, int | float))}
     shape = np.broadcast_shapes(*sizes) if len(sizes) > 1 else shape
     if xp is not np:
@@ -149,8 +149,9 @@ def sine_cosine(angle: Array) -> tuple[Array, Array]:
 
 @cache
 def _compiled() -> Any:
-    """Sine and cosine for XLA, with their derivatives. The product with the unit matrix keeps XLA from computing the
-    polynomials again wherever they are used.
+    """Sine and cosine for XLA, with their derivatives.
+
+    The product with the unit matrix keeps XLA from computing the polynomials again wherever they are used.
     """
     import jax
 
@@ -179,15 +180,15 @@ _COSINE = [(2 * k - 1) * (2 * k) for k in range(8, 0, -1)]
 
 
 def _polynomials(angle: Array) -> tuple[Array, Array]:
-    """Sines and cosines to 2e-16 up to a million quarter turns: Taylor's polynomials about the nearest one."""
+    """Sines and cosines to 2e-16, up to a million quarter turns: Taylor's polynomials about the nearest one."""
     xp = namespace(angle)
     quarters = xp.round(angle * (2 / np.pi))
-    near = (angle - quarters * _QUARTER[0]) - quarters * _QUARTER[1]
-    sine, cosine = near * _series(near**2, 1.0, _SINE), _series(near**2, 1.0, _COSINE)
-    turn = quarters - 4 * xp.floor(quarters / 4)
-    odd = (turn == 1) | (turn == 3)
+    remainder = (angle - quarters * _QUARTER[0]) - quarters * _QUARTER[1]
+    sine, cosine = remainder * _series(remainder**2, 1.0, _SINE), _series(remainder**2, 1.0, _COSINE)
+    quadrant = quarters - 4 * xp.floor(quarters / 4)
+    odd = (quadrant == 1) | (quadrant == 3)
     sine, cosine = xp.where(odd, cosine, sine), xp.where(odd, sine, cosine)
-    return xp.where(turn >= 2, -sine, sine), xp.where((turn == 1) | (turn == 2), -cosine, cosine)
+    return xp.where(quadrant >= 2, -sine, sine), xp.where((quadrant == 1) | (quadrant == 2), -cosine, cosine)
 
 
 _SERIES = 0.1  # of φ²: below, six terms of the series are all digits
@@ -204,7 +205,7 @@ def _series(square: Array, first: float, divisors: list[int]) -> Array:
 
 
 def exponential_of(square: Array) -> tuple[Array, Array, Array]:
-    """sin φ/φ, (1 − cos φ)/φ² and cos φ of φ², smooth through zero."""
+    """The functions sin φ/φ, (1 − cos φ)/φ² and cos φ of φ² = `square`, smooth through zero."""
     xp = namespace(square)
     if xp is np and np.abs(square).max(initial=0.0) < _SERIES:  # a fifth of the time of the functions
         versine = _series(square, 0.5, _VERSINE)

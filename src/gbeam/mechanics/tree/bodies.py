@@ -108,12 +108,13 @@ class Rigid:
         return q, Wrench(force, root.alpha @ self.inertia + cross(root.w, spin) + cross(self.centre, force))
 
     def contracted(self, carrier: Roots, root: Roots) -> Rigid:
-        """Contract it by the motion of its `carrier`, which tells that of its root; itself where that is in doubt."""
+        """Contract it with its `carrier`'s motion, which determines that of its `root`; itself if that is doubtful."""
         reach = carrier.reach(root)
         if reach is None:
             return self
-        square = (self.centre @ self.centre) * np.eye(3) - np.outer(self.centre, self.centre)
-        terms = self.mass, self.mass * self.centre, self.inertia + self.mass * square
+        # Moments of inertia about the root by the parallel axis theorem.
+        parallel_axis = (self.centre @ self.centre) * np.eye(3) - np.outer(self.centre, self.centre)
+        terms = self.mass, self.mass * self.centre, self.inertia + self.mass * parallel_axis
         return replace(self, contraction=rigid_rows(*terms, reach))
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
@@ -136,13 +137,17 @@ class StrainedPoints:
     field: StrainField | SeriesField
 
     def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
+        """Motions of the points relative to the root: places, velocities, accelerations and rotations
+        with their rates.
+        """
         r, rd, rdd = self.field.paths(q, qd, qdd)
         R, w, alpha = self.field.turning(q, qd, qdd)
-        turns = ([turned_back(R[..., k, :, :], each[..., k, :]) for each in (w, alpha)] for k in range(r.shape[-2]))
-        return [
-            Relative(r[..., k, :], rd[..., k, :], rdd[..., k, :], R[..., k, :, :], *turn)
-            for k, turn in enumerate(turns)
-        ]
+        motions = []
+        for k in range(r.shape[-2]):
+            R_k = R[..., k, :, :]
+            rates = turned_back(R_k, w[..., k, :]), turned_back(R_k, alpha[..., k, :])
+            motions.append(Relative(r[..., k, :], rd[..., k, :], rdd[..., k, :], R_k, *rates))
+        return motions
 
     def places_of(self, q: Array) -> Array:
         """Places (..., p, 3) m in the root's axes, by coordinates (..., n)."""
@@ -178,10 +183,11 @@ class PolynomialPoints:
         return self.r0 + namespace(slope, q).einsum("...pai,...i->...pa", slope, q)
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
+        """Generalised forces (..., n) of wrenches that act at the points."""
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         points = np.array([acting.point for acting in wrenches])
         vectors = [(turned(by.R, wrench.force), wrench.moment) for _, by, wrench in wrenches]  # root's, point's axes
-        force, moment = (xp.stack(xp.broadcast_arrays(*each), axis=-2) for each in zip(*vectors, strict=True))
+        force, moment = (xp.stack(xp.broadcast_arrays(*parts), axis=-2) for parts in zip(*vectors, strict=True))
         slope = self.first[points] + xp.einsum("paij,...j->...pai", self.second[points], q)
         turning = self.turn[points] + xp.einsum("paij,...j->...pai", self.bend[points], q)
         phi = xp.einsum("...pai,...i->...pa", (self.turn[points] + turning) / 2, q)
@@ -270,11 +276,13 @@ class LinearBody:
         return self.points.places_of(q)
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
+        """Forces on the coordinates (..., n) and wrench at the root that a motion demands, by moments of mass."""
         c = self.coefficients
         if self.contraction is not None:
             return self._contracted(self.contraction, q, qd, qdd, root, loads)
+        # Force at the root: d/dt of the momentum m v + ω × S + Ṡ; moment: d/dt of J ω + h, about the moving root.
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
-        felt = qd if self.hub_force else 0 * qd  # by the root
+        felt = qd if self.hub_force else 0 * qd  # rates that the root feels
         Sdd = turned(Si, qdd) + turned(_times(c.k_a, felt), qd)
         hd = turned(hi, qdd) + turned(_times(c.k_al, felt), qd)
         force = c.rigid[0] * root.a + cross(root.alpha, S) + Sdd
@@ -301,7 +309,7 @@ class LinearBody:
     def _contracted(
         self, by: Contraction, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None
     ) -> tuple[Array, Wrench]:
-        """Forces and wrench as :meth:`demanded`, by constants that are contracted."""
+        """Forces and wrench as :meth:`demanded` returns them, computed by contracted constants."""
         c, (along, rows) = self.coefficients, by.demanded(q, qd, qdd, root.a, root.w, root.alpha)
         if c.bending is not None:
             along = along + c.bending.forces(q)
@@ -320,14 +328,14 @@ class LinearBody:
         return self if constants is None else replace(self, contraction=constants)
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
-        """S, ∂S/∂q, Ṡ, J, ∂J/∂q, the momentum h = Σ h_i q̇_i, and the h_i."""
+        """Moments S, ∂S/∂q, Ṡ and J, ∂J/∂q, the angular momentum h = Σ h_i q̇_i, and the h_i, at `q` and `qd`."""
         c = self.coefficients
         Si = -c.f_a + _times(c.k_a, q)
         S = c.rigid[1:4] + turned((Si - c.f_a) / 2, q)
         Ji = 2 * c.f_ww - _times(2 * c.k_ww, q)
         J = c.second_moment + _times(c.f_ww, q) + namespace(Ji, q).einsum("...abi,...i->...ab", Ji, q) / 2
         hi = -c.f_al + _times(c.k_al, q)
-        Sd, h = (turned(each, qd) for each in (Si, hi))
+        Sd, h = turned(Si, qd), turned(hi, qd)
         return S, Si, Sd, J, Ji, h, hi
 
     def along(self, q: Array, wrenches: list[Acting]) -> Array:
@@ -344,18 +352,20 @@ class LinearBody:
 
 
 def momentum(body: Body, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:
-    """Kinetic energy (...) J, and momentum N s and angular momentum N m s about the root, its axes: the forces that
-    accelerations demand of what rests are momenta where rates take their place.
+    """Kinetic energy (...), J, and momentum, N s, and angular momentum, N m s, about the root in its axes.
+
+    The forces that accelerations demand of a body at rest become its momenta when rates take the accelerations' place.
     """
     still = 0 * root.w
-    along, wrench = body.demanded(q, 0 * qd, qd, Frame(None, None, None, still, root.v, root.w), None)
+    generalised, wrench = body.demanded(q, 0 * qd, qd, Frame(None, None, None, still, root.v, root.w), None)
     energy = (wrench.force * root.v + wrench.moment * root.w).sum(axis=-1)
-    return (energy + ((along - body.elastic(q)) * qd).sum(axis=-1)) / 2, wrench
+    return (energy + ((generalised - body.elastic(q)) * qd).sum(axis=-1)) / 2, wrench
 
 
 def carried(c: Coefficients) -> Array | None:
     """Inertia (n, n) of the mean rigid motion that has the momentum of deforming, C₀ᵀ R₀⁻¹ C₀ at q = 0.
-    None where the particles lie on a line: the inertia R₀ of the rigid body is singular.
+
+    None where the particles lie on a line: the rigid body's inertia R₀ is singular there.
     """
     mass, S, J = c.rigid[0], c.rigid[1:4], c.second_moment
     if not is_traced(J):
@@ -373,8 +383,10 @@ def _about_centre(mass: Array, S: Array, J: Array) -> Array:
 
 
 def _mean_motion(mass: Array, S: Array, J: Array, push: Array, spin: Array) -> tuple[Array, Array]:
-    """Velocity and angular velocity (..., 3) at its root of the rigid body (mass, S and J about the root) that has the
-    momentum `push` and the angular momentum `spin` about the root.
+    """Velocity and angular velocity (..., 3) at its root of a rigid body with a given momentum.
+
+    The body has `mass` and, about the root, the moments S and J. `push` is its momentum, `spin` the angular momentum
+    about the root.
     """
     centre, inertia = S / mass, _about_centre(mass, S, J)
     x, y, z = (inertia[..., k, :] for k in range(3))  # rows; the inverse is by their vector products
@@ -391,18 +403,19 @@ def _times(tensor: Array, q: Array) -> Array:
 
 
 def _polynomial(first: Array, second: Array, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
-    """J q + ½ q H q, and its first and second derivatives with respect to time, (..., p, 3)."""
+    """Value J q + ½ q H q of a polynomial (..., p, 3), with its first and second derivatives with respect to time."""
     xp = namespace(first, q)
     bend, bending = _times(second, q), _times(second, qd)
-    value, rate, change, swept = (
-        xp.einsum("...pai,...i->...pa", *pair)
-        for pair in ((first + bend / 2, q), (first + bend, qd), (first + bend, qdd), (bending, qd))
-    )
-    return value, rate, change + swept
+
+    def product(slope: Array, coordinates: Array) -> Array:
+        return xp.einsum("...pai,...i->...pa", slope, coordinates)
+
+    slope = first + bend
+    return product(first + bend / 2, q), product(slope, qd), product(slope, qdd) + product(bending, qd)
 
 
 def polynomial_points(sections: Polynomials) -> PolynomialPoints:
-    """Points on sections whose places and rotations are polynomials."""
+    """Points on sections whose places and rotations are polynomials of the coordinates."""
     places, turns = sections.places, sections.turns
     vectors = (
         -0.5 * namespace(part).einsum("abc,pbc...->pa...", EPSILON, part) for part in (turns.first, turns.second)

@@ -41,8 +41,9 @@ def refuse_turnless(where: str, body: Structure, on: int) -> None:
 
 
 def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hinged: bool = False) -> Body:
-    """Terms of a body in the equations, `free` if its root moves by unknowns, `hinged` if by one hinge on the ground
-    alone; InputError unless it can be in a tree.
+    """Terms of a body in the equations; InputError unless the body can be in a tree.
+
+    It is `free` if its root moves by unknowns, `hinged` if only by one hinge on the ground.
     """
     if isinstance(body, RigidBody):
         return body.body
@@ -53,8 +54,10 @@ def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hing
 
 
 def terms_of(body: Structure, *, free: bool = False) -> Body:
-    """Terms of a structure in the equations on any root; a `free` one adds :func:`carried` to those of a solid, and
-    takes from those of SFOAM what its printed equations lack.
+    """Terms of a structure in the equations on any root.
+
+    If it is `free`, a solid's terms include :func:`carried`, and the root of SFOAM does not feel the rates of its
+    coordinates: its printed equations lack these forces.
     """
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
@@ -64,12 +67,12 @@ def terms_of(body: Structure, *, free: bool = False) -> Body:
         points = StrainedPoints(body.field[body.first_station + stations])
     else:
         places = body.station_places[stations]
-        none = np.zeros((*places.first.shape, body.size))
-        second, turn = none if places.second is None else places.second, 0 * places.first
+        zeros = np.zeros((*places.first.shape, body.size))
+        second, turn = zeros if places.second is None else places.second, 0 * places.first
         if body.turns is not None:
             turn = np.nan_to_num(body.turns[stations])
-        points = PolynomialPoints(places.r0, places.first, second, turn, none)
+        points = PolynomialPoints(places.r0, places.first, second, turn, zeros)
     if isinstance(equations, Coefficients):
-        mean = carried(equations) if free and body.field is None else None
-        return LinearBody(equations, points, mean, body.hub_force or not free)
+        mean_inertia = carried(equations) if free and body.field is None else None
+        return LinearBody(equations, points, mean_inertia, body.hub_force or not free)
     return FieldBody(equations, points)

@@ -80,24 +80,27 @@ def _cleared(vectors: Floats) -> Floats:
     return np.where(sizes > ROUNDING * sizes.max(), vectors, 0.0)
 
 
-def _span(samples: Floats, told: Floats) -> tuple[Pivots, Floats] | None:
-    """Components of vectors that tell their others, of which there are `samples` (s, m), and rows by which they tell
-    other vectors (s, l); None where some are nearly dependent, or do not tell these.
+def _span(samples: Floats, targets: Floats) -> tuple[Pivots, Floats] | None:
+    """Components that determine all others of the vectors `samples` (s, m), and rows by which they give the vectors
+    `targets` (s, l).
+
+    Components are chosen by Gram and Schmidt's method. None if some are nearly dependent, or do not determine
+    `targets`.
     """
-    if not (np.isfinite(samples).all() and np.isfinite(told).all()):
+    if not (np.isfinite(samples).all() and np.isfinite(targets).all()):
         return None
-    left, pivots, sizes = samples.copy(), list[int](), np.sqrt((samples**2).sum(axis=0))
+    residual, pivots, sizes = samples.copy(), list[int](), np.sqrt((samples**2).sum(axis=0))
     for k in np.flatnonzero(sizes):
-        size = math.sqrt(left[:, k] @ left[:, k])
+        size = math.sqrt(residual[:, k] @ residual[:, k])
         if PARALLEL * sizes[k] < size < INDEPENDENT * sizes[k]:
             return None
         if size >= INDEPENDENT * sizes[k]:
-            unit = left[:, k] / size
-            left -= unit[:, None] * (unit @ left)
+            direction = residual[:, k] / size
+            residual -= direction[:, None] * (direction @ residual)
             pivots.append(int(k))
-    rows = np.linalg.lstsq(samples[:, pivots], told, rcond=None)[0]
-    parts, largest = np.abs(rows) * np.abs(samples).max(axis=0)[pivots, None], np.abs(told).max(axis=0)
-    if (np.abs(samples[:, pivots] @ rows - told) > PARALLEL * largest).any():
+    rows = np.linalg.lstsq(samples[:, pivots], targets, rcond=None)[0]
+    parts, largest = np.abs(rows) * np.abs(samples).max(axis=0)[pivots, None], np.abs(targets).max(axis=0)
+    if (np.abs(samples[:, pivots] @ rows - targets) > PARALLEL * largest).any():
         return None
     return tuple(pivots), np.where(parts <= ROUNDING * largest, 0.0, rows)
 
@@ -143,9 +146,9 @@ def _factors(twists: Floats) -> tuple[Floats, Floats, Floats]:
 
 @cache
 def _unit_factors() -> tuple[Floats, Floats, Floats]:
-    """Factors as :func:`_factors`, of each component of a twist."""
+    """Factors, as :func:`_factors` returns them, of unit components of a twist (velocity V and angular velocity Ω)."""
     unit, (V, turns) = np.eye(3), np.eye(6).reshape(6, 2, 3).swapaxes(0, 1)
-    across, whirl = (np.einsum("abc,tb->tca", EPSILON, each) for each in (V, turns))  # v × e_c and Ω × e_c
+    across, whirl = (np.einsum("abc,tb->tca", EPSILON, vector) for vector in (V, turns))  # v × e_c and Ω × e_c
     by_mass, by_S, by_J = np.zeros((6, 12)), np.zeros((6, 12, 3)), np.zeros((6, 12, 3, 3))
     for k, (i, j) in enumerate(PAIRS):
         for first, second in {(i, j), (j, i)}:
@@ -178,11 +181,15 @@ class Contraction:
     twists: Pivots = static()
 
     def demanded(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Array]:
-        """Forces on the coordinates (..., n) and, of the wrench at the root, the components `twists`, (..., t)."""
+        """Forces on the coordinates (..., n), and the components `twists` of the wrench at the root, (..., t).
+
+        Each constant is contracted once with q or q̇; what results is multiplied by the features of the root's motion.
+        """
         xp, n, rows = namespace(q, qd, qdd, a, w, self.of_q), q.shape[-1], len(self.twists)
         of_root = _of_root(self.features, a, w, alpha)
         spin = joined(xp, (1.0, *(w[..., k] for k in self.spin)), w.shape[:-1])
         f, s = of_root.shape[-1], spin.shape[-1]
+        # One product with q and one with q̇ hold all blocks: first those of the features, then those of the spin.
         by_q, by_qd = q @ self.of_q + self.constant, qd @ self.of_qd
         end = f * (1 + rows) * n
         by_root = by_q[..., :end].reshape(*by_q.shape[:-1], f, (1 + rows) * n)
@@ -194,7 +201,7 @@ class Contraction:
         whirled = by_q[..., end + rows * n :].reshape(*by_q.shape[:-1], s - 1, rows * n)
         drawn = by_qd[..., s * n :] + xp.einsum("...k,...kn->...n", spin[..., 1:], whirled)
         products = (summed[..., n:], q), (by_q[..., end : end + rows * n], qdd), (drawn, qd)
-        return along, of_root @ self.rigid + sum(_dots(each, with_each, rows) for each, with_each in products)
+        return along, of_root @ self.rigid + sum(_dots(slopes, rates, rows) for slopes, rates in products)
 
 
 def _dots(left: Array, right: Array, rows: int) -> Array:

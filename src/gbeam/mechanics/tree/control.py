@@ -89,6 +89,7 @@ class Feedback(Value):
     stateful: bool = field(init=False, repr=False, compare=False, default=True)
 
     def __post_init__(self) -> None:
+        """Refuse what does not fit the signals, and read reference, limit and law as :meth:`effort` takes them."""
         for name in ("measure", "drive"):
             if not getattr(self, name):
                 raise InputError(name, "is empty", "name one quantity or more")
@@ -109,7 +110,7 @@ class Feedback(Value):
         if len(references) != len(self.measure):
             raise InputError("reference", f"has {len(references)} values", f"give one, or {len(self.measure)}")
         if self.reference is not None:
-            object.__setattr__(self, "reference", tuple(as_profile("reference", each) for each in references))
+            object.__setattr__(self, "reference", tuple(as_profile("reference", value) for value in references))
         if not callable(self.law) or hasattr(self.law, "dt"):
             if self.state is not None:
                 raise InputError("state", "is given of a linear law, which starts at zero", "leave it out")
@@ -123,7 +124,10 @@ class Feedback(Value):
                 raise InputError("law", f"takes {taken}", "write law(t, y), or law(t, y, state)") from error
 
     def _sampled(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return A, B, C and D of the linear law in steps of `sample`; InputError unless it fits the signals."""
+        """Return A, B, C and D of the linear law, in steps of `sample`; InputError unless they fit the signals.
+
+        Continuous laws are sampled by Tustin's rule.
+        """
         law: Any = self.law
         step = getattr(law, "dt", 0)
         if hasattr(law, "num"):
@@ -203,15 +207,15 @@ class Feedback(Value):
             If JAX traces what a function gives at some samples only.
         """
         if self.reference is not None:
-            measured = np.array([float(each(t)) for each in self.reference]) - measured
+            measured = np.array([float(profile(t)) for profile in self.reference]) - measured
         if isinstance(self.law, tuple):
             a, b, c, d = self.law
             return self._finite(t, c @ state + d @ measured), a @ state + b @ measured
-        efforts, after = answer_of(self, t, np.array(measured), state), state
+        efforts, next_state = answer_of(self, t, np.array(measured), state), state
         if self.stateful:
             if not isinstance(efforts, (tuple, list)) or len(efforts) != 2:
                 raise self._failed(f"gives {efforts!r}", t, " and the state at the next sample")
-            efforts, after = efforts
+            efforts, next_state = efforts
         if holds_tracer(efforts):
             fix = "write jax.numpy.where in place of if"
             raise InputError("law", f"gives what JAX traces at {t:.6g} s, and nothing of it where all is zero", fix)
@@ -221,7 +225,7 @@ class Feedback(Value):
             command = np.empty(0)
         if command.dtype.kind not in "bifu" or command.shape != (len(self.drive),):
             raise self._failed(f"gives {efforts!r}", t)
-        return self._finite(t, command.astype(float)), after
+        return self._finite(t, command.astype(float)), next_state
 
     def _failed(self, problem: str, t: float, more: str = "") -> ComputationError:
         """Error of a function that gives something else than finite efforts, and `more`."""
@@ -249,7 +253,7 @@ class Feedback(Value):
 
 
 def answer_of(controller: Feedback, t: Any, measured: Any, state: Any) -> Any:
-    """Answer of a law that is a function at a time, s; ComputationError if it raises an error."""
+    """Answer of a law that is a function, at a time, s; ComputationError if it raises an error."""
     try:
         return controller.law(t, measured, *[state] * controller.stateful)
     except Exception as error:
@@ -260,16 +264,16 @@ def answer_of(controller: Feedback, t: Any, measured: Any, state: Any) -> Any:
 
 
 def refuse_memory(controller: Feedback, t: float, measured: Floats, state: Any, answer: tuple[Floats, Any]) -> None:
-    """Raise InputError if a function answers a sample otherwise than it did, as one that keeps something itself."""
+    """Raise InputError if a function answers otherwise when called again: it keeps something between calls."""
     if not callable(controller.law):
         return
-    again = controller.effort(t, measured, state)
-    if _alike(again, answer):
+    repeated = controller.effort(t, measured, state)
+    if _alike(repeated, answer):
         return
-    shown = [str(each[0]) for each in (answer, again)]
-    if len({*shown}) == 1:
-        shown = [f"{each[0].tolist()} and {each[1]!r}" for each in (answer, again)]
-    before, now = map(shortened, map(on_one_line, shown))
+    texts = [str(efforts) for efforts, _ in (answer, repeated)]
+    if texts[0] == texts[1]:  # they differ in later digits, or in the state
+        texts = [f"{efforts.tolist()} and {next_state!r}" for efforts, next_state in (answer, repeated)]
+    before, now = (shortened(on_one_line(text)) for text in texts)
     problem = f"answers {before}, and called again {now}, to the same measurements at {t:.6g} s"
     fix = "keep nothing between calls: a sample is taken more than once. "
     if controller.stateful:
@@ -285,17 +289,20 @@ def _law_of(controller: Feedback) -> str:
 
 
 def _in_words(error: Exception) -> str:
-    """Type and message of what a function of a user raised, and the last line of the function's file that led there."""
+    """Type and message of an error that a user's function raised, and the last line of its file that led there."""
     frames = extract_tb(error.__traceback__)[1:]  # after the line here that called it
     lines = [frame for frame in frames if frame.filename == frames[0].filename]
     line = lines[-1].line if lines else ""
-    place = f" ({Path(lines[-1].filename).name}, line {lines[-1].lineno}{f': {line}' if line else ''})" if lines else ""
-    said = shortened(on_one_line(str(error)))
-    return f"{type(error).__name__}{f': {said}' if said else ''}{shortened(on_one_line(place))}"
+    place = ""
+    if lines:
+        source = f": {line}" if line else ""
+        place = f" ({Path(lines[-1].filename).name}, line {lines[-1].lineno}{source})"
+    message = shortened(on_one_line(str(error)))
+    return f"{type(error).__name__}{f': {message}' if message else ''}{shortened(on_one_line(place))}"
 
 
 def _alike(one: Any, other: Any) -> bool:
-    """True if two values are equal to the last digit, as far as they are made of numbers, sequences and mappings."""
+    """True if two values are equal to the last digit, of numbers, sequences and mappings; others are not compared."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return one.keys() == other.keys() and all(_alike(one[key], other[key]) for key in one)
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):

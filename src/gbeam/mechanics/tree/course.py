@@ -23,6 +23,9 @@ class Course:
     """
 
     def __init__(self, rates: Sequence[Profile], start: Array) -> None:
+        """Integrate the `rates`, rad/s, in the ball's own axes, to attitudes at knots, from the Euler parameters
+        `start` at time zero.
+        """
         self.rates = rates
         marks = np.append(np.concatenate([np.asarray(rate.breaks) for rate in rates]), 0.0)
         traced = is_traced(start, *(rate(marks) for rate in rates))
@@ -39,7 +42,7 @@ class Course:
             times = np.sort(np.append(times, middle[coarse]))
             turns = self._turned(times[:-1], times[1:])
         xp, zero = namespace(turns, start), int(np.searchsorted(times, 0.0))
-        # Turns since the first knot, of every knot.
+        # Turn of every knot since the first one.
         since = xp.concatenate([np.array([[1.0, 0.0, 0.0, 0.0]]), turns])
         reach = 1
         while reach < len(since):  # products of 2, 4, 8, ... pieces at once
@@ -49,19 +52,19 @@ class Course:
         self.times, self.attitudes = times, parameters_after(parameters_after(as_array(start), inverse), since)
 
     def __call__(self, t: Any) -> tuple[Array, Array, Array]:
-        """Euler parameters (..., 4) and their first and second derivatives with respect to time at times t (...)."""
+        """Euler parameters (..., 4), and their first and second derivatives by time, at times `t` (...), s."""
         derivatives = zip(*(rate.derivatives(t) for rate in self.rates), strict=True)
-        w, change = (namespace(*each).stack(each, axis=-1) for each in derivatives)
-        now = as_array(t)
-        xp = namespace(now, self.attitudes)
-        last = xp.maximum(xp.searchsorted(xp.asarray(self.times), now, side="right") - 1, 0)
-        since = self._turned(xp.asarray(self.times)[last], now)
-        e = parameters_after(xp.asarray(self.attitudes)[last], since)
+        w, change = (namespace(*components).stack(components, axis=-1) for components in derivatives)
+        times = as_array(t)
+        xp = namespace(times, self.attitudes)
+        last = xp.maximum(xp.searchsorted(xp.asarray(self.times), times, side="right") - 1, 0)
+        turn = self._turned(xp.asarray(self.times)[last], times)
+        e = parameters_after(xp.asarray(self.attitudes)[last], turn)
         rate = parameter_rates(e, w)
         return e, rate, parameter_rates(rate, w) + parameter_rates(e, change)
 
     def _turned(self, start: Array, end: Array) -> Array:
-        """Turn (..., 4) from one time to another, by Magnus's series to sixth order."""
+        """Euler parameters (..., 4) of the turn from one time to another, by Magnus's series to sixth order."""
         h = end - start
         times = start[..., None] + h[..., None] / 2 * (1 + np.array([-1, 0, 1]) * _ROOT / 5)
         components = [rate(times) for rate in self.rates]

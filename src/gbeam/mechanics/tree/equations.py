@@ -107,11 +107,12 @@ class Link:
     def holding(self, q: list[Array], qd: list[Array]) -> list[Array]:
         """Forces (..., k) of springs, dampers, friction and stops on the coordinates of each step."""
         held = self._held(q, qd)
-        pull, drag = self.holder.forces(*(concatenated(list(each)) for each in zip(*held, strict=True)))
-        sizes = [values.shape[-1] for values, _ in held]
+        values, rates = (concatenated(list(parts)) for parts in zip(*held, strict=True))
+        pull, drag = self.holder.forces(values, rates)
+        sizes = [part.shape[-1] for part, _ in held]
         spans = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
-        of_steps = zip(self.steps, q, spans, strict=True)
-        return [step.pushed(coordinates, pull[..., span], drag[..., span]) for step, coordinates, span in of_steps]
+        steps = zip(self.steps, q, spans, strict=True)
+        return [step.pushed(coordinates, pull[..., span], drag[..., span]) for step, coordinates, span in steps]
 
     def _held(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
         """Values and rates, as :meth:`held`, of each step."""
@@ -142,13 +143,14 @@ class Force:
 
 
 def _unturned(steps: tuple[Step, ...], first: int) -> tuple[Step, ...]:
-    """Steps on a ground that rests, the `first` with coordinates without its turn, which nothing feels, if it turns
-    about one axis.
+    """Steps of a body on a resting ground, from the `first` with coordinates on.
+
+    That step loses its own turn if it rotates about one axis: on a ground at rest nothing feels the turn.
     """
-    turned = [
-        replace(step, R0=None) for step in steps[first : first + 1] if isinstance(step, Rotation) and step.size == 1
-    ]
-    return (*turned, *steps[first + 1 :]) if turned else steps
+    step = steps[first] if first < len(steps) else None
+    if isinstance(step, Rotation) and step.size == 1:
+        return (replace(step, R0=None), *steps[first + 1 :])
+    return steps
 
 
 class State:
@@ -170,7 +172,7 @@ class State:
         return Frame(R, *(None if each is None else xp.broadcast_to(each, (*self.shape, 3)) for each in vectors))
 
     def moved(self, body: int) -> tuple[list[Any], Frame]:
-        """Motions of the steps of a body's joint, and that of its root."""
+        """Motions of the steps of a body's joint, and the motion of its root; computed once for each body."""
         if body not in self._moved:
             link, steps = self.links[body], list[Any]()
             frame = self.ground if link.parent < 0 else self.point(link.parent, link.on)
@@ -206,13 +208,13 @@ class State:
 
     @property
     def places(self) -> Array:
-        """Places (..., p, 3) m of the points of all bodies, in the order of :attr:`every_point`."""
+        """Positions (..., p, 3), m, of the points of all bodies, in the order of :attr:`every_point`."""
         places = list[Array]()
         for body, link in enumerate(self.links):
             root = self.moved(body)[1]
-            away = link.body.places_of(self.q[body][-1])
-            moved = root.p[..., None, :] + away @ namespace(root.R).swapaxes(root.R, -1, -2)
-            places += [moved, root.p[..., None, :]]
+            relative = link.body.places_of(self.q[body][-1])
+            points = root.p[..., None, :] + relative @ namespace(root.R).swapaxes(root.R, -1, -2)
+            places += [points, root.p[..., None, :]]
         return namespace(*places).concatenate(places, axis=-2)
 
     @property
@@ -256,8 +258,9 @@ class Tree:
 
     @property
     def sliding(self) -> Array:
-        """Flags, for the unknown coordinates, of slides that follow only slides from the ground and meet no stop: no
-        equation changes with them unless a force depends on them.
+        """Flags of the unknown coordinates that shift all that follows: without forces no equation changes with them.
+
+        They are slides that follow only slides from the ground and meet no stop.
         """
         flags, only_slid = list[bool](), {-1: True}  # by body: only slides, and no deformation, from the ground to it
         for body, link in enumerate(self.links):
@@ -272,8 +275,10 @@ class Tree:
 
     @property
     def turning(self) -> list[Array]:
-        """Flags, for the unknown coordinates, of each ball that follows only slides from the ground and meets no stop,
-        and of each hinge that follows only such slides and that nothing holds.
+        """Flags, for the unknown coordinates, of joints that turn all that follows; one array for each joint.
+
+        These are balls that follow only slides from the ground and meet no stop, and hinges that do and that nothing
+        holds.
         """
         flags, only_slid, first = list[Array](), {-1: True}, 0
         for body, link in enumerate(self.links):
@@ -284,16 +289,16 @@ class Tree:
                     flags.append((first <= self.free) & (self.free < first + step.size))
                 slid, first = slid and isinstance(step, Slide | Placed), first + step.size
             only_slid[body], first = slid and not link.body.size, first + link.body.size
-        return [each for each in flags if each.any()]
+        return [joint for joint in flags if joint.any()]
 
     def parted(self, *coordinates: Array) -> list[list[list[Array]]]:
-        """Part each array of coordinates by links, and within a link by the steps of its joint and its body."""
-        sizes, spans, end = [link.sizes for link in self.links], list[list[slice]](), 0
-        for of_link in sizes:
-            ends = list(accumulate(of_link, initial=end))
+        """Split each array of coordinates by links and, within a link, by the steps of its joint and its body."""
+        spans, end = list[list[slice]](), 0
+        for link in self.links:
+            ends = list(accumulate(link.sizes, initial=end))
             spans.append([slice(*pair) for pair in pairwise(ends)])
             end = ends[-1]
-        return [[[y[..., span] for span in of_link] for of_link in spans] for y in coordinates]
+        return [[[y[..., span] for span in link_spans] for link_spans in spans] for y in coordinates]
 
     def whole(self, y: Array, prescribed: Array) -> Array:
         """All coordinates (..., n) from the unknown and the prescribed ones."""
@@ -313,7 +318,7 @@ class Tree:
         return State(self, y, yd, ydd, ground)
 
     def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
-        """Residual (..., n) of the unknown coordinates; zero where the equations hold."""
+        """Residual (..., n) of the equations of the unknown coordinates; zero where they hold."""
         ground = inputs.ground
         if self.rests:
             ground = Frame(None, None, None, None, None, None)
@@ -323,20 +328,25 @@ class Tree:
         return rows[..., self.free] if self.fixed else rows
 
     def contracted(self, ground: Frame | None = None) -> Tree:
-        """Return the same equations, of unknown coordinates alone, in fewer sums: bodies with constant coefficients
-        contracted with the motions that their roots can have, on a `ground` with this constant motion (3,), or any.
+        """Return the same equations of the unknown coordinates with fewer sums.
+
+        Bodies with constant coefficients are contracted with the motions that their roots can have, on a `ground` with
+        this constant motion (3,), or on any. These motions are found by random states.
         """
         if holds_jax(self):
             return self
         random = np.random.default_rng(0)  # any numbers: none of a root's motions is left out but by chance
         y, yd, ydd = random.normal(size=(3, SAMPLES, self.size))
-        pushed, moving = ydd.copy(), random.normal(size=(3, SAMPLES, 3))
-        pushed[:, self.free] = random.normal(size=(SAMPLES, len(self.free)))
+        # The same states with other accelerations of the unknown coordinates.
+        other_ydd, ground_motion = ydd.copy(), random.normal(size=(3, SAMPLES, 3))
+        other_ydd[:, self.free] = random.normal(size=(SAMPLES, len(self.free)))
+        rests = False
         if ground is not None:
-            moving = np.broadcast_to(np.stack([ground.w, ground.a, ground.alpha])[:, None], moving.shape)
-        states = [State(self, y, yd, each, Frame(None, None, None, *moving)) for each in (ydd, pushed)]
-        rests = ground is not None and not any(each.any() for each in (ground.w, ground.a, ground.alpha))
-        rests = rests and all(force.follower for force in self.forces)
+            motion = np.stack([ground.w, ground.a, ground.alpha])
+            ground_motion = np.broadcast_to(motion[:, None], ground_motion.shape)
+            rests = not motion.any() and all(force.follower for force in self.forces)
+        frame = Frame(None, None, None, *ground_motion)
+        states = [State(self, y, yd, accelerations, frame) for accelerations in (ydd, other_ydd)]
         acted = {link.parent for link in self.links} | {force.body for force in self.forces}
         links = list[Link]()
         for k, link in enumerate(self.links):
@@ -345,8 +355,9 @@ class Tree:
                 carrier = link.parent if isinstance(self.links[link.parent].body, Rigid) else k
             body = link.body
             if isinstance(body, LinearBody | Rigid):
-                moved = [tuple(state.moved(of)[1] for state in states) for of in (carrier, k)]
-                body = body.contracted(*(Roots.of(*pair) for pair in moved))
+                carrier_roots = Roots.of(*(state.moved(carrier)[1] for state in states))
+                own_roots = Roots.of(*(state.moved(k)[1] for state in states))
+                body = body.contracted(carrier_roots, own_roots)
             loose = link.loose or not (link.holder.holds or link.holder.coupling is not None)
             if rests and link.parent < 0:
                 link = replace(link, steps=_unturned(link.steps, link.idle))
@@ -413,28 +424,31 @@ class Tree:
         return demanded if inputs.efforts is None else demanded - inputs.efforts, on_ground, on_points
 
     def invariants(self, state: State, gravity: Array) -> tuple[Array, Array, Array]:
-        """Momentum N s, angular momentum N m s and energy (kinetic, elastic, gravity) J, (..., 3), ground's axes."""
-        force = moment = kinetic = elastic = weight = 0.0
+        """Momentum, N s, and angular momentum, N m s, (..., 3) in the ground's axes, and kinetic, elastic and
+        gravitational energy (..., 3), J.
+        """
+        total_momentum = total_spin = kinetic = elastic = potential = 0.0
         for k, link in enumerate(self.links):
             q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)
             energy, impulse = momentum(link.body, q[-1], qd[-1], root)
             push, spin = turned(root.R, impulse.force), turned(root.R, impulse.moment)
-            force, moment = force + push, moment + spin + cross(root.p, push)
+            total_momentum, total_spin = total_momentum + push, total_spin + spin + cross(root.p, push)
             kinetic = kinetic + energy
             elastic = elastic + link.body.stored(q[-1])
             if not link.loose:
                 elastic = elastic + link.stored(q[:-1], qd[:-1])
-            weight = weight + 0.0 * kinetic
+            potential = potential + 0.0 * kinetic
             if is_jax(gravity) or gravity.any():
                 mass, first_moment = link.body.mass_moment(q[-1])
-                weight = weight - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
-        return force, moment, namespace(kinetic, elastic).stack([kinetic, elastic, weight], axis=-1)
+                potential = potential - ((mass * root.p + turned(root.R, first_moment)) * gravity).sum(axis=-1)
+        return total_momentum, total_spin, namespace(kinetic, elastic).stack([kinetic, elastic, potential], axis=-1)
 
     def local(self, y: Array, yd: Array, ydd: Array) -> tuple[Tree, Array, Array, Array]:
-        """Return the same tree by as many coordinates as degrees of freedom, and all of these with their two rates, at
-        coordinates (n,): Euler parameters give way to a rotation vector, which is zero there.
+        """Return the same tree by as many coordinates as degrees of freedom, and these with their two rates.
+
+        Euler parameters are replaced by a rotation vector, which is zero at the coordinates `y` (n,).
         """
-        numbers: dict[int, int] = {}  # among the fewer coordinates, by those among all
+        new_numbers: dict[int, int] = {}  # among the fewer coordinates, by those among all
         links, states, first = [], [], 0
         for link, *parts in zip(self.links, *self.parted(y, yd, ydd), strict=True):
             steps, kept = [], []
@@ -443,12 +457,12 @@ class Tree:
                 steps.append(reduced)
                 states.append(state)
                 kept += [step.size - reduced.size <= k for k in range(step.size)]
-            states.append([each[-1] for each in parts])
+            states.append([coordinates[-1] for coordinates in parts])  # those of the body
             kept += [True] * link.body.size
-            numbers |= {first + int(k): len(numbers) + i for i, k in enumerate(np.flatnonzero(kept))}
+            new_numbers |= {first + int(k): len(new_numbers) + i for i, k in enumerate(np.flatnonzero(kept))}
             first += len(kept)
             links.append(replace(link, steps=tuple(steps)))
-        joined = (np.concatenate(each) for each in zip(*states, strict=True))
-        fixed = tuple(numbers[k] for k in self.fixed if k in numbers)
+        joined = (np.concatenate(arrays) for arrays in zip(*states, strict=True))
+        fixed = tuple(new_numbers[k] for k in self.fixed if k in new_numbers)
         tree = replace(self, links=tuple(links), fixed=fixed)
         return tree, *joined  # type: ignore[return-value]

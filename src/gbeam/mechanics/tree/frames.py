@@ -67,24 +67,25 @@ class Frame:
     a: Array
     alpha: Array
 
-    def carried(self, by: Relative) -> Frame:
-        """Motion, in its own axes, of the frame that moves `by` in this one."""
+    def carried(self, relative: Relative) -> Frame:
+        """Motion, in its own axes, of a frame that moves by `relative` in this one; None is zero, or not needed."""
         R, p, v, w, a, alpha = self.R, self.p, self.v, self.w, self.a, self.alpha
-        if w is not None and by.r is not None:
-            swept = cross(w, by.r)
-            a = _sum(a, cross(alpha, by.r) + cross(w, swept if by.rd is None else swept + 2 * by.rd))
-        if R is not None and by.r is not None:
-            p = p + turned(R, by.r)
-            v = v + (swept if by.rd is None else swept + by.rd)
-        if by.rdd is not None:
-            a = _sum(a, by.rdd)
-        if by.R is not None:
-            w, alpha, a = (None if each is None else turned_back(by.R, each) for each in (w, alpha, a))
+        if w is not None and relative.r is not None:
+            # a + α × r + ω × (ω × r + 2 ṙ), with r̈ added below.
+            swept = cross(w, relative.r)
+            a = _sum(a, cross(alpha, relative.r) + cross(w, swept if relative.rd is None else swept + 2 * relative.rd))
+        if R is not None and relative.r is not None:
+            p = p + turned(R, relative.r)
+            v = v + (swept if relative.rd is None else swept + relative.rd)
+        if relative.rdd is not None:
+            a = _sum(a, relative.rdd)
+        if relative.R is not None:
+            w, alpha, a = (None if vector is None else turned_back(relative.R, vector) for vector in (w, alpha, a))
             if R is not None:
-                R, v = product(R, by.R), turned_back(by.R, v)
-        if by.w is not None:
-            alpha = by.alpha if w is None else alpha + by.alpha + cross(w, by.w)
-            w = _sum(w, by.w)
+                R, v = product(R, relative.R), turned_back(relative.R, v)
+        if relative.w is not None:
+            alpha = relative.alpha if w is None else alpha + relative.alpha + cross(w, relative.w)
+            w = _sum(w, relative.w)
         return Frame(R, p, v, w, a, alpha)
 
     def filled(self, shape: tuple[int, ...]) -> Frame:

@@ -228,6 +228,7 @@ class Joint(Value):
     efforts: dict[str, Profile] = follows()
 
     def __post_init__(self) -> None:
+        """Check the axes and values, and derive from them the steps, the holder, the start and the profiles."""
         choice("kind", self.kind, KINDS)
         axis_count = KINDS[self.kind].axes
         axes = np.asarray(array("axes", () if self.axes is None else self.axes), dtype=float)
@@ -249,8 +250,9 @@ class Joint(Value):
             for direction in self._sprung:
                 choice("stiffness", direction, DIRECTIONS)
         kind = KINDS[self.kind]
-        names = tuple(each for each in DIRECTIONS if each in self._sprung) if self.kind == "fixed" else kind.names
-        values = names if self.kind == "fixed" else kind.value_names
+        names, values = kind.names, kind.value_names
+        if self.kind == "fixed":  # its springs' directions are its coordinates
+            names = values = tuple(direction for direction in DIRECTIONS if direction in self._sprung)
         assign(self, coordinates=names, values=values, rate_names=kind.rates or names)
         assign(self, holder=self._held(), steps=self._chained(), start=self._started())
         assign(self, start_rate=self._moving(), rates=self._prescribed())
@@ -270,7 +272,7 @@ class Joint(Value):
             One of ``rate_names``.
         """
         if rate in SPIN:
-            return tuple(self.coordinates.index(each) for each in _BALL)
+            return tuple(self.coordinates.index(parameter) for parameter in _BALL)
         return (self.coordinates.index(rate),)
 
     def row(self, rate: str) -> int:
@@ -281,19 +283,21 @@ class Joint(Value):
         rate : str
             One of ``rate_names``.
         """
+        # A ball's first equation keeps its Euler parameters at unit length.
         return self.numbers(rate)[1 + SPIN.index(rate) if rate in SPIN else 0]
 
     def _chained(self) -> tuple[Step, ...]:
-        """The chain of elementary motions from the point to the root of the body."""
+        """Chain of elementary motions from the point that holds the joint to the root of the body."""
         placed = Placed(as_array(self.at), about(self.turn))
         axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
         steps = KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
         if self.kind == "fixed" and self.coordinates:
-            moved, turned = ([k for k in range(3) if DIRECTIONS[first + k] in self.coordinates] for first in (0, 3))
-            steps = (Slide(_EYE[:, moved]),) if moved else ()
-            steps += (Rotation(_EYE[:, turned], _EYE),) if turned else ()
+            slide_axes = [k for k in range(3) if DIRECTIONS[k] in self.coordinates]
+            turn_axes = [k for k in range(3) if DIRECTIONS[3 + k] in self.coordinates]
+            steps = (Slide(_EYE[:, slide_axes]),) if slide_axes else ()
+            steps += (Rotation(_EYE[:, turn_axes], _EYE),) if turn_axes else ()
         # The coordinates are in axes of the point, and the body is turned after them; a ball turns the body's axes.
-        moves, turns = (is_jax(each) or bool(each.any()) for each in map(as_array, (self.at, self.turn)))
+        moves, turns = (is_jax(vector) or bool(vector.any()) for vector in map(as_array, (self.at, self.turn)))
         before = (Placed(placed.r, None),) if moves else ()
         after = (Placed(np.zeros(3), placed.R),) if turns else ()
         ball = len(steps) - KINDS[self.kind].turns  # its index, or behind the last
@@ -323,7 +327,7 @@ class Joint(Value):
         return any(name in _TURN for key in ("stiffness", "stops") for name in self._named(key, getattr(self, key)))
 
     def _held(self) -> Holder:
-        """Springs, dampers, friction and stops; InputError if a value is impossible or does nothing without another."""
+        """Springs, dampers, friction and stops. InputError if one is impossible, or does nothing without another."""
         values = {name: self._numbers(name, getattr(self, name)) for name in _EASY}
         for name in ("stiffness", "damping", "friction", "stop_stiffness"):
             for coordinate, value in zip(self._names(name), values[name], strict=True):
@@ -334,7 +338,7 @@ class Joint(Value):
             ends = array(f"stops.{coordinate}", pair)
             if ends.shape != (2,) or not ends[0] < ends[1]:
                 unit, of_unit = ("m", ends) if coordinate in SLIDES else ("deg", np.degrees(ends))
-                listed = ", ".join(f"{each:.6g} {unit}" for each in np.ravel(of_unit))
+                listed = ", ".join(f"{end:.6g} {unit}" for end in np.ravel(of_unit))
                 raise InputError(f"stops.{coordinate}", f"is {listed}", "give the lowest and the highest coordinate")
             low[k], high[k] = ends
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
@@ -349,7 +353,10 @@ class Joint(Value):
         return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), coupling=coupling, **values)
 
     def _coupling(self, stiffness: Floats) -> Floats | None:
-        """Stiffness (h, h) between values, None without any; InputError unless with the springs' it gives no energy."""
+        """Stiffness (h, h) that couples pairs of values; None without any.
+
+        InputError unless it names pairs of values, and is positive semidefinite together with the springs' `stiffness`.
+        """
         if self.coupling is None or self.coupling == {}:
             return None
         names = self.values
@@ -361,13 +368,13 @@ class Joint(Value):
             if len(ends) != 2 or ends[0] == ends[1] or not set(ends) <= set(names):
                 fix = f"give two of {', '.join(names)}" if names else "give the springs of the directions as well"
                 raise InputError(f"coupling.{pair}", "is no pair of coordinates", fix)
-            i, j = (names.index(each) for each in ends)
+            i, j = (names.index(name) for name in ends)
             rows[i][j] = rows[j][i] = finite(f"coupling.{pair}", value)
         coupling = as_array([entry for row in rows for entry in row]).reshape(len(names), len(names))
         if is_jax(stiffness) or is_jax(coupling):
             return coupling
-        whole = np.diag(np.asarray(stiffness, dtype=float)) + coupling
-        if np.linalg.eigvalsh(whole)[0] < -1e-9 * np.abs(whole).max():
+        total = np.diag(np.asarray(stiffness, dtype=float)) + coupling
+        if np.linalg.eigvalsh(total)[0] < -1e-9 * np.abs(total).max():
             raise InputError(
                 "coupling", "makes springs that give energy", "give a stiffness without negative eigenvalue"
             )
@@ -399,7 +406,7 @@ class Joint(Value):
         return concatenated([values[:-3], parameter_rates(self.start[-4:], values[-3:])])
 
     def _prescribed(self) -> dict[str, Profile]:
-        """Profiles of the prescribed rates."""
+        """Profiles of the prescribed rates; InputError if only a part of a ball's spin is prescribed."""
         rates = self._profiles("rate", self.rate)
         spin = [name for name in SPIN if name in rates]
         if spin and len(spin) < len(SPIN):
@@ -437,19 +444,19 @@ class Joint(Value):
         values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, named).items()}
         return as_array([values.get(name, 0.0) for name in self._names(where)])
 
-    def _named(self, where: str, named: Any) -> dict[str, Any]:
-        """Values of a key by name; where it has one name, a bare value will do. InputError if a name is not its."""
+    def _named(self, where: str, values: Any) -> dict[str, Any]:
+        """Values of a key by coordinate; a bare value will do for one. InputError for coordinates of other joints."""
         names = self._names(where)
-        if named is None:
+        if values is None:
             return {}
-        if not isinstance(named, Mapping):
+        if not isinstance(values, Mapping):
             if len(names) != 1:
                 listed = ", ".join(names) or "none"
                 fix = f"say of which coordinate, by name; a {self.kind} joint has {listed}"
                 raise InputError(where, "is one value", fix)
-            return {names[0]: named}
-        for name in named:
+            return {names[0]: values}
+        for name in values:
             if name not in names:
                 listed = f"choose from {', '.join(names)}" if names else "leave it out"
                 raise InputError(f"{where}.{name}", f"is no coordinate of a {self.kind} joint", listed)
-        return dict(named)
+        return dict(values)

@@ -24,35 +24,38 @@ Roots = tuple[tuple[Frame, Array | None], ...]
 
 
 def is_linear(tree: Tree) -> bool:
-    """True if there are equations, linear with constant coefficients: joints move no root by an unknown, bodies are of
-    second order in their coordinates, and nothing hangs, and no force acts, on a point that deforming moves.
+    """True if the tree's equations are linear with constant coefficients.
+
+    Then joints move no root by an unknown, bodies are of second order in their coordinates, and no body hangs, and no
+    force acts, on a point that deforming moves. There is at least one equation.
     """
     deforming = [link.body for link in tree.links if link.body.size]
-    held = 0 < len(tree.free) == sum(body.size for body in deforming)
-    if not held or not all(_constant(body) for body in deforming):  # which cost less to ask than where points are
+    only_deforming = 0 < len(tree.free) == sum(body.size for body in deforming)
+    if not only_deforming or not all(_constant(body) for body in deforming):  # which cost less to ask than where points are
         return False
-    acting = [(link.parent, link.on) for link in tree.links if link.parent >= 0]
-    acting += [(force.body, force.on) for force in tree.forces]
-    return all(_rests(tree.links[body].body, on) for body, on in acting)
+    load_points = [(link.parent, link.on) for link in tree.links if link.parent >= 0]
+    load_points += [(force.body, force.on) for force in tree.forces]
+    return all(_rests(tree.links[body].body, on) for body, on in load_points)
 
 
 def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
-    """Inputs (1, ...) in which nothing is driven, of a tree whose bodies vibrate in the same modes wherever its joints
-    are, which move; None of any other. `inputs` (1, ...) are those of a ground that rests.
+    """Inputs (1, ...) in which nothing is driven, if the bodies vibrate in the same modes wherever joints are.
+
+    None of any other tree, and of one without joints that move. `inputs` (1, ...) are those of a ground that rests.
     """
-    moved = np.concatenate(
+    of_joint = np.concatenate(
         [np.full(size, k < len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
     )
-    moved = moved[tree.free]
+    of_joint = of_joint[tree.free]
     bends = any(link.holder.bends for link in tree.links)
-    if holds_jax(tree, inputs) or bends or moved.all() or not moved.any():
+    if holds_jax(tree, inputs) or bends or of_joint.all() or not of_joint.any():
         return None
     forces = inputs.efforts, inputs.wrenches, inputs.prescribed
-    efforts, wrenches, prescribed = (None if each is None else 0 * each for each in forces)
-    loads = tuple(None if each is None else 0 * each for each in inputs.loads)
+    efforts, wrenches, prescribed = (None if values is None else 0 * values for values in forces)
+    loads = tuple(None if values is None else 0 * values for values in inputs.loads)
     idle = Inputs(inputs.ground, prescribed, efforts, loads, wrenches)
-    # Any three positions of the joints.
-    y, still = np.outer([0.2, 0.9, -1.7], moved), np.zeros((3, len(moved)))
+    # The modes are the same if the mass matrix is, at any three positions of the joints.
+    y, still = np.outer([0.2, 0.9, -1.7], of_joint), np.zeros((3, len(of_joint)))
     three = each_leaf(lambda leaf: np.repeat(leaf, 3, axis=0), idle)
     if prescribed is not None:
         three.prescribed[:, 0] += np.array([0.0, -0.7, 1.3])[:, None]
@@ -74,7 +77,8 @@ def _rests(body: Body, on: int) -> bool:
 
 
 def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
-    """Equations of a tree that :func:`is_linear`, by the coefficients of its bodies and the motions of their roots;
+    """Equations of a tree that :func:`is_linear`, from the coefficients of its bodies and the motions of their roots.
+
     `drive` returns the :class:`Inputs` of the tree at times (t,).
     """
     of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size]
@@ -83,8 +87,8 @@ def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
     mass, damping, stiffness = (_diagonal([getattr(c, name) for c in of_bodies]) for name in _MATRICES)
 
     def features(roots: Roots) -> Array:
-        each = zip(of_bodies, parts, roots, strict=True)
-        return concatenated([_features(c, len(part.force), *root) for c, part, root in each])
+        bodies = zip(of_bodies, parts, roots, strict=True)
+        return concatenated([_features(c, len(part.force), *root) for c, part, root in bodies])
 
     # No derivative is taken through the modes: those of equal frequencies have none.
     rest = None if any(map(is_jax, (mass, damping, stiffness))) else (damping, stiffness)
@@ -96,22 +100,24 @@ _MATRICES = "mass", "damping", "stiffness"
 
 
 def _roots(tree: Tree, drive: Drive, t: Array) -> Roots:
-    """Motions of the roots of the bodies that deform at times (t,), and their loads."""
+    """Motions at times (t,) of the roots of the bodies that deform, and their loads."""
     inputs: Inputs = drive(t)
     ground = replace(inputs.ground, R=None, p=None, v=None)
-    still = np.zeros((*np.shape(t), len(tree.free)))
-    state = tree.motion(still, still, still, replace(inputs, ground=ground))
+    zeros = np.zeros((*np.shape(t), len(tree.free)))
+    state = tree.motion(zeros, zeros, zeros, replace(inputs, ground=ground))
     bodies = [k for k, link in enumerate(tree.links) if link.body.size]
     return tuple((state.moved(k)[1], inputs.loads[k]) for k in bodies)
 
 
 def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, Array]:
-    """M, C, K (n, n) and F (n,) of a tree that :func:`is_linear` under inputs of one time."""
-    of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size]
+    """M, C, K (n, n) and F (n,) of a tree that :func:`is_linear`, under the inputs of one time."""
+    body_coefficients = [
+        link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size
+    ]
     roots = _roots(tree, lambda _: inputs, np.zeros(()))
-    parts = [c.at(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(of_bodies, roots, strict=True)]
+    parts = [c.at(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(body_coefficients, roots, strict=True)]
     damping, stiffness, force = zip(*parts, strict=True)
-    mass = _diagonal([c.mass for c in of_bodies])
+    mass = _diagonal([c.mass for c in body_coefficients])
     return mass, _diagonal([*damping]), _diagonal([*stiffness]), concatenated(force)
 
 
@@ -123,7 +129,7 @@ def _features(c: Coefficients, count: int, root: Frame, loads: Array | None) -> 
 
 
 def _blocks(parts: list[Any]) -> Array:
-    """Terms (Σ k, Σ n) or (Σ k, Σ n, Σ n), each part's (k, n, ...) a block of its own."""
+    """Terms (Σ k, Σ n) or (Σ k, Σ n, Σ n) of several parts: each part's (k, n, ...) is a block on the diagonal."""
     if len(parts) == 1:
         return parts[0]
     xp, size, columns = namespace(*parts), sum(part.shape[1] for part in parts), 0

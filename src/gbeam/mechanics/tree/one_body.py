@@ -25,7 +25,7 @@ def on_motion(structure: Structure, motion: Motion | None, name: str = "beam") -
 
 
 def on_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
-    """System of a structure on the rim of a hub that turns at its rate, or freely under torque, spring and damper."""
+    """System of a structure on the rim of a hub, which turns at its rate, or freely under torque, spring and damper."""
     rim = Place(at=hub.mount.place, turn=_turn_of_root(hub))
     # Only the moment about the hinge's axis takes part; equal ones are those of a possible body.
     inertia = 0.0 if hub.inertia is None else hub.inertia
@@ -37,8 +37,10 @@ def on_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
 
 
 def _turn_of_root(hub: Any) -> Floats:
-    """Rotation vector (3,) of the root's axes in the hub's, rad: the setting angle about x and, inward, half a turn;
-    or the turn that is given.
+    """Rotation vector (3,), rad, of the root's axes in the hub's.
+
+    It is the hub's turn, if given, or else the setting angle about x and, if the beam points inward, half a turn about
+    z.
     """
     if hub.turn is not None:
         return np.asarray(hub.turn)

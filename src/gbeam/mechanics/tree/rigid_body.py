@@ -77,6 +77,7 @@ class RigidBody(Value):
     ] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        """Refuse an inertia that no body has, and names that no point can have."""
         vector("centre", self.centre)
         moments = np.zeros(3) if is_jax(self.tensor) else np.linalg.eigvalsh(self.tensor)
         if moments[0] < -1e-12 * moments[-1] or moments[-1] > moments[:2].sum() * (1 + 1e-9) + 1e-300:
@@ -85,7 +86,7 @@ class RigidBody(Value):
         for name in self.points:
             if not name.isidentifier() or name == ROOT:
                 raise InputError(f"points.{name}", "is no name of a point", "give letters, digits and underscores")
-        points = {name: each if isinstance(each, Place) else Place(each) for name, each in self.points.items()}
+        points = {name: point if isinstance(point, Place) else Place(point) for name, point in self.points.items()}
         assign(self, points=points)
 
     @property

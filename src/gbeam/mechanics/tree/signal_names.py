@@ -19,7 +19,7 @@ CARRIED = {"force": "force", "moment": "torque"}
 
 
 def kind_of_signal(name: str) -> str:
-    """Kind of quantity, such as "speed", of a signal by its name."""
+    """Kind of quantity, such as "speed", that a signal measures, from its name."""
     signal = name.rpartition(".")[2]
     kind = (OF_POINTS | CARRIED).get(signal.rpartition("_")[0])
     if kind is not None:

@@ -71,7 +71,9 @@ class Driven(NamedTuple):
 
 
 def drives_of(system: Measured) -> dict[str, Driven]:
-    """Efforts on the coordinates of joints, ``joint.angle``, and components of forces, ``thrust.force_x``, by name."""
+    """Efforts that may be driven, by name: those of joints, ``joint.angle``, and components of forces,
+    ``thrust.force_x``.
+    """
     drives = {}
     rates = [f"{owner}.{rate}" for owner, joint in system.joints.items() for rate in joint.rate_names]
     for name in sorted(rates, key=system.row):
@@ -95,9 +97,10 @@ def signals_of(system: Measured) -> dict[str, str]:
     for name, joint in system.joints.items():
         for value, rate in zip(joint.values, joint.rate_names, strict=True):
             names = f"{name}.{value}", f"{name}.{rate_signal(rate)}"
-            signals |= {each: KINDS[kind_of_signal(each)].unit for each in names}
+            signals |= {signal: KINDS[kind_of_signal(signal)].unit for signal in names}
     for point in system.points:
-        signals |= {f"{point}.{each}_{axis}": KINDS[kind].unit for each, kind in OF_POINTS.items() for axis in "xyz"}
+        for vector, kind in OF_POINTS.items():
+            signals |= {f"{point}.{vector}_{axis}": KINDS[kind].unit for axis in "xyz"}
     return signals
 
 
@@ -123,7 +126,10 @@ def measurable(system: Measured) -> dict[str, str]:
 def measurements(
     system: Measured, tree: Any, y: Array, yd: Array, ydd: Array, inputs: Any, wanted: Sequence[str]
 ) -> Any:
-    """Values (..., k) of the `wanted` signals at unknown coordinates (..., n) of the system's tree or its local one."""
+    """Values (..., k) of the `wanted` signals at unknown coordinates (..., n) and their rates.
+
+    The tree is the system's, or its local one. Vectors at a point are computed once for all their components.
+    """
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []
     read = {
         "place": lambda frame: frame.p,
@@ -144,7 +150,7 @@ def measurements(
         else:
             name, _, axis = kind.partition("_")
             if (owner, name) not in vectors:
-                of_point, point = system.point("outputs", owner)
-                vectors[owner, name] = read[name](state.points_of(system.order.index(of_point))[point])
+                body_name, point = system.point("outputs", owner)
+                vectors[owner, name] = read[name](state.points_of(system.order.index(body_name))[point])
             columns.append(xp.broadcast_to(vectors[owner, name][..., "xyz".index(axis)], state.shape))
     return xp.stack(columns, axis=-1) if columns else xp.zeros((*y.shape[:-1], 0))

@@ -98,7 +98,7 @@ class Rotation(Minimal):
         return Relative(None, None, None, product(self.R0, R), w, alpha)
 
     def _about_axis(self, q: Array) -> Array:
-        """R0 (1 + sin θ [u]× + (1 − cos θ) [u]×²) (..., 3, 3) of angles q (..., 1) about one axis."""
+        """Rotation matrices R0 (1 + sin θ [u]× + (1 − cos θ) [u]×²) (..., 3, 3) by angles q (..., 1) about one axis."""
         xp, axis = namespace(q, self.axes, self.R0), self.axes[:, 0]
         size = xp.sqrt(axis @ axis)
         once = self.R0 @ (EPSILON.reshape(9, 3) @ (-axis / size)).reshape(3, 3)
@@ -129,6 +129,9 @@ class Ball:
         return 4
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
+        """Turn and angular velocity and acceleration of the body, by Euler parameters, which need not
+        have unit length.
+        """
         xp = namespace(q)
         size = xp.sqrt((q * q).sum(axis=-1, keepdims=True))
         n = q / size
@@ -256,7 +259,7 @@ def rotation_by_parameters(n: Array) -> Array:
 
 
 def _products_of_parameters() -> Array:
-    """Numbers (9, 16) that map the elements of a rotation matrix to 4 e_j e_k − δ_jk of its Euler parameters e."""
+    """Matrix (9, 16) that maps the elements of a rotation matrix to 4 e_j e_k − δ_jk of its Euler parameters e."""
     (a, b, c), (d, e, f), (g, h, i) = np.eye(9).reshape(3, 3, 9)
     rows = [
         (a + e + i, h - f, c - g, d - b),
@@ -274,7 +277,7 @@ def parameters_of_all(R: Array) -> Array:
     """Unit Euler parameters (t, 4) of rotation matrices (t, 3, 3), without jumps of sign from one to the next."""
     xp = namespace(R)
     products = np.eye(4) + (R.reshape(*R.shape[:-2], 9) @ _PRODUCTS).reshape(*R.shape[:-2], 4, 4)
-    # Of 4 e_j e_k the row of the largest is safe.
+    # Row j of 4 e_j e_k is 4 e_j times e: it is safe to divide by the largest e_j.
     largest = xp.diagonal(products, axis1=-2, axis2=-1).argmax(axis=-1)[..., None, None]
     row = xp.take_along_axis(products, largest, axis=-2)[..., 0, :]
     unit = row / xp.sqrt((row * row).sum(axis=-1, keepdims=True))
@@ -282,14 +285,15 @@ def parameters_of_all(R: Array) -> Array:
 
 
 def vector_of(e: Array) -> Array:
-    """Rotation vectors (..., 3) rad, of half a turn at most, of unit Euler parameters (..., 4)."""
+    """Rotation vectors (..., 3), rad, of half a turn at most, of unit Euler parameters (..., 4)."""
     xp = namespace(e)
     e = xp.where(e[..., :1] < 0, -e, e)
-    half = e[..., 1:] / (1 + e[..., :1])  # along the axis, tan θ/4 long
-    s = (half * half).sum(axis=-1, keepdims=True)
+    tangent = e[..., 1:] / (1 + e[..., :1])  # along the axis, tan θ/4 long
+    s = (tangent * tangent).sum(axis=-1, keepdims=True)
     small = s < SMALL**4
     size = xp.sqrt(xp.where(small, 1.0, s))
-    return 4 * half * xp.where(small, 1 - s / 3 * (1 - 3 * s / 5), xp.arctan(size) / size)
+    # θ = 4 arctan(size), by its Taylor series where the size is small.
+    return 4 * tangent * xp.where(small, 1 - s / 3 * (1 - 3 * s / 5), xp.arctan(size) / size)
 
 
 def continuous(e: Array) -> Array:
@@ -300,34 +304,36 @@ def continuous(e: Array) -> Array:
 
 
 def functions_of_angle(s: Array, *, plane: bool = False) -> tuple[Array, ...]:
-    """Functions a = sin θ/θ and b = (1 − cos θ)/θ² of s = θ², and unless in a `plane` c = (θ − sin θ)/θ³ and the
-    derivatives of b and c with respect to s.
+    """Functions a = sin θ/θ and b = (1 − cos θ)/θ² of s = θ², by their Taylor series where s is small.
+
+    Unless in a `plane` also c = (θ − sin θ)/θ³ and the derivatives of b and c with respect to s.
     """
     xp = namespace(s)
     small = s < SMALL
     safe = xp.where(small, 1.0, s)
     angle = xp.sqrt(safe)
     a, b = xp.sin(angle) / angle, (1 - xp.cos(angle)) / safe
-    a_near = 1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))))
-    b_near = 0.5 - s / 24 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132))))
+    a_series = 1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110))))
+    b_series = 0.5 - s / 24 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132))))
     if plane:
-        return xp.where(small, a_near, a), xp.where(small, b_near, b)
+        return xp.where(small, a_series, a), xp.where(small, b_series, b)
     c = (1 - a) / safe
-    c_near = (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))) / 6
-    db_near = -1 / 24 * (1 - s / 15 * (1 - 3 * s / 112 * (1 - 2 * s / 135 * (1 - 5 * s / 528))))
-    dc_near = -1 / 120 * (1 - s / 21 * (1 - s / 48 * (1 - 2 * s / 165 * (1 - 5 * s / 624))))
+    c_series = (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156))))) / 6
+    db_series = -1 / 24 * (1 - s / 15 * (1 - 3 * s / 112 * (1 - 2 * s / 135 * (1 - 5 * s / 528))))
+    dc_series = -1 / 120 * (1 - s / 21 * (1 - s / 48 * (1 - 2 * s / 165 * (1 - 5 * s / 624))))
     db, dc = (a - 2 * b) / (2 * safe), (b - 3 * c) / (2 * safe)
-    pairs = (a_near, a), (b_near, b), (c_near, c), (db_near, db), (dc_near, dc)
+    pairs = (a_series, a), (b_series, b), (c_series, c), (db_series, db), (dc_series, dc)
     return tuple(xp.where(small, series, closed) for series, closed in pairs)
 
 
 def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -> tuple[Array, Array, Array]:
-    """R = exp [φ]× (..., 3, 3), and the angular velocity T φ̇ and acceleration T φ̈ + Ṫ φ̇ in turned axes, with T = 1 −
-    b [φ]× + c [φ]×²; in a `plane`, where φ keeps its direction, T is one.
+    """Rotation R = exp [φ]× (..., 3, 3), and angular velocity and acceleration in turned axes, of rotation vectors φ.
+
+    They are T φ̇ and T φ̈ + Ṫ φ̇ with T = 1 − b [φ]× + c [φ]×². In a `plane`, where φ keeps its direction, T is one.
     """
     xp = namespace(phi)
     s = (phi * phi).sum(axis=-1)
-    a, b, *spatial = (each[..., None] for each in functions_of_angle(s, plane=plane))
+    a, b, *spatial = (values[..., None] for values in functions_of_angle(s, plane=plane))
     x, y, z = (phi[..., i] for i in range(3))
     zero = xp.zeros_like(x)
     skew = xp.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*phi.shape, 3)
@@ -352,14 +358,14 @@ def tangent_back(phi: Array, moment: Array) -> Array:
 
 
 def on_body(phi: Array, forces: Array) -> Array:
-    """T⁻ᵀ f: the moment (..., 3) in turned axes that does the work of forces on a rotation vector's components."""
+    """Moment (..., 3) in turned axes, T⁻ᵀ f, that does the work of forces f on the components of φ."""
     s = (phi * phi).sum(axis=-1, keepdims=True)
     xp, small = namespace(phi), s < SMALL
     safe = xp.where(small, 1.0, s)
     a, b = functions_of_angle(safe, plane=True)
-    near = (1 + s / 60 * (1 + s / 42 * (1 + s / 40 * (1 + 5 * s / 198)))) / 12
-    across = cross(phi, forces)
-    return forces - across / 2 + xp.where(small, near, (1 - a / (2 * b)) / safe) * cross(phi, across)
+    series = (1 + s / 60 * (1 + s / 42 * (1 + s / 40 * (1 + 5 * s / 198)))) / 12
+    phi_f = cross(phi, forces)
+    return forces - phi_f / 2 + xp.where(small, series, (1 - a / (2 * b)) / safe) * cross(phi, phi_f)
 
 
 def about(v: Any) -> Array:

@@ -156,6 +156,7 @@ class System(Value):
     courses: dict[str, Course] = follows()
 
     def __post_init__(self) -> None:
+        """Check names, signals and drives, and derive the order of the bodies, the coordinates and the equations."""
         if not self.bodies:
             raise InputError("bodies", "is empty", "give one body or more")
         for where in ("bodies", "joints", "forces", "controllers"):
@@ -175,13 +176,13 @@ class System(Value):
         assign(self, courses={name: self.joints[name].course for name in spun})
         drives, signals = drives_of(self), measurable(self)
         for name, controller in self.controllers.items():
-            for each in controller.measure:
-                choice(f"controllers.{name}.measure", each, signals)
-            for each in controller.drive:
-                choice(f"controllers.{name}.drive", each, drives)
-                if any(each == f"{joint}.{rate}" for joint, _, rates in self.prescribed for rate in rates):
+            for signal in controller.measure:
+                choice(f"controllers.{name}.measure", signal, signals)
+            for drive in controller.drive:
+                choice(f"controllers.{name}.drive", drive, drives)
+                if any(drive == f"{joint}.{rate}" for joint, _, rates in self.prescribed for rate in rates):
                     fix = "leave out the rate: what is prescribed is not controlled"
-                    raise InputError(f"controllers.{name}.drive", f"is {each!r}, whose rate is prescribed", fix)
+                    raise InputError(f"controllers.{name}.drive", f"is {drive!r}, whose rate is prescribed", fix)
 
     def __repr__(self) -> str:
         names = ", ".join(self.order)
@@ -208,7 +209,7 @@ class System(Value):
         return cls({name: body}, {CLAMP: Joint("fixed", name)})
 
     def _ordered(self) -> tuple[str, ...]:
-        """Names of the bodies, each after the one that it hangs on."""
+        """Names of the bodies, each after the one that holds it. InputError if none or two hold one, and for loops."""
         for name, joint in self.joints.items():
             if joint.body not in self.bodies:
                 fix = f"choose from {', '.join(self.bodies)}"
@@ -222,14 +223,14 @@ class System(Value):
                 fix = f"keep one of {', '.join(holding)}: loops of joints are not computed"
                 raise InputError(f"joints.{holding[1]}.body", f"is {body!r}, which {holding[0]} holds already", fix)
         order: list[str] = []
-        left = [self.holding[body] for body in self.bodies]
-        while left:
-            ready = [name for name in left if self._parent(name) in (GROUND, *order)]
+        remaining = [self.holding[body] for body in self.bodies]
+        while remaining:
+            ready = [name for name in remaining if self._parent(name) in (GROUND, *order)]
             if not ready:
                 fix = "hang one of these bodies on the ground or on another body"
-                raise InputError(f"joints.{left[0]}.on", f"makes a loop of {', '.join(left)}", fix)
+                raise InputError(f"joints.{remaining[0]}.on", f"makes a loop of {', '.join(remaining)}", fix)
             order += [self.joints[name].body for name in ready]
-            left = [name for name in left if name not in ready]
+            remaining = [name for name in remaining if name not in ready]
         return tuple(order)
 
     def _parent(self, joint: str) -> str:
@@ -269,12 +270,12 @@ class System(Value):
             If there is no such point.
         """
         body, _, point = name.partition(".")
-        known = body in self.bodies
-        names = self.points_of(body) if known else ()
+        exists = body in self.bodies
+        names = self.points_of(body) if exists else ()
         if point not in names:
-            problem = f"{body} has no such point" if known else f"there is no body {body!r}"
-            bodies = [body] if known else list(self.bodies)
-            points = [f"{owner}.{each}" for owner in bodies for each in self.points_of(owner)]
+            problem = f"{body} has no such point" if exists else f"there is no body {body!r}"
+            bodies = [body] if exists else list(self.bodies)
+            points = [f"{owner}.{label}" for owner in bodies for label in self.points_of(owner)]
             raise InputError(where, f"is {name!r}, and {problem}", advise(name, points))
         return body, names.index(point)
 
@@ -309,7 +310,7 @@ class System(Value):
 
     @property
     def floating(self) -> tuple[str, ...]:
-        """Names of the bodies that hang on nothing but a free joint, or on a body that does."""
+        """Names of the bodies that no joint but free ones connects to the ground."""
         names = list[str]()
         for body in self.order:
             joint = self.joints[self.holding[body]]
@@ -340,16 +341,16 @@ class System(Value):
         )
 
     def _named(self) -> tuple[str, ...]:
-        """Names of all coordinates: those of the joints, and numbered ones of the flexible bodies."""
+        """Names of all coordinates: those of the joints, and numbers for those of the flexible bodies."""
         names: list[str] = []
         for body in self.order:
             joint = self.holding[body]
-            names += [f"{joint}.{each}" for each in self.joints[joint].coordinates]
+            names += [f"{joint}.{coordinate}" for coordinate in self.joints[joint].coordinates]
             names += [f"{body}.q{k + 1}" for k in range(self._size(body))]
         return tuple(names)
 
     def _assembled(self) -> Tree:
-        """Links, forces and indices of prescribed coordinates of the equations."""
+        """Build the equations: links, forces and the indices of the prescribed coordinates."""
         index = {body: k for k, body in enumerate(self.order)}
         links, free = [], set[str]()  # bodies whose root moves by unknown coordinates
         for body in self.order:
@@ -400,7 +401,9 @@ class System(Value):
         return self._first(joint) + self.joints[joint].row(rate)
 
     def _prescribed(self) -> list[Prescribed]:
-        """Groups of coordinates that are prescribed together."""
+        """Groups of coordinates that are prescribed together: the joint, their indices in it, and their
+        rates' names.
+        """
         groups = []
         for name, joint in self.joints.items():
             rates_of = dict[tuple[int, ...], list[str]]()
@@ -411,7 +414,7 @@ class System(Value):
 
     @property
     def start(self) -> tuple[Array, Array]:
-        """All coordinates and rates at the start, flexible bodies undeformed."""
+        """All coordinates and their rates at the start, with flexible bodies undeformed."""
         q, qd = [], []
         for body in self.order:
             joint, still = self.joints[self.holding[body]], np.zeros(self._size(body))
@@ -441,8 +444,8 @@ class System(Value):
         """
         times = [np.zeros(0)]
         for joint in self.joints.values():
-            times += [each.corners(step) for each in (*joint.rates.values(), *joint.efforts.values())]
-        times += [each.corners(step) for force in self.forces.values() for each in force.history]
+            times += [profile.corners(step) for profile in (*joint.rates.values(), *joint.efforts.values())]
+        times += [profile.corners(step) for force in self.forces.values() for profile in force.history]
         loads = [body.history for body in self.flexible.values() if body.history is not None]
         times += [history.corners(step) for history in loads]
         return np.concatenate(times)
