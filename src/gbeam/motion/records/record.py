@@ -15,7 +15,6 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, LARGEST, SAMPLES, refuse_large_file, refuse_more
-from gbeam.io.binary import is_binary, read_binary
 from gbeam.io.table import NO_COLUMN, Table, as_word
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.columns import (
@@ -58,6 +57,8 @@ from gbeam.results.description import Channels, RecordSummary
 
 def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table:
     """Read the columns of a record, and the samples of those that are needed."""
+    from gbeam.io.binary import is_binary, read_binary  # what only records need is imported for them
+
     try:
         refuse_large_file("record.file", path, BINARY_BYTES, "cut the record, or export it at a lower rate")
         return read_binary(path, words) if is_binary(path) else read_text(path)
