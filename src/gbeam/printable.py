@@ -11,6 +11,7 @@ _UNPRINTABLE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-
 _NOT_STORABLE = re.compile("[\0\ud800-\udfff]")
 _EXPONENTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 LEAST_SHARE = 1e-5  # that is printed as a number: what is smaller is "< 0.001 %"
+MOST_TURNS = 2  # that are told in degrees: an angle of more is told in turns
 LONGEST = 200  # characters of one value in a message
 
 

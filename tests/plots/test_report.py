@@ -23,7 +23,7 @@ def test_summary_names_what_matters(study: gb.Study) -> None:
     # Largest while not held: 0.6 m/s² at the end, not the 9 m/s² in between.
     assert "largest error of the load while it is followed: 0.0612 g (1.0 %) at 2.000 s" in said
     assert "target is not the flight's load 0.505 to 0.795 s: below idle" in said
-    assert "hub: angle at the end 2.000 rad, largest rate 4.000 rad/s" in said
+    assert "hub: angle at the end 114.6 deg, largest rate 38.20 rpm" in said
     verdict = study.comparisons[0].verdict
     assert verdict[1:] in " ".join(said.split())
 

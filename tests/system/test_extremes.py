@@ -262,7 +262,7 @@ def test_what_does_not_move_is_zero() -> None:
     flight = gb.Flight(x=gb.trapezoid(49.0, jerk=49.0, start=0.2, hold=0.5))
     response = gb.simulate(system, flight, duration=1.0, step=2e-3, estimate=False)
     assert response.largest.max() == 0
-    assert "at the end hinge.angle_1 0 rad, hinge.angle_2 0 rad" in text(response)
+    assert "at the end hinge.angle_1 0 deg, hinge.angle_2 0 deg" in text(response)
 
 
 @pytest.mark.parametrize("step", [1e-2, 5e-4, 1e-4])

@@ -31,7 +31,7 @@ from gbeam.figures.description import (
     scale_of,
     stretches,
 )
-from gbeam.printable import raised
+from gbeam.printable import MOST_TURNS, raised
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.comparison import Comparison
 from gbeam.results.parts import Base
@@ -43,7 +43,6 @@ from gbeam.results.system import ENERGIES, Invariants, Loop
 
 Coordinates = Mapping[str, tuple[Floats, str, Floats]]  # of joints: history, unit and effort by name
 COLOURS = 6
-FEW = 2  # turns: of more a hub shows turns, of fewer degrees
 DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
 
 
@@ -268,7 +267,7 @@ def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
 def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
     """Describe the turning of a hub or an arm about z: its angle, its rate and, if known, the torque of its drive."""
     turns = np.abs(motion.angle).max(initial=0.0) / (2 * math.pi)
-    unit, angle = ("turns", motion.angle / (2 * math.pi)) if turns > FEW else ("deg", np.degrees(motion.angle))
+    unit, angle = ("turns", motion.angle / (2 * math.pi)) if turns > MOST_TURNS else ("deg", np.degrees(motion.angle))
     histories = [(f"angle, {unit}", angle), ("rate, rpm", 30 / math.pi * motion.rate)]
     if motion.drive_torque is not None:
         scale, unit = scale_of("N m", motion.drive_torque)

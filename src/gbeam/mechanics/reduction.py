@@ -66,9 +66,10 @@ class Reduced:
                 return [*damping_ratio, *[damping_ratio[-1]] * (n - count)]
             return damping_ratio
 
+        structure = build(self.size, ratios(self.size))  # first: it refuses a list that fits it no better
         total = len(self.stiffness)
         richer = replace(build(total, ratios(total)), bending=self.bending)
-        return replace(build(self.size, ratios(self.size)), richer=richer)
+        return replace(structure, richer=richer)
 
 
 def linear_fields(points: Floats) -> Floats:

@@ -47,7 +47,7 @@ from gbeam.report.machine import (
     tracked,
     verdict,
 )
-from gbeam.report.words import errors_in_words, known, largest_loads, number, percent, sentence, tidy
+from gbeam.report.words import angle_words, errors_in_words, known, largest_loads, number, percent, sentence, tidy
 from gbeam.results.accounting import in_g, metres, seconds
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.body_response import BodyResponse
@@ -88,7 +88,8 @@ def response_lines(response: Response) -> Iterator[str]:
         yield from (f"{prefix}{line}" for line in _body_lines(body))
     if response.hub is not None:
         angle, rate = response.hub.angle_end, response.hub.rate_max
-        yield f"{response.environment}: angle at the end {number(angle)} rad, largest rate {number(rate)} rad/s"
+        rpm = number(30 / math.pi * rate)
+        yield f"{response.environment}: angle at the end {angle_words(angle)}, largest rate {rpm} rpm"
         if free_hub and np.any(response.body.damping_ratio):
             yield _damping(response.body)
     if response.invariants is not None:
@@ -110,8 +111,11 @@ def _at_end(response: Response, joints: Mapping[str, tuple[Floats, str, Floats]]
     at_end = [float(history[-1]) for history, *_ in joints.values()]
     scale = float(np.abs(response.place).max(initial=0.0))
     ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))), scale)
-    units = (unit for _, unit, _ in joints.values())
-    return ", ".join(f"{name} {number(end)} {unit}" for name, end, unit in zip(joints, ends, units, strict=True))
+    units = [unit for _, unit, _ in joints.values()]
+    words = [
+        angle_words(end) if unit == "rad" else f"{number(end)} {unit}" for end, unit in zip(ends, units, strict=True)
+    ]
+    return ", ".join(f"{name} {end}" for name, end in zip(joints, words, strict=True))
 
 
 def _body_lines(body: BodyResponse) -> Iterator[str]:

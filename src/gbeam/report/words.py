@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gbeam.printable import LEAST_SHARE, json_printable
+from gbeam.printable import LEAST_SHARE, MOST_TURNS, json_printable
 from gbeam.printable import percent as percent_of
 from gbeam.results.errors import WHOLE
 
@@ -96,7 +96,13 @@ def errors_in_words(errors: Mapping[str, float | None]) -> str:
 
 def rounding(size: float, scale: float = 0.0) -> float:
     """Return the largest rounding error of numbers of a `size`, and of differences of numbers of a `scale`."""
-    return max(1e-10 * size, 1e-14 * scale, 1e-20)
+    return max(1e-8 * size, 1e-14 * scale, 1e-20)
+
+
+def angle_words(angle: float) -> str:
+    """An angle, rad, in degrees, or of more than :data:`MOST_TURNS` in turns."""
+    turns = angle / (2 * math.pi)
+    return f"{number(turns)} turns" if abs(turns) > MOST_TURNS else f"{number(math.degrees(angle))} deg"
 
 
 def tidy(values: Iterable[float], size: float, scale: float = 0.0) -> list[float]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gbeam.analysis.accuracy.estimate import NO_MESH
 from gbeam.analysis.response.loss import holds, worst_loss
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
@@ -163,8 +162,7 @@ def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
     if run.posed.system.alone is not None:  # all that its points move is its deflection
         errors = replace(errors, place=ErrorEstimate())
-    warnings = doubts(errors, settings.tolerance, _cure_of_step(settings))
-    return tuple(warning for warning in warnings if warning != NO_MESH)  # which is said of the error itself
+    return doubts(errors, settings.tolerance, _cure_of_step(settings))
 
 
 def _cure_of_step(settings: ResponseSettings) -> str:

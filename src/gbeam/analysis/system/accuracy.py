@@ -28,6 +28,7 @@ from gbeam.analysis.accuracy.correction import (
     Reading,
 )
 from gbeam.analysis.accuracy.estimate import (
+    NO_MESH,
     UNMOVED,
     Judgement,
     causes,
@@ -266,8 +267,11 @@ def _missed(rings: Ringing, known: _Known, errors: Errors, fastest: float) -> fl
 
 
 def doubts(errors: Errors, tolerance: float, cure_of_steps: str = SMALLER) -> tuple[str, ...]:
-    """Warn of errors above a tolerance, with causes and advice, and of answers that are not judged."""
-    warnings = [errors.note] if errors.note else []
+    """Warn of errors above a tolerance, with causes and advice, and of answers that are not judged.
+
+    That a mesh is not judged is said of the error itself, and is no warning.
+    """
+    warnings = [errors.note] if errors.note not in ("", NO_MESH) else []
     deflection, place = errors.displacement, errors.place
     quantities = [("loads are", "the largest of them", errors.loads, errors.loads_by_beam)]
     quantities += [("stress is", "its largest", errors.stress, errors.stress_by_beam)]
