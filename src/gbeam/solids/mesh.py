@@ -231,9 +231,9 @@ class SolidMesh(Mesh):
     ) -> SolidModel:
         """Reduce the solid to its lowest modes and its static answers to unit inertial loads.
 
-        Six static answers of each interface come on top, to forces and moments there (attachment modes: a reduction by
-        Craig and Bampton about the clamp). So any steady acceleration and rotation of the base deforms the solid as all
-        of its elements would, and so do loads of other bodies.
+        Besides the modes there are up to twelve static answers to even accelerations and rotations of the base, and six
+        of each interface to forces and moments there (attachment modes: a reduction by Craig and Bampton about the
+        clamp). So steady loads of these kinds deform the solid as all of its elements would.
 
         Returns
         -------
