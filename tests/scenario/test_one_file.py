@@ -100,7 +100,7 @@ def test_a_run_says_the_units_of_its_coordinates(widened: Path) -> None:
     assert {name: each["unit"] for name, each in response["coordinates"].items()} == {
         "table.u": "m", "table.v": "m", "table.angle": "rad"
     }  # fmt: skip
-    assert any(re.search(r"table\.v \S+ m\b.*table\.angle \S+ rad", line) for line in response["lines"])
+    assert any(re.search(r"table\.v \S+ m\b.*table\.angle \S+ deg", line) for line in response["lines"])
 
 
 def test_their_keys_are_in_the_schema_and_their_units_are_asked_for(widened: Path) -> None:
