@@ -92,6 +92,7 @@ class Samples:
                 beam,
                 {
                     "masses": [gb.PointMass(0.1, 0.1)],
+                    "supports": [gb.Support(0.2, ["z"])],
                     "loads": [],
                     "root": gb.Root(),
                     "damping_ratio": 0.01,
@@ -166,6 +167,7 @@ class Samples:
                 {},
             ),
             "Point": (("camera", 0.1), {}),
+            "Support": ((0.2,), {"holds": ["z"], "stiffness": {"ry": 5.0}, "damping": {"ry": 0.1}}),
             "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0), "name": "body"}),
             "ResponseSettings": (
                 (1.0,),

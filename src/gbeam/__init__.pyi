@@ -89,6 +89,7 @@ from .structure.line import Line as Line
 from .structure.material import Material as Material
 from .structure.material import Orthotropic as Orthotropic
 from .structure.section import Section as Section
+from .structure.supports import Support as Support
 from .studies.fit import fit as fit
 from .studies.optimise import optimise as optimise
 from .studies.sensitivity import sensitivity as sensitivity

@@ -72,5 +72,5 @@ def test_damping_counts_the_springs_modes() -> None:
 
 
 def test_an_impossible_spring_is_refused() -> None:
-    with pytest.raises(InputError, match="rotation_y is 0 N m/rad"):
-        Root(rotation_y=0.0)
+    with pytest.raises(InputError, match="rotation_y is -1 N m/rad"):
+        Root(rotation_y=-1.0)

@@ -197,6 +197,8 @@ AngularRate = Annotated[float, Quantity("angular rate")]
 Force = Annotated[float, Quantity("force")]
 Stiffness = Annotated[float, Quantity("stiffness", "positive")]
 RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positive")]
+Damping = Annotated[float, Quantity("damping", "zero or more")]
+RotationalDamping = Annotated[float, Quantity("rotational damping", "zero or more")]
 
 # Vectors of three components; JAX's and NumPy's arrays are numbers, too.
 PositionVector = Annotated[Numbers, Quantity("length"), Shape((3,))]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,22 +14,38 @@ from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
-from gbeam.mechanics.equations.inertia import inertia_of
+from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
-from gbeam.mechanics.fields.projected import Field, RootedField, projected_field
+from gbeam.mechanics.fields.held import Conditions, HeldStrainField, Measures
+from gbeam.mechanics.fields.projected import Field, HeldField, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
-from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
+from gbeam.mechanics.fields.strains import ExpandedField, StrainField, shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.plausibility import implausible_beam, refuse_disparate, refuse_unknown
-from gbeam.mechanics.structure import Sections, Source, Structure
+from gbeam.mechanics.structure import Grip, Sections, Source, Structure
+from gbeam.mechanics.supports import (
+    chosen_dependents,
+    counts_by_family,
+    counts_without,
+    null_basis,
+    plus,
+    refuse_shapeless,
+    refuse_stretched,
+    rigid_conditions,
+    rows_of,
+    supported_shapes,
+    turned,
+    yielding_conditions,
+)
 from gbeam.motion.profiles.piecewise import constant
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
 from gbeam.structure.matrices import condensed
 from gbeam.structure.matrices import particles as particles_of_slices
+from gbeam.structure.supports import DIRECTIONS
 
 
 @typed
@@ -97,7 +114,10 @@ def assemble(
     # Integrals from the root are a matrix of all nodes to all.
     nodes = len(rule.node)
     refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
-    families = adapted_shapes(beam, rule, counts) if adapted else None
+    refuse_stretched(beam, model.kind)
+    refuse_shapeless(beam, counts)
+    counts = plus(counts, plus(counts_by_family(rigid_conditions(beam)), counts_by_family(yielding_conditions(beam))))
+    families = families_of(beam, model.kind, counts, rule, model.shapes)
     return assembled(beam, model.kind, counts, rule, at, families, model.shapes, automatic=model.automatic)
 
 
@@ -107,48 +127,145 @@ def assembled(
     counts: Counts,
     rule: Quadrature,
     at: Array,
-    families: Families | None,
+    families: Families,
     shapes: Shapes,
     *,
     automatic: bool = False,
+    dependents: tuple[int, ...] | None = None,
 ) -> Structure:
     """Put a beam into a kind of model, with a quadrature `rule` and stations of output `at` (s,) m, the tip last. The
-    functions of its shapes are `families`, or unless given those of :func:`forms_of`; `automatic` marks their numbers.
+    functions of its shapes are `families`; `automatic` marks their numbers. Rigid supports make as many coordinates
+    dependent as they have conditions: those at the indices `dependents`, or some that suit.
     """
+    field, stiffness = _unheld(beam, kind, counts, rule, at, families)
+
+    def made(field: Field, stiffness: Array, damping: Array | None, taken: tuple[int, ...]) -> Structure:
+        """Structure in the coordinates that are not taken by supports."""
+        left = counts_without(counts, taken)
+        return _structure(beam, kind, rule, at, shapes, left, field, stiffness, damping, automatic=automatic)
+
+    if not beam.held_places:
+        return made(field, stiffness, None, ())
+    first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
+    return hold(beam, field, stiffness, made, at, first_station, sum(counts), dependents)
+
+
+def hold(
+    beam: Beam,
+    field: Field,
+    stiffness: Array,
+    made: Callable[[Any, Array, Array | None, tuple[int, ...]], Structure],
+    at: Array,
+    first_station: int,
+    shapes: int,
+    dependents: tuple[int, ...] | None,
+) -> Structure:
+    """Hold a beam at its supports beyond the root, in `at` (s,) m, the stations.
+
+    `field` and `stiffness` (n, n) are those without supports, of `shapes` shapes and then the root's springs; `made`
+    makes a structure of a field, a stiffness, a damping, by default that of the modes, and indices that are taken.
+    Those of `dependents` are, or some that suit, as many as there are rigid conditions.
+    """
+    conditions, yielding = rigid_conditions(beam), yielding_conditions(beam)
+    every = [*conditions, *yielding]
+    slopes, angles = field.sections(slice(first_station, None)).jacobians(np.zeros(len(stiffness)))
+    station = [int(np.argmin(np.abs(at - condition.at))) for condition in every]
+    rows = rows_of(every, slopes[station], angles[station])
+    held, sprung = rows[: len(conditions)], rows[len(conditions) :]
+    spring, damper = (
+        np.array(
+            [getattr(beam.supports[condition.support], name).get(condition.direction, 0.0) for condition in yielding]
+        )
+        for name in ("stiffness", "damping")
+    )
+    stiffness = stiffness + sprung.T @ (spring[:, None] * sprung)
+    dashpots = sprung.T @ (damper[:, None] * sprung)
+    if dependents is None:
+        dependents = chosen_dependents(conditions, held, np.diag(stiffness), shapes)
+    basis = null_basis(held, dependents)
+    places = [(k, DIRECTIONS.index(each.direction)) for k, each in zip(station, every, strict=True)]
+    parted = tuple(places[: len(conditions)]), tuple(places[len(conditions) :])
+    in_fewer = _held_field(field, basis, dependents, parted[0], first_station)
+    supported = made(in_fewer, turned(stiffness, basis), None, dependents)
+    c = supported.coefficients
+    # The damping of modes acts where their elastic forces do.
+    kept = np.delete(np.eye(len(stiffness)), dependents, axis=1)
+    felt = stiffness @ basis @ np.linalg.solve(c.stiffness, c.damping) @ kept.T
+    supported = replace(supported, coefficients=c.damped(c.damping + turned(dashpots, basis)))
+    free = made(field, stiffness, felt + dashpots, ())
+    return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted))
+
+
+def _held_field(
+    field: Field, basis: Array, dependents: tuple[int, ...], held: tuple[tuple[int, int], ...], first_station: int
+) -> Field:
+    """Field in the coordinates that rigid supports leave: they hold stations in directions, `held`."""
+    if not held:
+        return field
+    if not isinstance(field, StrainField):
+        return HeldField(field, basis)
+    stations = sorted({station for station, _ in held})
+    sections = field.sections(first_station + np.array(stations, dtype=int))
+    numbered = tuple((stations.index(station), direction) for station, direction in held)
+    measures = Measures(sections, sections.positions(np.zeros(field.size)), numbered)
+    return HeldStrainField(field, Conditions(measures, dependents, field.size))
+
+
+class _Unheld(NamedTuple):
+    """Field of a beam without supports beyond its root, and the stiffness of its shapes."""
+
+    field: Field
+    stiffness: Array
+
+
+def _unheld(beam: Beam, kind: str, counts: Counts, rule: Quadrature, at: Array, families: Families) -> _Unheld:
+    """Field and stiffness of a beam by the functions of its shapes, without supports beyond its root."""
     row = KINDS[kind]
-    bodies = [m.at for m in beam.masses]
     loaded = [load.at for load in beam.loads if load.at is not None]
-    x = np.concatenate([rule.node, bodies, loaded, at])
+    x = np.concatenate([rule.node, [m.at for m in beam.masses], loaded, at])
     move, turn = beam.root.directions()
     springs = [*beam.root.springs.values()]
     still = np.zeros((3, sum(counts)))
     move, turn = (np.concatenate([still, each], axis=1) for each in (move, turn))
-    shapes_of = families or forms_of(beam, row, counts)
-    strains = np.pad(shaped_strains(rule, shapes_of), ((0, 0), (0, 0), (0, len(springs))))
+    strains = np.pad(shaped_strains(rule, families), ((0, 0), (0, 0), (0, len(springs))))
     field: Field
     if row.strains or beam.line is not None or any(counts[3:]):
         field = strain_field(rule, x, strains, move, turn, beam.line)
         if row.order is not None:
             field = SeriesField.of(field, row.order) if row.strains else ExpandedField.of(field, linear=row.order < 2)
     else:
-        field = projected_field(rule, x, counts, shapes_of, foreshortening=row.order != 1)
+        field = projected_field(rule, x, counts, families, foreshortening=row.order != 1)
         if springs:
             field = RootedField(field, x, *beam.root.directions(), linear=row.order == 1)
+    return _Unheld(field, stiffness_of(beam, rule, strains))
+
+
+def _structure(
+    beam: Beam,
+    kind: str,
+    rule: Quadrature,
+    at: Array,
+    shapes: Shapes,
+    counts: Counts,
+    field: Field,
+    stiffness: Array,
+    damping: Array | None,
+    *,
+    automatic: bool,
+) -> Structure:
+    """Structure of a beam from its field, its stiffness and its damping (n, n), by default that of its modes."""
+    row = KINDS[kind]
+    loaded = [load.at for load in beam.loads if load.at is not None]
+    first_station, ratio = len(rule.node) + len(beam.masses) + len(loaded), beam.damping_ratio
     station, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
     off_axis = namespace(offset) is not np or offset.any()
     line = len(station) - sum(len(body.particles()[0]) for body in beam.masses)
-    inertia = inertia_of(
-        field.points(station, offset if off_axis else None),
-        mass,
-        line,
-        len(rule.node),
-        symmetric=beam.material is not None,
-    )
-    stiffness = stiffness_of(beam, rule, strains)
+    points = field.points(station, offset if off_axis else None)
+    inertia = held_inertia(points, mass, line, len(rule.node), symmetric=beam.material is not None)
     history = _history(beam)
     work, loaded_at = None, np.zeros(0, int)
     if beam.loads:
-        work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(bodies))
+        work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(beam.masses))
     rest = np.zeros(len(stiffness))
     places, geometric = inertia.about(rest)
     c = coefficients(
@@ -158,7 +275,9 @@ def assembled(
         geometric=geometric,
         loads=None if work is None else work.about(len(beam.loads), rest),
     )
-    first_station, ratio = len(rule.node) + len(bodies) + len(loaded), beam.damping_ratio
+    if damping is None:
+        damping = damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)
+    x = np.concatenate([rule.node, [m.at for m in beam.masses], loaded, at])
     return Structure(
         kind=kind,
         linear=row.truncated,
@@ -169,7 +288,7 @@ def assembled(
         places=places,
         stations=at,
         station_places=field.points(slice(first_station, None)).at_rest(),
-        coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
+        coefficients=c.damped(damping),
         inertia=inertia,
         field=field,
         first_station=first_station,
@@ -183,6 +302,18 @@ def assembled(
     )
 
 
+def families_of(beam: Beam, kind: str, counts: Counts, rule: Quadrature, shapes: Shapes) -> Families:
+    """Functions of a beam's shapes of a kind of model, with the static ones of its supports among their `counts`."""
+
+    def base(counts: Counts) -> Families:
+        """Functions of shapes without supports."""
+        if shapes == "adapted":
+            return adapted_shapes(beam, rule, counts)
+        return forms_of(beam, KINDS[kind], counts)
+
+    return supported_shapes(beam, rule, counts, base) if beam.held_places else base(counts)
+
+
 def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
     """Functions of shapes that are not adapted: polynomials of strains, or closed forms of the bare uniform beam."""
     if beam.line is not None:
@@ -191,8 +322,9 @@ def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
 
 
 def breaks_of(beam: Beam) -> list[float]:
-    """Positions between which the section and the line are smooth, m."""
-    return [*beam.section.stations, *(() if beam.line is None else beam.line.panels)]
+    """Positions between which the section, the line and what supports bend are smooth, m."""
+    supports = [support.at for support in beam.held_places.values()]
+    return [*beam.section.stations, *(() if beam.line is None else beam.line.panels), *supports]
 
 
 def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
@@ -204,7 +336,8 @@ def model_of(structure: Structure) -> Model:
     """Return the model of a structure of a beam."""
     assert structure.source is not None
     kind: Any = structure.kind
-    axial, y, z, *others = structure.counts
+    yielding = counts_by_family(yielding_conditions(structure.source.beam))  # whose static shapes come on top
+    axial, y, z, *others = (count - more for count, more in zip(structure.counts, yielding, strict=True))
     return Model(kind, axial, y, z, structure.source.shapes, structure.source.automatic, *others)
 
 
@@ -248,8 +381,8 @@ def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
 
 
 def _stations(beam: Beam, stations: ArrayLike) -> Array:
-    """Positions of output, m. Named points join the stations, from root to tip; without them the stations keep their
-    order. The tip is last.
+    """Positions of output, m. Named points and supports join the stations, from root to tip; without them the stations
+    keep their order. The tip is last.
     """
     positions = np.asarray(stations, dtype=float).ravel()
     for i, x in enumerate(positions):
@@ -258,6 +391,7 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     named_positions = [
         position for name, position in beam.named_points.items() if name != TIP and position < beam.length
     ]
+    named_positions += [support.at for support in beam.held_places.values() if support.at < beam.length]
     if named_positions:
         positions = np.unique(np.concatenate([positions, named_positions]))
     return np.append(positions[positions < beam.length], beam.length)

@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import Array
-from gbeam.mechanics.assembly import assembled, breaks_of, forms_of, particles_of, stiffness_of
-from gbeam.mechanics.fields.adapted import GROUPS, Space, adapted_shapes, spaces_of
-from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes, quadrature
+from gbeam.mechanics.assembly import assembled, breaks_of, families_of, particles_of, stiffness_of
+from gbeam.mechanics.fields.adapted import GROUPS, Space, spaces_of
+from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes, joined_family, quadrature
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.supports import counts_by_family, plus, rigid_conditions, unit_load, yielding_conditions
 from gbeam.results.parts import Base
 from gbeam.structure.beam import Beam
 
@@ -55,7 +56,7 @@ def enriched_shapes(
     enriched, counts = list(families), [0] * 6
     for along, space in enumerate(spaces):
         for family, added in _lacking(beam, space, families, along, force, least).items():
-            enriched[family] = _joined(families[family], added)
+            enriched[family] = joined_family(families[family], added)
             counts[family] = added(space.rule.node).value.shape[1]
     (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z) = enriched, counts
     return (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z)
@@ -88,7 +89,7 @@ def _lacking(
     least = min(least, shortest(known) / 10)
     loads = _loads(beam, space, along)
     added: dict[int, list[Array]] = {family: [] for family in space.families}
-    for flexibility in _flexibilities(space, force):
+    for flexibility in _flexibilities(beam, space, force):
         vectors = flexibility @ loads
         for _ in range(LEVELS[along]):
             for vector, scaled in zip(vectors.T, space.scaled(vectors).T, strict=True):
@@ -116,15 +117,6 @@ def _lacking(
     }
 
 
-def _joined(family: Family, more: Family) -> Family:
-    """Family of the shapes of two."""
-
-    def both(x: Array) -> Shapes:
-        return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), more(x), strict=True)))
-
-    return both
-
-
 def _period(beam: Beam, space: Space, along: int) -> float:
     """Square of the longest period, over 4π², by the answer to an even acceleration."""
     force = _loads(beam, space, along)[:, 0]
@@ -132,16 +124,42 @@ def _period(beam: Beam, space: Space, along: int) -> float:
     return float(answer @ space.mass @ answer / (answer @ force))
 
 
-def _flexibilities(space: Space, force: Array | None) -> list[Array]:
-    """Inverse of the stiffness and, if an axial force (g,), N, matters and does not buckle the beam, that with it."""
+def _flexibilities(beam: Beam, space: Space, force: Array | None) -> list[Array]:
+    """Inverse of the stiffness and, if an axial force (g,), N, matters and does not buckle the beam, that with it; both
+    under the beam's supports.
+    """
     unloaded = _flexibility(space)
+    if beam.held_places and space.upper is None:
+        unloaded = _held_flexibility(beam, space, np.zeros_like(space.mass))
     if force is None or not bends(space, force):
         return [unloaded]
     _, slope = space.sensitivity(space.rule.node)
-    stiffness = np.diag(space.stiffness) + slope.T @ ((space.rule.weight * force)[:, None] * slope)
+    added = slope.T @ ((space.rule.weight * force)[:, None] * slope)
+    stiffness = np.diag(space.stiffness) + added
     if np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(space.stiffness, space.stiffness)))[0] <= 0:
         return [unloaded]
-    return [unloaded, np.asarray(np.linalg.inv(stiffness))]
+    loaded = _held_flexibility(beam, space, added) if beam.held_places else np.asarray(np.linalg.inv(stiffness))
+    return [unloaded, loaded]
+
+
+def _held_flexibility(beam: Beam, space: Space, added: Array) -> Array:
+    """Displacements (n, n) by unit forces under the beam's supports, with a stiffness (n, n) that is `added`."""
+    size = np.sqrt(space.stiffness)
+    true = space.stiffness.copy()
+    true[list(space.loose)] = 0.0
+    stiffness = (np.diag(true) + added) / np.outer(size, size)
+    for condition in yielding_conditions(beam):
+        if condition.family in space.families:
+            row = unit_load(space, condition) / size
+            stiffness_of_support: Any = beam.supports[condition.support].stiffness
+            spring = stiffness_of_support.get(condition.direction, 0.0)
+            stiffness = stiffness + spring * np.outer(row, row)
+    rows = [unit_load(space, each) / size for each in rigid_conditions(beam) if each.family in space.families]
+    free = np.eye(len(size))
+    if rows:
+        free = np.linalg.svd(np.stack(rows))[2][len(rows) :].T
+    flexible = free @ np.linalg.solve(free.T @ stiffness @ free, free.T)
+    return np.asarray(flexible / np.outer(size, size))
 
 
 def _flexibility(space: Space) -> Array:
@@ -221,6 +239,9 @@ def _loads(beam: Beam, space: Space, along: int) -> Array:
         uniform, growing = uniform + body.mass * displacement[0], growing + body.mass * body.at * displacement[0]
         if along and (any(body.offset) or any(body.inertia)):
             columns.append(angle[0])
+    for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
+        if condition.family in space.families:
+            columns.append(unit_load(space, condition))
     for load in beam.loads:
         displacement, angle = (value, slope) if load.at is None else space.sensitivity(np.array([load.at]))
         weight = space.rule.weight if load.at is None else np.ones(1)
@@ -272,7 +293,7 @@ class Enrichment:
         """Find the shapes that the structure lacks, also under an axial `force` (g,), N."""
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
-        counts = structure.counts
+        counts = plus(structure.counts, counts_by_family(rigid_conditions(beam)))
         marks = [m.at for m in beam.masses] + [load.at for load in beam.loads if load.at is not None]
         breaks = [*breaks_of(beam), *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
@@ -300,7 +321,7 @@ class Enrichment:
 
     def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
         """Build the model and indices of :meth:`model`, with new shapes of families that move along `directions`."""
-        model_counts = self.structure.counts
+        model_counts = plus(self.structure.counts, counts_by_family(rigid_conditions(self.beam)))
         wanted = [False] * 6
         for group, along in zip(GROUPS, (*directions, True), strict=True):
             for family in group:
@@ -314,11 +335,11 @@ class Enrichment:
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)
         if isinstance(ratio, tuple):  # new modes have the last ratio
-            ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - len(ratio)))
+            taken = len(() if self.structure.grip is None else self.structure.grip.dependents)
+            ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - taken - len(ratio)))
         beam = replace(self.beam, damping_ratio=ratio)
         stations = np.asarray(self.structure.stations)
         shapes = self.structure.source.shapes  # type: ignore[union-attr]
-        rich = assembled(beam, kind, counts, self.rule, stations, families, shapes)
         starts = np.cumsum([0, *counts])
         index = np.concatenate(
             [
@@ -326,14 +347,23 @@ class Enrichment:
                 np.arange(springs) + starts[-1],
             ]
         )
-        return rich, index.astype(int)
+        index = index.astype(int)
+        grip = self.structure.grip
+        if grip is None:
+            return assembled(beam, kind, counts, self.rule, stations, families, shapes), index
+        dependents = index[list(grip.dependents)]
+        rich = assembled(
+            beam, kind, counts, self.rule, stations, families, shapes, dependents=tuple(dependents.tolist())
+        )
+        kept = np.delete(index, grip.dependents)
+        return rich, kept - (dependents < kept[:, None]).sum(axis=1)
 
 
 def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
-    """Functions of the structure's own shapes."""
-    if structure.source is not None and structure.source.shapes == "adapted":
-        return adapted_shapes(beam, rule, structure.counts)
-    return forms_of(beam, KINDS[structure.kind], structure.counts)
+    """Functions of the structure's own shapes, with those that depend on others where supports hold it."""
+    assert structure.source is not None
+    counts = plus(structure.counts, counts_by_family(rigid_conditions(beam)))
+    return families_of(beam, structure.kind, counts, rule, structure.source.shapes)
 
 
 def _first(family: Family, count: int) -> Family:

@@ -43,7 +43,7 @@ def refuse_disparate(beam: Beam) -> None:
     """Raise InputError where a body or a spring is so much larger or smaller than the beam that a sum
     loses its digits.
     """
-    if _traced(beam) or holds_jax(list(beam.root.springs.values())):
+    if _traced(beam) or holds_jax(list(beam.root.springs.values()), [support.stiffness for support in beam.supports]):
         return
     for where, value, unit, quantity, ratio in _ratios(beam):
         if ratio > DISPARATE or (quantity == "stiffness" and ratio < 1 / DISPARATE):
@@ -83,13 +83,16 @@ def _ratios(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
     rigidities = beam.rigidities(np.asarray(beam.section.stations or (0.0,)))
     along, about_y, about_z = (np.mean(rigidity) for rigidity in rigidities)
     bending = np.sqrt(about_y * about_z) / length
-    for name, value in beam.root.springs.items():
+    springs = [(f"root.{name}", name, value) for name, value in beam.root.springs.items() if value]
+    for i, support in enumerate(beam.supports):
+        springs += [(f"supports[{i}].stiffness.{name}", name, value) for name, value in support.stiffness.items()]
+    for where, name, value in springs:
         unit, stiffness = "N/m", bending / length**2
-        if name.startswith("rotation"):
+        if name.startswith("r"):
             unit, stiffness = "N m/rad", bending
-        elif name == "translation_x":
+        elif name in ("translation_x", "x"):
             stiffness = along / length
-        yield f"root.{name}", value, unit, "stiffness", float(value / stiffness)
+        yield where, value, unit, "stiffness", float(value / stiffness)
 
 
 def _traced(beam: Beam) -> bool:

@@ -21,6 +21,7 @@ from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
+from gbeam.mechanics.reactions import Hung, Reactions, reactions_of
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.body_terms import terms_of
 from gbeam.mechanics.tree.frames import Frame
@@ -30,18 +31,6 @@ from gbeam.structure.section import extreme_stresses, worst_fibres
 from gbeam.structure.shapes import von_mises
 
 _BLOCK = 256  # times handled together: what stays in a cache
-
-
-class Hung(NamedTuple):
-    """Forces and moments about the root (t, p, 3) that other bodies demand of the stations (p,) on which they hang."""
-
-    station: Array
-    force: Array
-    moment: Array
-
-    def during(self, part: slice) -> Hung:
-        """Return the forces and moments at some of the times."""
-        return self._replace(force=self.force[part], moment=self.moment[part])
 
 
 class Carried(NamedTuple):
@@ -75,6 +64,9 @@ def section_forces(
         return about_the_hub(_of_ends(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
+    reactions = reactions_of(structure, base, q, qd, qdd, applied, hung)
+    if reactions is not None:
+        hung = reactions.demanded if hung is None else hung.joined(reactions.demanded)
     pieces = []
     for i in range(0, len(q), _BLOCK):
         part = slice(i, i + _BLOCK)
@@ -101,7 +93,22 @@ def section_forces(
         yield_strength=section_data.yield_strength,
         fatigue_exponent=section_data.fatigue_exponent,
     )
+    if reactions is not None:
+        loads = with_supports(loads, structure, reactions)
     return about_the_hub(loads, motion, base.alpha_WB_B)
+
+
+def with_supports(loads: Loads, structure: Structure, reactions: Reactions) -> Loads:
+    """Add to loads those of the supports, and what the base does to the structure in all, about its root."""
+    demanded = reactions.demanded
+    return replace(
+        loads,
+        supports=np.asarray(structure.stations)[reactions.station],
+        support_force=reactions.force,
+        support_moment=reactions.moment,
+        base_force=loads.root_force - demanded.force.sum(axis=1),
+        base_moment=loads.root_moment - demanded.moment.sum(axis=1),
+    )
 
 
 def _of_ends(
@@ -229,7 +236,10 @@ def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loa
     hub: Any = motion
     xp = namespace(loads.force, hub.mount.R_HB)
     R_BH = xp.asarray(hub.mount.R_HB).T
-    force_H, moment_H, alpha_H = loads.root_force @ R_BH, loads.root_moment @ R_BH, alpha_WB_B @ R_BH
+    force, moment = loads.root_force, loads.root_moment
+    if loads.base_force is not None and loads.base_moment is not None:  # of the root and the supports
+        force, moment = loads.base_force, loads.base_moment
+    force_H, moment_H, alpha_H = force @ R_BH, moment @ R_BH, alpha_WB_B @ R_BH
     along, across = hub.mount.place[0], hub.mount.place[1]
     torque = moment_H[:, 2] + along * force_H[:, 1] - across * force_H[:, 0]
     drive = None if hub.inertia is None else torque + hub.inertia * alpha_H[:, 2]

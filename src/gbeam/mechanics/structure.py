@@ -15,6 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import implausible, positive
 from gbeam.mechanics.equations.dalembert import Complete
+from gbeam.mechanics.equations.held import HeldComplete, HeldInertia, Springs
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.linear import (
     Bending,
@@ -26,11 +27,13 @@ from gbeam.mechanics.equations.linear import (
 )
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
+from gbeam.mechanics.fields.held import Conditions, HeldStrainField, Measures
 from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Expanded, Places
 from gbeam.numerics.eigen import positive_definite
+from gbeam.numerics.series import STEP
 
 if TYPE_CHECKING:
     from gbeam.structure.beam import Beam
@@ -81,6 +84,54 @@ class Recovery(Protocol):
     def strain(self, point: str, along: Any) -> Array:
         """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
         ...
+
+
+@record
+class Grip:
+    """What supports hold of a structure, and the structure that they hold.
+
+    Its coordinates q (m,) are those of the structure, `basis` (m, n) times them: conditions `rows` (k, m) times q are
+    zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The
+    conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`.
+    """
+
+    free: Structure
+    basis: Array
+    rows: Array
+    yielding: Array
+    stiffness: Array
+    damping: Array
+    dependents: tuple[int, ...] = static()
+    held: tuple[tuple[int, int], ...] = static()
+    sprung: tuple[tuple[int, int], ...] = static()
+
+    def measures(self, which: tuple[tuple[int, int], ...]) -> Measures:
+        """Displacements and rotations of the free structure's stations, each in a direction."""
+        assert isinstance(self.free.field, StrainField)
+        sections = self.free.field.sections(slice(self.free.first_station, None))
+        stations = sorted({station for station, _ in which})
+        at = sections[np.array(stations, dtype=int)]
+        numbered = tuple((stations.index(station), direction) for station, direction in which)
+        return Measures(at, at.positions(np.zeros(at.size)), numbered)
+
+    @property
+    def conditions(self) -> Conditions | None:
+        """Conditions of the rigid supports, of an exact model; None without rigid ones."""
+        if not self.held:
+            return None
+        return Conditions(self.measures(self.held), self.dependents, self.free.size)
+
+    @property
+    def equations(self) -> HeldComplete:
+        """Equations of an exact model under the supports."""
+        c, springs = self.free.coefficients, None
+        stiffness, damping = c.stiffness, c.damping
+        if self.sprung:
+            springs = Springs(self.measures(self.sprung), self.stiffness, self.damping)
+            stiffness = stiffness - self.yielding.T @ (self.stiffness[:, None] * self.yielding)
+            damping = damping - self.yielding.T @ (self.damping[:, None] * self.yielding)
+        assert isinstance(self.free.inertia, Inertia)
+        return HeldComplete(Complete(self.free.inertia, damping, stiffness, self.free.work), self.conditions, springs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +206,8 @@ class Structure:
     modes : int or None
         Number of modes where static shapes are among the coordinates: their frequencies are the lowest, and those
         above are none of the specimen's.
+    grip : Grip or None
+        What supports beyond the root hold, if there are any.
 
     Examples
     --------
@@ -175,7 +228,7 @@ class Structure:
     stations: Array
     station_places: Places
     coefficients: Coefficients
-    inertia: Inertia | None = None
+    inertia: Inertia | HeldInertia | None = None
     field: Field | None = None
     first_station: int = static(default=0)
     sections: Sections | None = None
@@ -190,6 +243,7 @@ class Structure:
     unstiffened: bool = static(default=False)
     recovery: Recovery | None = static(default=None)
     modes: int | None = static(default=None)
+    grip: Grip | None = None
     bending: Bending | None = static(default=None)
     richer: Structure | None = static(default=None)
     coarser: Structure | None = static(default=None)
@@ -304,11 +358,13 @@ class Structure:
         return holds_jax(self)
 
     @property
-    def equations(self) -> Coefficients | Complete:
+    def equations(self) -> Coefficients | Complete | HeldComplete:
         """The equations of motion on a prescribed base."""
         if self.linear:
             return self.coefficients
-        assert self.inertia is not None
+        if self.grip is not None and isinstance(self.grip.free.field, StrainField):
+            return self.grip.equations
+        assert isinstance(self.inertia, Inertia)
         return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
 
     def about(self, q: Array) -> tuple[Coefficients, Array]:
@@ -319,8 +375,12 @@ class Structure:
         assert self.inertia is not None
         places, geometric = self.inertia.about(q)
         loads = None if self.work is None or self.load_values is None else self.work.about(len(self.load_values), q)
-        linear = coefficients(self.mass, places, c.stiffness, damping=c.damping, geometric=geometric, loads=loads)
-        return linear, c.stiffness @ q
+        elastic, tangent = c.stiffness @ q, c.stiffness
+        if isinstance(self.equations, HeldComplete):
+            steps = q + 1j * STEP * np.eye(self.size)
+            elastic, tangent = self.equations.elastic(q), np.imag(self.equations.elastic(steps)).T / STEP
+        linear = coefficients(self.mass, places, tangent, damping=c.damping, geometric=geometric, loads=loads)
+        return linear, elastic
 
     @property
     def rest(self) -> tuple[Array, Array]:
@@ -380,12 +440,12 @@ class Structure:
         return replace(self, coefficients=c, places=places, station_places=stations, turns=turns, recovery=None)
 
     @property
-    def particles(self) -> StrainField | SeriesField | Places:
+    def particles(self) -> StrainField | SeriesField | HeldStrainField | Places:
         """Places of the particles: a field of strains, or polynomials."""
         return self.places if self.linear or self.inertia is None else self.inertia.field
 
     @property
-    def output(self) -> StrainField | SeriesField | Places:
+    def output(self) -> StrainField | SeriesField | HeldStrainField | Places:
         """Places of the stations: a field of strains, or polynomials."""
         if self.field is None or isinstance(self.field, Expanded):
             return self.station_places

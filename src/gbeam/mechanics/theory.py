@@ -6,17 +6,18 @@ No model here has them. These two, the slender beam and the thick one on the sam
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from gbeam.arrays.types import Floats
-from gbeam.mechanics.assembly import load_work, particles_of, sections_of
+from gbeam.mechanics.assembly import hold, load_work, particles_of, sections_of
 from gbeam.mechanics.enrichment import Enrichment, enrichment, own_families
-from gbeam.mechanics.equations.inertia import inertia_of
+from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix
 from gbeam.mechanics.equations.virtual_work import LoadWork
+from gbeam.mechanics.fields.adapted import springs_for_shapes
 from gbeam.mechanics.fields.basis import Families, Quadrature
 from gbeam.mechanics.fields.strains import STRAINS, StrainField, shaped_strains, strain_field
 from gbeam.mechanics.structure import Structure
@@ -122,7 +123,8 @@ class _Parts:
         x, section = rule.node, beam.section.at(rule.node)
         strained = [strain for strain, count in zip(STRAINS, structure.counts, strict=True) if count]
         self.modelled = tuple({*SLENDER, *strained})
-        springs = np.array([*beam.root.springs.values()], dtype=float)
+        springs = np.array([*springs_for_shapes(beam).values()], dtype=float)
+        self.springs = np.array([*beam.root.springs.values()], dtype=float)
         nodal = np.stack(beam.stiffnesses(x)) * rule.weight
         self.stiffness = np.concatenate([nodal.ravel(), springs])
         self.families = np.append(np.repeat(np.arange(6), len(x)), [SLENDER[0]] * len(springs))
@@ -136,7 +138,8 @@ class _Parts:
         loaded = [load.at for load in beam.loads if load.at is not None]
         self.first_load = len(x) + len(beam.masses)
         self.first_station = self.first_load + len(loaded)
-        self.hung = [self.first_station + k for k in hung]
+        supports = [int(np.argmin(np.abs(structure.stations - each.at))) for each in beam.held_places.values()]
+        self.hung = [self.first_station + k for k in {*hung, *supports}]
         self.points = np.concatenate([x, [body.at for body in beam.masses], loaded, structure.stations])
         self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
         self.place, self.axes = beam.at_rest(self.points)
@@ -236,13 +239,19 @@ class _Parts:
         block_ends = np.cumsum([0, *(block.shape[1] for block in strain_blocks)]).tolist()
         thick, slender = np.concatenate(strain_blocks, axis=1), strain_blocks[0]
         nodes = len(self.rule.node)
-        bodies = self.field(thick)[nodes : nodes + len(self.beam.masses)]
         offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
         models = self.model(slender, rotary=self.beam.rotary_inertia), self.model(thick, rotary=True)
+        grip, taken = models[1].grip, 0
+        if grip is not None:
+            thick, taken = thick @ grip.basis, len(grip.dependents)
+        bodies = self.field(thick)[nodes : nodes + len(self.beam.masses)]
         return Theory(
             *models,
-            {"shear": slice(block_ends[1], block_ends[2]), "twist": slice(block_ends[2], block_ends[3])},
+            {
+                "shear": slice(block_ends[1] - taken, block_ends[2] - taken),
+                "twist": slice(block_ends[2] - taken, block_ends[3] - taken),
+            },
             thick[4 * nodes : 6 * nodes].reshape(2, nodes, -1),
             np.stack([about_y, about_z]) * self.rule.weight,
             self.rule.node,
@@ -283,7 +292,9 @@ class _Parts:
     def energy(self, strains: Floats) -> Floats:
         """Stiffness (n, n) of shapes with strains (m, n). Strains without shapes are free: they carry no force."""
         if self.coupling is None:
-            return np.asarray(strains.T @ (np.where(self.known, self.stiffness, 0.0)[:, None] * strains))
+            stiffness = self.stiffness.copy()
+            stiffness[len(stiffness) - len(self.springs) :] = self.springs
+            return np.asarray(strains.T @ (np.where(self.known, stiffness, 0.0)[:, None] * strains))
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
         nodal = nodal.reshape(6, -1, strains.shape[1])
         kept = [k for k in range(6) if nodal[k].any()]
@@ -292,12 +303,25 @@ class _Parts:
         return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
 
     def model(self, strains: Floats, *, rotary: bool) -> Structure:
-        """Linear structure whose shapes have the strains (m, n), with rotary inertia if `rotary`."""
-        structure, beam, rest = self.structure, self.beam, np.zeros(strains.shape[1])
-        field, (station, mass, offset) = self.field(strains), particles_of(beam, self.rule, rotary=rotary)
-        inertia = inertia_of(field.points(station, offset), mass)
+        """Linear structure whose shapes have the strains (m, n), with rotary inertia if `rotary`, held at its supports.
+
+        Its coordinates are fewer where supports hold it rigidly.
+        """
+        field, stiffness, grip = self.field(strains), self.energy(strains), self.structure.grip
+        made = partial(self._made, rotary=rotary)
+        if grip is None:
+            return made(field, stiffness, None, ())
+        stations, shapes = self.structure.stations, strains.shape[1]
+        return hold(self.beam, field, stiffness, made, stations, self.first_station, shapes, grip.dependents)
+
+    def _made(
+        self, field: StrainField, stiffness: Floats, damping: Floats | None, taken: tuple[int, ...], *, rotary: bool
+    ) -> Structure:
+        """Linear structure of a field with its stiffness and damping (n, n), by default that of its modes."""
+        structure, beam, rest = self.structure, self.beam, np.zeros(len(stiffness))
+        station, mass, offset = particles_of(beam, self.rule, rotary=rotary)
+        inertia = held_inertia(field.points(station, offset), mass)
         places, geometric = inertia.about(rest)
-        stiffness = self.energy(strains)
         work, loaded, loads = None, np.zeros(0, int), None
         if beam.loads:
             work, loaded = self.work(field)
@@ -305,7 +329,9 @@ class _Parts:
         c = coefficients(mass, places, stiffness, geometric=geometric, loads=loads)
         ratio: Any = beam.damping_ratio
         if isinstance(ratio, tuple):
-            ratio = (*ratio, *[ratio[-1]] * (strains.shape[1] - len(ratio)))
+            ratio = (*ratio, *[ratio[-1]] * (len(stiffness) - len(ratio)))
+        if damping is None:
+            damping = damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)
         return replace(
             structure,
             kind="FOAM",
@@ -314,7 +340,8 @@ class _Parts:
             mass=mass,
             places=places,
             station_places=field.points(slice(self.first_station, None)).at_rest(),
-            coefficients=c.damped(damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)),
+            coefficients=c.damped(damping),
+            grip=None,
             inertia=inertia,
             field=field,
             first_station=self.first_station,

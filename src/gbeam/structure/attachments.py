@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array
 from gbeam.guards.limits import NAME
-from gbeam.guards.quantities import Components, Mass, Position, PositionVector, Quantity, RotationalStiffness, Stiffness
+from gbeam.guards.quantities import Components, Mass, Position, PositionVector, Quantity
 from gbeam.motion.profiles.profile import Profile
 from gbeam.printable import shortened
 
@@ -32,6 +32,8 @@ MOMENT = Components(
     y="moment about y: positive bends the tip to -z",
     z="moment about z: positive bends the tip to +y",
 )
+_Spring = Annotated[float, Quantity("stiffness", "zero or more")]
+_Turning = Annotated[float, Quantity("rotational stiffness", "zero or more")]
 _NAME = re.compile(r"[A-Za-z_]\w*")
 # Of quantities that stand where a point's name may stand.
 _TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
@@ -232,7 +234,7 @@ class Root(Value):
     Raises
     ------
     InputError
-        If a stiffness is not positive and finite.
+        If a stiffness is negative or not finite.
 
     Examples
     --------
@@ -244,11 +246,17 @@ class Root(Value):
     20.99 Hz
     """
 
-    translation_x: Annotated[Stiffness | None, "spring along x, along the beam"] = None
-    translation_y: Annotated[Stiffness | None, "spring along y, along the width"] = None
-    translation_z: Annotated[Stiffness | None, "spring along z, through the thickness"] = None
-    rotation_y: Annotated[RotationalStiffness | None, "spring about y, against bending along z"] = None
-    rotation_z: Annotated[RotationalStiffness | None, "spring about z, against bending along y"] = None
+    translation_x: Annotated[_Spring | None, "spring along x, along the beam"] = None
+    translation_y: Annotated[_Spring | None, "spring along y, along the width; 0 beside supports that hold y"] = None
+    translation_z: Annotated[_Spring | None, "spring along z, through the thickness; 0 beside supports that hold z"] = (
+        None
+    )
+    rotation_y: Annotated[_Turning | None, "spring about y, against bending along z; 0 for a pin, beside supports"] = (
+        None
+    )
+    rotation_z: Annotated[_Turning | None, "spring about z, against bending along y; 0 for a pin, beside supports"] = (
+        None
+    )
 
     @property
     def springs(self) -> dict[str, float]:

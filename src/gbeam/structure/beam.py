@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gbeam.arrays.namespace import holds_jax, namespace
+from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
-from gbeam.errors import InputError
+from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import damping_ratios
 from gbeam.guards.quantities import OneOrSome, Quantity
@@ -21,8 +22,15 @@ from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR, MATRICES
+from gbeam.structure.supports import Support, root_held
 
 _ON_HULL = 33  # places on a line: chords of a quarter of a circle are off by 3e-4 of its radius
+# Springs of the root by the motions that they yield to: along x, and in the planes of y and z; what holds these.
+_PLANES = (
+    (("translation_x",), "x", ""),
+    (("translation_y", "rotation_z"), "y", "rz"),
+    (("translation_z", "rotation_y"), "z", "ry"),
+)
 NO_TWIST = "no twist (section.torsion_constant is not given)"
 
 
@@ -69,6 +77,11 @@ class Beam(Value):
     points: Annotated[
         Sequence[Point], "points of output beside the tip: [ { name, at } ]; a mass with a name is one at its place"
     ] = ()
+    supports: Annotated[
+        Sequence[Support],
+        "places that the base holds besides the root: [ { at, holds, stiffness, damping } ]; one at 0 says what the "
+        "root holds, which is all where there is none",
+    ] = ()
     rotary_inertia: Annotated[
         bool,
         "false for sections that do not resist turning by their own second moments, each a point on the axis: the "
@@ -85,9 +98,11 @@ class Beam(Value):
         object.__setattr__(self, "masses", tuple(self.masses))
         object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "points", tuple(self.points))
+        object.__setattr__(self, "supports", tuple(self.supports))
         positions = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
         positions += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
         positions += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
+        positions += [(f"supports[{i}].at", support.at) for i, support in enumerate(self.supports)]
         self._refuse_names_twice()
         if self.line is not None and not abs(self.line.length - self.length) <= 1e-9 * self.line.length:
             fix = f"give length = {self.line.length!r}"
@@ -112,6 +127,7 @@ class Beam(Value):
             raise InputError("material", "is given beside a section by matrices, which have it", "leave it out")
         if self.section.plate and self.metal.poissons_ratio is None:
             raise InputError("material.poissons_ratio", "is missing, and a plate bends by it", "give it, such as 0.3")
+        self._hold()
         ratios = self.damping_ratio
         if ratios is None or holds_jax(ratios):
             return
@@ -120,6 +136,42 @@ class Beam(Value):
         if not isinstance(ratios, (int, float)):
             object.__setattr__(self, "damping_ratio", tuple(float(z) for z in ratios))
         damping_ratios("damping_ratio", ratios)
+
+    def _hold(self) -> None:
+        """Let a support at 0 say what the root holds. Raise InputError if two say it, or something is free to move as
+        a rigid body.
+        """
+        at_root = [i for i, support in enumerate(self.supports) if support.at == 0]
+        if len(at_root) > 1:
+            raise InputError(f"supports[{at_root[1]}].at", "is 0 a second time", "say in one what the root holds")
+        where = "root"
+        if at_root:
+            where = f"supports[{at_root[0]}]"
+            with placing_within(where):
+                root = root_held(self.supports[at_root[0]])
+            if self.root.springs not in ({}, root.springs):
+                raise InputError("root", "and a support at 0 both say what the root holds", "keep one of them")
+            object.__setattr__(self, "root", root)
+        springs = self.root.springs
+        for names, slides, turns in _PLANES:
+            loose = [name for name in names if name in springs and not is_jax(springs[name]) and springs[name] == 0]
+            held = list[list[float]]()  # displacements of rigid motions of what is loose, along what is held
+            for support in self.held_places.values():
+                grip = {*support.rigid, *support.stiffness}
+                moved = {names[0]: 1.0, names[-1]: float(support.at) if turns else 1.0}
+                if slides in grip:
+                    held.append([moved[name] for name in loose])
+                if turns in grip:
+                    held.append([float(name == names[-1]) for name in loose])
+            if loose and (not held or np.linalg.matrix_rank(held) < len(loose)):
+                fix = f"give the root a stiffness, or hold {slides}{f' or {turns}' if turns else ''} at one more place"
+                problem = f"leaves the root free ({' and '.join(loose)}), and nothing else holds the beam"
+                raise InputError(where, problem, fix)
+
+    @property
+    def held_places(self) -> dict[int, Support]:
+        """Supports beyond the root, by their indices."""
+        return {i: support for i, support in enumerate(self.supports) if support.at > 0}
 
     def _refuse_names_twice(self) -> None:
         """Raise InputError if two points, or masses with a name, have the same one."""
@@ -131,9 +183,16 @@ class Beam(Value):
 
     @property
     def named_points(self) -> dict[str, float]:
-        """Positions of the named points, bodies among them, and of the tip, from the root, m."""
+        """Positions of the named points, bodies and middles of spans among them, and of the tip, from the root, m."""
         bodies = {mass.name: mass.at for mass in self.masses if mass.name}
-        return {point.name: point.at for point in self.points} | bodies | {TIP: self.length}
+        return {point.name: point.at for point in self.points} | bodies | self._spans | {TIP: self.length}
+
+    @property
+    def _spans(self) -> dict[str, float]:
+        """Middles of the spans between root and supports, by name: `span`, or `span_1` and so on of several."""
+        ends = [0.0, *sorted({support.at for support in self.held_places.values()})]
+        names = ["span"] if len(ends) == 2 else [f"span_{k}" for k in range(1, len(ends))]
+        return {name: (a + b) / 2 for name, (a, b) in zip(names, pairwise(ends), strict=True)}
 
     @property
     def body_centres(self) -> Floats:

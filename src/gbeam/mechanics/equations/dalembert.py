@@ -28,7 +28,11 @@ class Complete:
 
     def strain_energy(self, q: Array) -> Array:
         """U, J."""
-        return 0.5 * q @ self.stiffness @ q
+        return ((q @ self.stiffness) * q).sum(axis=-1) / 2
+
+    def elastic(self, q: Array) -> Array:
+        """Forces of the strain energy on the coordinates (..., n)."""
+        return q @ self.stiffness
 
     def residual(
         self,

@@ -7,10 +7,11 @@ a polynomial between two corners or bodies: where the section, the shear force o
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from gbeam.arrays.namespace import is_jax
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes
 from gbeam.mechanics.fields.strains import STRAINS
@@ -40,7 +41,8 @@ class Space(NamedTuple):
     """Motions in one direction, or about x, by coordinates (n,): nodal strains of some `families`, then springs of the
     root. `mass` is (n, n), `stiffness` (n,) the diagonal of K, unless `upper` (n, n) makes it upperᵀ upper;
     `sensitivity` gives displacements and angles (points, n) at positions, and `line` (g,) kg and `turning` (g,) kg m²
-    are the sections' inertia. `loads` (n, k) are None unless it has motions in all directions.
+    are the sections' inertia. `loads` (n, k) are None unless it has motions in all directions. Coordinates that are
+    `loose` move the root where nothing holds it; their stiffness is one like the beam's.
     """
 
     rule: Quadrature
@@ -53,6 +55,7 @@ class Space(NamedTuple):
     sensitivity: Callable[[Floats], tuple[Floats, Floats]]
     loads: Floats | None = None
     upper: Floats | None = None
+    loose: tuple[int, ...] = ()
 
     def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
         """Strains (n, k) scaled so that their energy is half their square, or scaled `back` from that."""
@@ -76,6 +79,26 @@ class Space(NamedTuple):
         return _family(self.rule, modes[self.block(family)], self.length, axial=family not in (1, 2))
 
 
+def springs_for_shapes(beam: Beam) -> dict[str, Any]:
+    """Stiffnesses of the root's springs by name, with one like the beam's where a root is free to move, so that static
+    answers exist; the root's motion itself is a coordinate anyway.
+    """
+    along, about_y, about_z = (rigidity[0] for rigidity in beam.rigidities(np.zeros(1)))
+    length = beam.length
+    like_the_beam = {
+        "translation_x": along / length,
+        "translation_y": about_z / length**3,
+        "translation_z": about_y / length**3,
+        "rotation_y": about_y / length,
+        "rotation_z": about_z / length,
+    }
+    springs = dict[str, Any]()
+    for name, stiffness in beam.root.springs.items():
+        free = not is_jax(stiffness) and stiffness == 0
+        springs[name] = like_the_beam[name] if free else stiffness
+    return springs
+
+
 GROUPS = ((0,), (1, 4), (2, 5), (3,))  # families that move the beam along x, y and z, and turn it about x
 _HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z", "rotation_y"), ())
 
@@ -96,7 +119,7 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
     line = beam.density * section.area * rule.weight
     about = (0 * line, section.inertia_z, section.inertia_y, section.inertia_y + section.inertia_z)[along]
     turning = beam.density * about * rule.weight * beam.rotary_inertia
-    springs = beam.root.springs
+    springs = springs_for_shapes(beam)
     held = [springs.get(name) for name in _HELD[along]]
     free = [i for i, k in enumerate(held) if k is not None]
     sums = rule.cumulative(rule.node)
@@ -123,7 +146,9 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
             mass += m * sum(np.outer(d, d) for d in arms)
     strained = [stiffnesses[STRAINS[family]] * rule.weight for family in families]
     stiffness = np.concatenate([*strained, [held[i] for i in free]])
-    return Space(rule, beam.length, families, line, turning, mass, stiffness, sensitivity)
+    first_spring, given = len(stiffness) - len(free), [beam.root.springs.get(_HELD[along][i]) for i in free]
+    loose = tuple(first_spring + k for k, value in enumerate(given) if not is_jax(value) and value == 0)
+    return Space(rule, beam.length, families, line, turning, mass, stiffness, sensitivity, loose=loose)
 
 
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:

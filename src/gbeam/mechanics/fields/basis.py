@@ -27,6 +27,15 @@ FAMILIES = ("axial", "y", "z", "twist", "shear_y", "shear_z")  # of shapes, as t
 Families = tuple[Family, Family, Family, Family, Family, Family]
 
 
+def joined_family(family: Family, more: Family) -> Family:
+    """Return the family of the shapes of two."""
+
+    def both(x: Floats) -> Shapes:
+        return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), more(x), strict=True)))
+
+    return both
+
+
 def bar_shapes(x: Floats, length: float, count: int) -> Shapes:
     """Fixed-free bar shapes √2 sin((2i−1)πx/2L), ∫f² dx = L (2020 (13a), corrected: its root covers the sine)."""
     k = (2 * np.arange(1, count + 1) - 1) * np.pi / (2 * length)

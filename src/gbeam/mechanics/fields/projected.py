@@ -9,6 +9,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature
+from gbeam.mechanics.fields.held import HeldStrainField
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns, exponential
@@ -169,4 +170,24 @@ class RootedField(Expanded):
         return root.after(padded)
 
 
-Field = StrainField | SeriesField | ExpandedField | ProjectedField | RootedField
+@record
+class HeldField(Expanded):
+    """A field in fewer coordinates p, q = basis p, such as those that supports leave of an `inner` one's."""
+
+    inner: Any  # one of those above
+    basis: Array
+
+    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+        """Rotations of the sections `at` some points at coordinates (..., n), (..., points, 3, 3)."""
+        return self.inner.rotation(q @ self.basis.T, at)
+
+    def places(self) -> Places:
+        """Taylor polynomial of the positions."""
+        return self.inner.places().turned(self.basis)
+
+    def turns(self) -> Turns:
+        """Taylor polynomial of the rotations."""
+        return self.inner.turns().turned(self.basis)
+
+
+Field = StrainField | SeriesField | HeldStrainField | ExpandedField | ProjectedField | RootedField | HeldField

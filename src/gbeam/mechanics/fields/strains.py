@@ -97,6 +97,10 @@ class StrainField:
         offset = None if self.offset is None else self.offset[at]
         return replace(self, cumulative=self.cumulative[at], frames=frames, offset=offset)
 
+    def turned(self, basis: Array) -> StrainField:
+        """The field in coordinates p with q = basis p."""
+        return replace(self, strains=self.strains @ basis)
+
     def points(self, at: Any, offset: Array | None = None) -> StrainField:
         """The field of points fixed to the sections `at`, `offset` (p, 3) m from the axis, section axes."""
         return replace(self[at], offset=offset)

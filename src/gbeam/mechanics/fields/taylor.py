@@ -114,6 +114,10 @@ class Turns:
         """The polynomials of some of the sections."""
         return Turns(self.first[chosen], self.second[chosen], None if self.rest is None else self.rest[chosen])
 
+    def turned(self, basis: Any) -> Turns:
+        """The polynomials in coordinates p with q = basis p."""
+        return Turns(self.first @ basis, basis.T @ self.second @ basis, self.rest)
+
     def slopes(self, q: Any) -> Any:
         """∂R/∂q at coordinates (..., n), (..., p, 3, 3, n)."""
         return self.first + namespace(self.first, q).einsum("pabij,...j->...pabi", self.second, q)

@@ -15,7 +15,9 @@ import numpy as np
 from gbeam.arrays.namespace import Array, is_traced, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.dalembert import Complete
+from gbeam.mechanics.equations.held import HeldComplete
 from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.fields.held import HeldStrainField
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
@@ -134,7 +136,7 @@ class Rigid:
 class StrainedPoints:
     """Sections of a field of strains."""
 
-    field: StrainField | SeriesField
+    field: StrainField | SeriesField | HeldStrainField
 
     def relative(self, q: Array, qd: Array, qdd: Array) -> list[Relative]:
         """Motions of the points relative to the root: places, velocities, accelerations and rotations
@@ -208,7 +210,7 @@ Points = StrainedPoints | PolynomialPoints
 class FieldBody:
     """A body whose particles follow a complete field: exact, fourth-order or CFOAM."""
 
-    equations: Complete
+    equations: Complete | HeldComplete
     points: Points
 
     @property
@@ -229,14 +231,14 @@ class FieldBody:
         return self.points.along(q, wrenches)
 
     def stored(self, q: Array) -> Array:
-        return ((q @ self.equations.stiffness) * q).sum(axis=-1) / 2
+        return self.equations.strain_energy(q)
 
     def mass_moment(self, q: Array) -> tuple[Array, Array]:
         inertia = self.equations.inertia
         return inertia.mass.sum(), (inertia.mass[:, None] * inertia.field.positions(q)).sum(axis=-2)
 
     def elastic(self, q: Array) -> Array:
-        return q @ self.equations.stiffness
+        return self.equations.elastic(q)
 
 
 @record

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, Tag
 from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError, naming, placing_within
 from gbeam.guards.limits import ENTRIES
-from gbeam.guards.quantities import Angle, Position
+from gbeam.guards.quantities import Angle, Damping, Position, RotationalDamping, RotationalStiffness, Stiffness
 from gbeam.mechanics.models import Model as _Model
 from gbeam.scenario.line_files import read_line
 from gbeam.scenario.schema.declared import chosen, read_as, table_of
@@ -21,12 +21,48 @@ from gbeam.structure.line import Line as _Line
 from gbeam.structure.line import Piece as _Piece
 from gbeam.structure.material import Material as _Material
 from gbeam.structure.section import Section as _Section
+from gbeam.structure.supports import Support as _Support
 
 Material = read_as(_Material, table_of(_Material))
 PointMass = read_as(attachments.PointMass, table_of(attachments.PointMass))
 Point = read_as(attachments.Point, table_of(attachments.Point))
 Root = read_as(attachments.Root, table_of(attachments.Root))
 Load = read_as(attachments.Load, table_of(attachments.Load))
+
+
+def _springs(
+    *,
+    x: Annotated[Stiffness | None, "along x"] = None,
+    y: Annotated[Stiffness | None, "along y"] = None,
+    z: Annotated[Stiffness | None, "along z"] = None,
+    rx: Annotated[RotationalStiffness | None, "about x"] = None,
+    ry: Annotated[RotationalStiffness | None, "about y"] = None,
+    rz: Annotated[RotationalStiffness | None, "about z"] = None,
+) -> dict[str, float]:
+    """Springs of a support by direction, in axes of the root."""
+    every = {"x": x, "y": y, "z": z, "rx": rx, "ry": ry, "rz": rz}
+    return {direction: value for direction, value in every.items() if value is not None}
+
+
+def _dampers(
+    *,
+    x: Annotated[Damping | None, "along x"] = None,
+    y: Annotated[Damping | None, "along y"] = None,
+    z: Annotated[Damping | None, "along z"] = None,
+    rx: Annotated[RotationalDamping | None, "about x"] = None,
+    ry: Annotated[RotationalDamping | None, "about y"] = None,
+    rz: Annotated[RotationalDamping | None, "about z"] = None,
+) -> dict[str, float]:
+    """Dampers of a support by direction, in axes of the root."""
+    every = {"x": x, "y": y, "z": z, "rx": rx, "ry": ry, "rz": rz}
+    return {direction: value for direction, value in every.items() if value is not None}
+
+
+_BY_DIRECTION = {
+    "stiffness": table_of(_springs, name="SupportStiffness"),
+    "damping": table_of(_dampers, name="SupportDamping"),
+}
+Support = read_as(_Support, table_of(_Support, types=_BY_DIRECTION))
 Piece = read_as(_Piece, table_of(_Piece))
 
 

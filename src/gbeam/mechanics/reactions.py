@@ -1,0 +1,104 @@
+"""Reactions of supports: what they do to a structure, from the forces that its motion demands of what they hold."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.structure import Grip, Structure
+from gbeam.mechanics.tree.body_terms import terms_of
+from gbeam.mechanics.tree.frames import Frame
+from gbeam.results.parts import Base
+
+
+class Hung(NamedTuple):
+    """Forces and moments about the root (t, p, 3) that other bodies demand of the stations (p,) on which they hang."""
+
+    station: Array
+    force: Array
+    moment: Array
+
+    def during(self, part: Any) -> Hung:
+        """Return the forces and moments at some of the times."""
+        return self._replace(force=self.force[part], moment=self.moment[part])
+
+    def joined(self, other: Hung) -> Hung:
+        """Return these and those of others."""
+        xp = namespace(self.force, other.force)
+        station = np.concatenate([self.station, other.station])
+        force = xp.concatenate([self.force, other.force], axis=1)
+        return Hung(station, force, xp.concatenate([self.moment, other.moment], axis=1))
+
+
+class Reactions(NamedTuple):
+    """Forces (t, k, 3) and moments (t, k, 3) about their places (t, k, 3) of supports on the stations (k,) of a
+    structure, in axes of its root.
+    """
+
+    station: Array
+    place: Array
+    force: Array
+    moment: Array
+
+    @property
+    def demanded(self) -> Hung:
+        """What the supports demand of the structure, as bodies that hang on it do."""
+        xp = namespace(self.force)
+        return Hung(self.station, -self.force, -self.moment - xp.cross(self.place, self.force))
+
+
+def reactions_of(
+    structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, loads: Array | None, hung: Hung | None
+) -> Reactions | None:
+    """Reactions of a structure's supports by motions of the base (t, 3) and its coordinates (t, n), under components of
+    its `loads` (t, loads, 6) and of bodies that are `hung` on it; None without supports.
+
+    The free structure, which nothing but its root holds, demands forces along the coordinates that rigid supports make
+    dependent. The reactions do the same work: they solve A_dᵀ R = r_d. Springs and dampers pull by how they are drawn.
+    """
+    grip = structure.grip
+    if grip is None:
+        return None
+    free, rows = grip.free, grip.rows
+    exact = isinstance(free.field, StrainField) and not structure.linear
+    conditions = grip.conditions if exact else None
+    whole, rate, change = (values @ grip.basis.T for values in (q, qd, qdd))
+    if conditions is not None:
+        whole, rate, change = conditions.motion(q, qd, qdd)
+        rows = conditions.measures.rows(whole)
+    if exact:
+        demanded = grip.equations.whole(whole, rate, change, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)[0]
+    else:
+        root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
+        demanded = terms_of(free).demanded(whole, rate, change, root, loads)[0]
+    xp = namespace(demanded)
+    stations = free.field.sections(slice(free.first_station, None))  # type: ignore[union-attr]
+    if hung is not None and len(hung.station):
+        at_stations = stations[hung.station]
+        place = at_stations.positions(whole)
+        slopes, angles = at_stations.jacobians(whole)
+        moment = hung.moment - xp.cross(place, hung.force)
+        demanded = demanded + xp.einsum("tpai,tpa->ti", slopes, hung.force) + xp.einsum("tpai,tpa->ti", angles, moment)
+    held = np.array(grip.dependents, dtype=int)
+    turned_rows = xp.swapaxes(rows[..., held], -1, -2)
+    rigid = xp.linalg.solve(turned_rows, demanded[:, held, None])[..., 0] if len(held) else demanded[:, :0]
+    drawn, drawn_rate = (values @ grip.yielding.T for values in (whole, rate))
+    if exact and grip.sprung:
+        measures = grip.measures(grip.sprung)
+        drawn, drawn_rate = measures.values(whole), (measures.rows(whole) @ rate[..., None])[..., 0]
+    yielding = -grip.stiffness * drawn - grip.damping * drawn_rate
+    return _by_station(grip, stations, whole, xp.concatenate([rigid, yielding], axis=1))
+
+
+def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:
+    """Reactions of supports by their components (t, m), those of conditions and then those of springs."""
+    xp, every = namespace(sizes), (*grip.held, *grip.sprung)
+    places = np.array(sorted({station for station, _ in every}))
+    unit = np.zeros((len(every), len(places), 6))
+    for k, (station, direction) in enumerate(every):
+        unit[k, np.searchsorted(places, station), direction] = 1.0
+    wrench = xp.einsum("tm,mkd->tkd", sizes, unit)
+    return Reactions(places, stations[places].positions(q), wrench[..., :3], wrench[..., 3:])

@@ -1,0 +1,172 @@
+"""Beams that supports hold, against closed forms: frequencies, reactions, stretching, buckling and errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import gbeam as gb
+
+LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS = 0.6, 0.02, 0.004, 2700.0, 70e9
+EI = MODULUS * WIDTH * THICKNESS**3 / 12
+EA = MODULUS * WIDTH * THICKNESS
+LINE_MASS = DENSITY * WIDTH * THICKNESS
+PIN = gb.Support(0.0, ["x", "y", "z", "rx", "rz"])
+# First roots of the frequency equations, β L.
+ROOTS: dict[str, tuple[list[gb.Support], list[float]]] = {
+    "clamped": ([gb.Support(LENGTH, ["z", "ry"])], [4.73004074, 7.85320462, 10.9956079]),
+    "clamped and pinned": ([gb.Support(LENGTH, ["z"])], [3.92660231, 7.06858275, 10.21017612]),
+    "pinned": ([PIN, gb.Support(LENGTH, ["z"])], [np.pi, 2 * np.pi, 3 * np.pi]),
+    "guided": ([gb.Support(LENGTH, ["ry"])], [2.36502037, 5.49780392, 8.63937983]),
+}
+
+
+def beam(*supports: gb.Support, **keys: Any) -> gb.Beam:
+    section, metal = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS, poissons_ratio=0.3)
+    return gb.Beam(LENGTH, section, metal, rotary_inertia=False, supports=list(supports), **keys)
+
+
+@pytest.mark.parametrize(("kind", "shapes"), [("TLAM", None), ("FOAM", "adapted"), ("CFOAM", None), ("exact", None)])
+@pytest.mark.parametrize("name", ROOTS)
+def test_frequencies_are_those_of_the_closed_forms(name: str, kind: str, shapes: Any) -> None:
+    supports, roots = ROOTS[name]
+    modes = gb.modes(gb.assemble(beam(*supports), kind, z=6, shapes=shapes))
+    found = np.sqrt(2 * np.pi * modes.frequency[:3] / np.sqrt(EI / LINE_MASS)) * LENGTH
+    assert found[:2] == pytest.approx(roots[:2], rel=1e-4) and found[2] == pytest.approx(roots[2], rel=2e-3)
+    assert modes.errors is not None
+    stated, true = modes.errors.slender[:3], np.square(found / roots) - 1
+    assert (np.abs(true) <= 3 * stated + 1e-8).all()
+
+
+# Of a clamped beam under an even load: at the root and at the other end, force over p L and moment over p L².
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+@pytest.mark.parametrize(
+    ("supports", "forces", "moment"),
+    [
+        ([gb.Support(LENGTH, ["z", "ry"])], [1 / 2], 1 / 12),
+        ([gb.Support(LENGTH, ["z"])], [3 / 8], 0.0),
+        ([PIN, gb.Support(LENGTH, ["z"])], [1 / 2], 0.0),
+        ([PIN, gb.Support(LENGTH / 2, ["z"]), gb.Support(LENGTH, ["z"])], [5 / 8, 3 / 16], 0.0),
+    ],
+)
+def test_reactions_are_those_of_the_closed_forms(
+    supports: list[gb.Support], forces: list[float], moment: float, kind: str
+) -> None:
+    load = LINE_MASS * 1.0 * LENGTH  # of 1 m/s²
+    rest = gb.static(gb.assemble(beam(*supports), kind, z=6), acceleration=(0.0, 0.0, 1.0))
+    loads = rest.loads
+    assert loads is not None and loads.support_force is not None and loads.support_moment is not None
+    assert loads.support_force[0, :, 2] / load == pytest.approx(forces, rel=1e-6)
+    assert loads.support_moment[0, -1, 1] / (load * LENGTH) == pytest.approx(moment, rel=1e-6, abs=1e-9)
+    assert loads.root_force[0, 2] / load == pytest.approx(1 - sum(forces), rel=1e-6)
+
+
+def even_load_on_a_held_beam(load: float, *, clamped: bool) -> tuple[float, float]:
+    """Tension, N, and deflection in the middle, m, by von Kármán: EI w'''' − T w'' = p, T = EA/2L ∫ w'² dx."""
+    x = np.linspace(0.0, LENGTH, 20_001)
+
+    def deflection(tension: float) -> np.ndarray:
+        k = np.sqrt(tension / EI)
+        particular = load * x * (LENGTH - x) / (2 * tension)
+        wave = np.cosh(k * (x - LENGTH / 2)) / np.cosh(k * LENGTH / 2)
+        if clamped:  # its slope at the ends is that of the particular solution, with the other sign
+            scale = -load * LENGTH / (2 * tension) / (k * np.tanh(k * LENGTH / 2))
+            return np.asarray(particular + scale * (1 - wave))
+        return np.asarray(particular - load / (tension * k**2) * (1 - wave))
+
+    def excess(tension: float) -> float:
+        slope = np.gradient(deflection(tension), x)
+        return float(EA / (2 * LENGTH) * np.trapezoid(slope**2, x) - tension)
+
+    tension = brentq(excess, 1e-3, 1e6, rtol=1e-12)
+    return float(tension), float(deflection(tension)[len(x) // 2])
+
+
+@pytest.mark.parametrize("clamped", [True, False])
+def test_a_beam_held_at_both_ends_stretches_as_von_karman_says(*, clamped: bool) -> None:
+    """The deflection is 1.6 and 1.9 thicknesses; that without the stretch is three and twelve times as much."""
+    supports = [gb.Support(LENGTH, ["x", "z", "ry"])] if clamped else [PIN, gb.Support(LENGTH, ["x", "z"])]
+    held = gb.assemble(beam(*supports), "exact", axial=3, z=8)
+    rest = gb.static(held, acceleration=(0.0, 0.0, 2000.0))
+    tension, middle = even_load_on_a_held_beam(LINE_MASS * 2000.0, clamped=clamped)
+    assert rest.loads is not None and rest.loads.support_force is not None
+    assert rest.at("beam.span")[2] == pytest.approx(-middle, rel=3e-3)
+    assert rest.loads.support_force[0, 0, 0] == pytest.approx(tension, rel=5e-3)
+
+
+@pytest.mark.parametrize(("supports", "root"), [
+    ([gb.Support(LENGTH, ["z", "ry"])], 4 * np.pi**2),
+    ([gb.Support(LENGTH, ["z"])], 20.1907286),
+    ([PIN, gb.Support(LENGTH, ["z"])], np.pi**2),
+])  # fmt: skip
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_it_buckles_between_its_supports_at_eulers_load(supports: list[gb.Support], root: float, kind: str) -> None:
+    """The force at the tip pushes towards the root; its factor's stated error bounds the true one within three."""
+    push = gb.Load(at=LENGTH, force=(-1.0, 0.0, 0.0))
+    critical = gb.critical_load(gb.assemble(beam(*supports, loads=[push]), kind, z=6))
+    assert critical.value == pytest.approx(root * EI / LENGTH**2, rel=5e-4)
+    assert critical.errors is not None
+    assert abs(critical.value / (root * EI / LENGTH**2) - 1) <= 3 * critical.errors.total
+
+
+def test_moving_a_support_moves_answers_continuously() -> None:
+    """Also past a station, past the middle, and to the tip."""
+    places = np.concatenate([0.3 + np.array([-1e-6, 0.0, 1e-6]), LENGTH - np.array([1e-6, 0.0])])
+    found = [
+        gb.modes(gb.assemble(beam(gb.Support(x, ["z"])), "FOAM", z=6, stations=[0.3])).frequency[0] for x in places
+    ]
+    assert found[:3] == pytest.approx([found[1]] * 3, rel=1e-4)
+    assert found[3] == pytest.approx(found[4], rel=1e-4)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_stiff_springs_hold_as_rigid_supports_do(kind: str) -> None:
+    rigid = gb.assemble(beam(gb.Support(0.45, ["z", "ry"])), kind, z=6)
+    springs = gb.Support(0.45, stiffness={"z": 1e8, "ry": 1e7})
+    soft = gb.assemble(beam(springs), kind, z=6)
+    assert gb.modes(soft).frequency[:3] == pytest.approx(gb.modes(rigid).frequency[:3], rel=3e-4)
+    under = [gb.static(model, acceleration=(0.0, 0.0, 200.0)) for model in (rigid, soft)]
+    first, second = (rest.loads.support_force[0, 0, 2] for rest in under if rest.loads is not None)
+    assert second == pytest.approx(first, rel=1e-3)
+
+
+def test_a_damper_takes_the_energy_out() -> None:
+    """Beside no other damping: the tip's motion decays as the modes' damping ratio says."""
+    damped = beam(gb.Support(LENGTH, damping={"z": 0.4}), damping_ratio=0.0)
+    modes = gb.modes(gb.assemble(damped, "FOAM", z=4))
+    assert modes.damping_ratio[0] == pytest.approx(
+        0.4 * 4 / (2 * LINE_MASS * LENGTH * 2 * np.pi * modes.frequency[0]), rel=0.02
+    )
+
+
+BAD = {
+    "holds x, so that the beam stretches where it bends, which FOAM leaves out": ("FOAM", [gb.Support(LENGTH, ["x"])]),
+    "holds y, in which the model has no shapes": ("FOAM", [gb.Support(LENGTH, ["y"])]),
+    "holds z at 600 mm, where it is held already": ("FOAM", [gb.Support(LENGTH, ["z"]), gb.Support(LENGTH, ["z"])]),
+    "is not known to fourth-order models": ("fourth-order", [gb.Support(LENGTH, ["z"])]),
+}
+
+
+@pytest.mark.parametrize("problem", BAD)
+def test_what_cannot_be_held_is_refused_by_name(problem: str) -> None:
+    kind, supports = BAD[problem]
+    with pytest.raises(gb.InputError) as refusal:
+        gb.assemble(beam(*supports), kind, z=4)  # type: ignore[arg-type]
+    assert problem in str(refusal.value) and "supports[" in str(refusal.value)
+
+
+@pytest.mark.parametrize(("keys", "problem"), [
+    ({"supports": [gb.Support(0.7, ["z"])]}, "supports[0].at is 0.7 m, beyond the tip"),
+    ({"supports": [PIN]}, "leaves the root free (rotation_y), and nothing else holds the beam"),
+    ({"supports": [PIN, PIN]}, "supports[1].at is 0 a second time"),
+    ({"supports": [PIN, gb.Support(0.6, ["z"])], "root": gb.Root(rotation_y=5.0)}, "both say what the root holds"),
+    ({"root": gb.Root(rotation_y=0.0)}, "leaves the root free (rotation_y)"),
+])  # fmt: skip
+def test_a_beam_that_is_not_held_is_refused(keys: dict[str, Any], problem: str) -> None:
+    section, metal = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS)
+    with pytest.raises(gb.InputError) as refusal:
+        gb.Beam(LENGTH, section, metal, **keys)
+    assert problem in str(refusal.value)
