@@ -238,6 +238,7 @@ def signed_columns(values: Floats) -> Floats:
 def _of_windows(time: Floats, values: Floats) -> Floats:
     """Highest values (k,), as of :func:`extremes`, of a history in windows (w, t, ...) that have their times alike."""
     columns = values[..., None] if values.ndim == 2 else signed_columns(values)
+    columns = columns.reshape(*columns.shape[:2], -1)  # of vectors at several places
     value, _ = _measured(time, np.moveaxis(columns, 2, 0)[..., None], lambda values: values)
     return np.asarray(value[..., 0].max(axis=1))
 
@@ -251,7 +252,7 @@ def peaks_apart(time: Floats, values: Floats, others: Floats) -> float:
 
 def largest_apart(time: Floats, values: Floats, others: Floats) -> float:
     """Largest difference as of :func:`peaks_apart`, of histories in windows (w, t, ...) that have their times alike."""
-    if values.ndim > 2 and values.shape[2] > WIDE:
+    if values.ndim == 3 and values.shape[2] > WIDE:
         most = np.abs(values).max(axis=(0, 1))
         values, others = (each[..., most >= most.max() / 2] for each in (values, others))
     return float(np.abs(_of_windows(time, values) - _of_windows(time, others)).max())

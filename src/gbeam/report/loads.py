@@ -98,6 +98,55 @@ def loads_table(bodies: Facts, row_of: str) -> Block:
     return table(rows, cells, caption, optional=tuple(cells)[5:], detail=True)
 
 
+HELD = 0.1  # of the largest displacement of a body's points: a tip that moves by less is held
+
+
+def tip_is_held(body: Facts) -> bool:
+    """Return True if supports hold a body's tip: another named point moves much farther."""
+    supports = body.get("loads", {}).get("supports", ())
+    sizes = [known(station["size"]["max_abs"]) for station in body.get("stations", ()) if supports]
+    return bool(sizes) and sizes[-1] < HELD * max(sizes)
+
+
+def supports_table(bodies: Facts, row_of: str) -> Block:
+    """Table of the largest loads of supports on beams. `row_of` says what a row of bodies is."""
+    rows = [
+        {"name": name, **support}
+        for name, body in bodies.items()
+        for support in body.get("loads", {}).get("supports", ())
+    ]
+    cells: Columns = {
+        row_of: "name",
+        "support at, mm": lambda support: number(1e3 * support["at"]),
+        "force, N": "force.size.max_abs",
+        "at, s": "force.size.time_of_max",
+        "moment, N m": "moment.size.max_abs",
+        "at, s ": "moment.size.time_of_max",
+    }
+    return table(rows, cells, "Largest loads of supports on the beam", detail=True)
+
+
+def resting_supports(loads: Facts, row_of: str = "motion") -> Block:
+    """Table of the loads of supports on beams at rest. `row_of` says what a row of loads is."""
+    rows = list[Facts]()
+    for of_body in named(loads):
+        places = of_body.get("supports", ())
+        for k, at in enumerate(places):
+            row: dict[str, Cell | str] = {"name": of_body["name"], "at": number(1e3 * at)}
+            for key in ("force", "moment"):
+                vectors = [[*vector.values()] for vector in _by_place(of_body[f"support_{key}"], len(places))]
+                size = max((abs(component) for vector in vectors for component in vector), default=0.0)
+                row[key] = f"({', '.join(map(number, tidy(vectors[k], size)))})"
+            rows.append(row)
+    cells: Columns = {row_of: "name", "support at, mm": "at", "force, N": "force", "moment, N m": "moment"}
+    return table(rows, cells, "Of the supports on the beam, axes of the root")
+
+
+def _by_place(vectors: Facts, count: int) -> list[Facts]:
+    """Vectors of places by component, from their components by place."""
+    return [{axis: vectors[axis][k] for axis in "xyz"} for k in range(count)]
+
+
 def _root_moment(loads: Facts) -> float | None:
     """Largest moment of the root; zero where it is rounding beside the force's on the length."""
     force, moment = (known(loads[key]["size"]["max_abs"]) for key in ("root_force", "root_moment"))

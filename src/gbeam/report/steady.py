@@ -28,7 +28,7 @@ from gbeam.report.blocks import (
     pairs,
     table,
 )
-from gbeam.report.loads import by_body, errors, errors_by_body, parts_tables, resting_loads, several
+from gbeam.report.loads import by_body, errors, errors_by_body, parts_tables, resting_loads, resting_supports, several
 from gbeam.report.words import errors_in_words, known, number, percent, tidy
 from gbeam.results.equilibrium import CriticalMap
 from gbeam.results.errors import Accelerated, along
@@ -54,7 +54,8 @@ def rest(facts: Facts) -> Blocks:
     bending = [body for body in named(bodies) if "specimen" not in body]
     yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(of_systems)))
     loads = {name: body["loads"] for name, body in bodies.items() if "loads" in body}
-    yield Section("Loads", (resting_loads(loads, head), *parts_tables(bodies, head), *_on_ground(of_systems)))
+    of_bodies = resting_loads(loads, head), resting_supports(loads, head), *parts_tables(bodies, head)
+    yield Section("Loads", (*of_bodies, *_on_ground(of_systems)))
     if bodies:
         by_bodies = (errors_by_body(motion["errors"]) for motion in of_systems.values())
         yield Section("Accuracy", (*errors(motions), *by_bodies))

@@ -35,6 +35,8 @@ from gbeam.report.loads import (
     points_table,
     several,
     stations_table,
+    supports_table,
+    tip_is_held,
 )
 from gbeam.report.machine import (
     ends_line,
@@ -252,7 +254,13 @@ def study(facts: Facts) -> Blocks:
     yield Section("Histories", (Place("figures", HINT),))
     yield Section("Arm", (levels(motions), balance(motions)))
     alone = {name: body for name, body in bodies.items() if not several(body["of"])}
-    response = _tips(bodies, head), stations_table(alone), loads_table(bodies, head), *parts_tables(bodies, head)
+    response = (
+        _tips(bodies, head),
+        stations_table(alone),
+        loads_table(bodies, head),
+        supports_table(bodies, head),
+        *parts_tables(bodies, head),
+    )
     yield Section("Response", response, verbose=compared_in(facts).issuperset(motions))
     for name, motion in motions.items():
         if several(motion):
@@ -340,6 +348,8 @@ def _tips(bodies: Facts, head: str) -> Block:
     """Table of the largest displacements of tips: a row for every `head` (motion, body or both) and moving axis."""
     rows = []
     for name, body in bodies.items():
+        if tip_is_held(body):
+            continue
         sizes = {axis: known(peak["max_abs"]) for axis, peak in body["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
         axes = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]

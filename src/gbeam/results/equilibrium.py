@@ -61,7 +61,9 @@ class BodyRest(Part):
 
     @declared("", "forces, moments and stresses of the sections", role="part", key="loads", optional=True)
     def carried(self) -> Loads | None:
-        return None if self.loads is None else replace(at_place(self.loads, 0), stations=self.loads.stations)
+        if self.loads is None:
+            return None
+        return replace(at_place(self.loads, 0), stations=self.loads.stations, supports=self.loads.supports)
 
     @declared("m", "displacement of the tip relative to the root", "axis", name=None)
     def tip(self) -> Floats:

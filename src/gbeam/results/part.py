@@ -10,8 +10,12 @@ from gbeam.results.declared import along_time, document
 
 
 def brief(record: Any) -> str:
-    """A record on one line: numbers and words as they are, arrays by their shapes, other records by their names."""
-    values = ", ".join(f"{f.name}={_short(getattr(record, f.name))}" for f in fields(record) if f.repr)
+    """A record on one line: numbers and words as they are, arrays by their shapes, other records by their names.
+
+    What is None is left out.
+    """
+    shown = {f.name: getattr(record, f.name) for f in fields(record) if f.repr}
+    values = ", ".join(f"{name}={_short(value)}" for name, value in shown.items() if value is not None)
     return f"{type(record).__name__}({values})"
 
 

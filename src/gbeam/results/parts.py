@@ -13,6 +13,7 @@ from gbeam.results.declared import BESIDE, INSIDE, declared, fact, internal, par
 from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
+_BASE_AXES = "B: axes of the root"
 UNSTRESSED = 1e-12  # of the strength: a smaller stress is rounding
 
 
@@ -151,7 +152,7 @@ class LoadPeaks(Part):
     At the root the sizes of force and moment are those of the base's force and moment on the beam.
     """
 
-    json_rows: ClassVar[dict[str, str]] = {"section": "sections"}
+    json_rows: ClassVar[dict[str, str]] = {"section": "sections", "support": "supports"}
 
     force: VectorPeaks = part(
         "N, V_y, V_z, axes of the sections", "section", unit="N", name="section_force_max_", key="force"
@@ -173,6 +174,18 @@ class LoadPeaks(Part):
     beam_torque: Extremes | None = part(
         "largest size of the torque that the beam takes from a hub", unit="N m", name=None, optional=True, default=None
     )
+    supports: Floats | None = quantity(
+        "m", "position of the support along the beam from the root", "support", name=None, key="at", optional=True,
+        default=None,
+    )  # fmt: skip
+    support_force: VectorPeaks | None = part(
+        "of the support on the beam, axes of the root", "support", unit="N", name="support_force_max_", key="force",
+        optional=True, default=None,
+    )  # fmt: skip
+    support_moment: VectorPeaks | None = part(
+        "of the support on the beam about its own place, axes of the root", "support", unit="N m",
+        name="support_moment_max_", key="moment", optional=True, default=None,
+    )  # fmt: skip
     stations: Floats = quantity(
         "m", "position of the section along the beam from the root", "section", name=None, key="at", empty=True
     )
@@ -359,6 +372,22 @@ class Loads(Part):
         default=None,
         note="NaN of sections by properties or matrices",
         key="",
+    )
+    supports: Floats | None = quantity(
+        "m", "position of the support along the beam from the root", "support", role="coordinate", key="supports",
+        optional=True, default=None,
+    )  # fmt: skip
+    support_force: Floats | None = quantity(
+        "N", "force of the support on the beam", "time support axis", frame=_BASE_AXES, optional=True, default=None,
+        key="support_force",
+    )  # fmt: skip
+    support_moment: Floats | None = quantity(
+        "N m", "moment of the support on the beam about its own place", "time support axis", frame=_BASE_AXES,
+        optional=True, default=None, key="support_moment",
+    )  # fmt: skip
+    base_force: Floats | None = internal("N", "force of root and supports on the beam", "time axis", default=None)
+    base_moment: Floats | None = internal(
+        "N m", "moment of root and supports on the beam about the root", "time axis", default=None
     )
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
     fatigue_exponent: float = internal("", "exponent of the material's Wöhler curve", default=math.nan)

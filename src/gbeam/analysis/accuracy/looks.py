@@ -61,8 +61,9 @@ def times_of_peaks(time: Floats, computed: Reading) -> Floats:
     for key, values in computed.items():
         if key[1] not in MOVED:
             columns = values[:, None] if values.ndim == 1 else signed_columns(values)
+            columns = columns.reshape(len(values), -1)  # of vectors at several places
             most = np.abs(columns).max(axis=0)
-            share = HALF if values.ndim > 1 and values.shape[1] > WIDE else NOTABLE
+            share = HALF if values.ndim == 2 and values.shape[1] > WIDE else NOTABLE
             chosen.append(highest(columns[:, most >= share * most.max()], PEAKS))
     return time[np.unique(np.concatenate(chosen))]
 

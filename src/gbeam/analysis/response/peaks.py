@@ -94,13 +94,15 @@ def load_peaks(
     loads: Loads, time: Floats, loads_at: Callable[[Indices], Loads | None] | None = None, stride: int = 1
 ) -> LoadPeaks:
     """Peaks of loads known at every `stride`-th of the times; `loads_at` computes them at others, near peaks."""
-    s = loads.section_force.shape[1]
+    s, supports = loads.section_force.shape[1], 0 if loads.supports is None else len(loads.supports)
+    count = 2 * (s + supports)  # of vectors
     table, steps = _table(loads), np.arange(0, len(time), stride)
 
     def measure(table: Floats) -> Floats:
         """Sizes whose maxima are the peaks: of components and lengths of vectors, of stresses and of torque."""
-        vectors = table[..., : 6 * s].reshape(*table.shape[:-1], 2 * s, 3)
-        return np.concatenate([sizes(vectors), table[..., 6 * s : 8 * s], np.abs(table[..., 8 * s :])], axis=-1)
+        vectors = table[..., : 3 * count].reshape(*table.shape[:-1], count, 3)
+        stresses = table[..., 3 * count : 3 * count + 2 * s]
+        return np.concatenate([sizes(vectors), stresses, np.abs(table[..., 3 * count + 2 * s :])], axis=-1)
 
     chosen = near_maxima(time[steps], measure(table))
     if loads_at is not None and stride > 1 and chosen.size:
@@ -117,15 +119,19 @@ def load_peaks(
     t, between = seven_point(time[steps], table, chosen)
     value, when = maxima(time[steps], measure(table), t, measure(between))
     if not np.isfinite(loads.stress_tension).all():
-        value[8 * s : 10 * s] = when[8 * s : 10 * s] = np.nan
-    vectors, v, w = _vectors(value, when, 2 * s), value[8 * s :], when[8 * s :]
+        value[4 * count : 4 * count + 2 * s] = when[4 * count : 4 * count + 2 * s] = np.nan
+    vectors, v, w = _vectors(value, when, count), value[4 * count :], when[4 * count :]
+    on_supports = vectors[2 * s :]
     return LoadPeaks(
         force=vectors[:s],
-        moment=vectors[s:],
+        moment=vectors[s : 2 * s],
         tension=Extremes(v[:s], w[:s]),
         compression=Extremes(-v[s : 2 * s], w[s : 2 * s]),
         von_mises=Extremes(v[2 * s : 3 * s], w[2 * s : 3 * s]) if _sheared(loads) else None,
         beam_torque=None if loads.beam_torque is None else Extremes(v[-1], w[-1]),
+        supports=loads.supports,
+        support_force=on_supports[:supports] if supports else None,
+        support_moment=on_supports[supports:] if supports else None,
         stations=loads.stations,
         yield_strength=loads.yield_strength,
     )
@@ -191,9 +197,13 @@ def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[
 
 
 def _table(loads: Loads) -> Floats:
-    """Columns (t, c) of loads: forces, moments, tension, compression, von Mises stress and torque on a hub if known."""
+    """Columns (t, c) of loads: forces and moments of sections and of supports, tension, compression, von Mises stress
+    and torque on a hub if known.
+    """
     torque = [] if loads.beam_torque is None else [loads.beam_torque[:, None]]
-    vectors = (x.reshape(len(x), -1) for x in (loads.section_force, loads.section_moment))
+    of_supports = () if loads.support_force is None else (loads.support_force, loads.support_moment)
+    every = loads.section_force, loads.section_moment, *of_supports
+    vectors = [np.asarray(vector).reshape(len(vector), -1) for vector in every]
     stresses = (np.nan_to_num(x) for x in (loads.stress_tension, -loads.stress_compression))
     sheared = [np.asarray(loads.von_mises)] if _sheared(loads) else []
     return np.concatenate([*vectors, *stresses, *sheared, *torque], axis=1)

@@ -18,7 +18,7 @@ from gbeam.analysis.response.posed import Posed, begun
 from gbeam.analysis.response.step_errors import difference
 from gbeam.analysis.system.accuracy import UNSMOOTHED, system_errors, unjudged, unmoved
 from gbeam.analysis.system.feedback import SystemControllers, loop_of
-from gbeam.analysis.system.histories import Carried, deflections, histories, loads_of
+from gbeam.analysis.system.histories import Carried, deflections, held_loads, histories, loads_of
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.richer_readings import Starting
 from gbeam.analysis.system.solution import Solution
@@ -159,7 +159,7 @@ class Run:
         for name, of in solution.states(self.deforming)[1].items():
             body = self.posed.system.flexible[name]
             loads = loads_of(body, of, solution.of.time)
-            force, moment = loads.root_force, loads.root_moment
+            force, moment = held_loads(loads)
             sizes = np.abs(force).max() * body.length, np.abs(moment).max()
             out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
             sides = [loads.stress_tension, loads.stress_compression]

@@ -9,7 +9,8 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, namespace
 from gbeam.arrays.types import Floats
-from gbeam.mechanics.section_forces import Hung, section_forces
+from gbeam.mechanics.reactions import Hung
+from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.body_terms import stations_of
@@ -134,3 +135,14 @@ def loads_of(body: Structure, of: Carried, time: Floats) -> Loads:
         for key in (name, f"section_{name}"):
             kept[key] = xp.where(none[:, None], 0.0, getattr(loads, key))
     return replace(loads, **kept)
+
+
+def held_loads(loads: Loads) -> tuple[Floats, Floats]:
+    """Force and moment that hold a body: those at its root (t, 3); with supports those of all its sections and of the
+    supports (t, k, 3), as a pin at the root takes no moment.
+    """
+    if loads.support_force is None or loads.support_moment is None:
+        return loads.root_force, loads.root_moment
+    xp = namespace(loads.force)
+    force = xp.concatenate([loads.force, loads.support_force], axis=1)
+    return force, xp.concatenate([loads.moment, loads.support_moment], axis=1)

@@ -22,7 +22,7 @@ from gbeam.analysis.accuracy.correction import (
     matrix_times,
     pieces,
 )
-from gbeam.analysis.system.histories import Carried, carried, deflections, loads_of
+from gbeam.analysis.system.histories import Carried, carried, deflections, held_loads, loads_of
 from gbeam.analysis.system.richer import Directions
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
@@ -174,10 +174,11 @@ class Solution:
 def reading_of(name: str, body: Structure, q: Floats, loads: Loads) -> Reading:
     """Quantities of one body, as :meth:`Solution.read` reads them, from its coordinates (t, n) and its loads."""
     sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
+    force, moment = held_loads(loads)
     return {
         (name, DEFLECTION): deflections(body, q),
-        (name, "force"): loads.root_force,
-        (name, "moment"): loads.root_moment,
+        (name, "force"): force,
+        (name, "moment"): moment,
         (name, "stress"): loads.stress.max(axis=1) if body.recovery is None else body.recovery.felt(q),
         (name, "sheared"): sheared.max(axis=1),
     }
