@@ -143,7 +143,7 @@ def verdict(placed: Any, by_the_middle: Any) -> Figure:
             names.append(f"{each.words}, {where}")
             shares.append(each.use)
             missed = "" if each.passed else ", missed"
-            written.append(f"{each.written} ({each.limit_written}{missed})")
+            written.append(f"{each.value_words} ({each.limit_written}{missed})")
     return bars(
         names,
         shares,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import gbeam as gb
-from gbeam.report.page.result import shown
+from gbeam.report.page.result import viewer_data
 from gbeam.results.parts import Outline
 
 from ..plots.conftest import study
@@ -35,7 +35,7 @@ def test_widget_shows_a_response(browser: Any, study: gb.Study) -> None:
     outline = Outline(
         points, np.full(4, 0.02), np.full(4, 0.004), False, np.array([[0.3, 0.1]]), flight.time[::50], displacement
     )
-    header, numbers = shown(clamped(flight, outline))
+    header, numbers = viewer_data(clamped(flight, outline))
     module = (files("gbeam.report.page") / "assets" / "gbeam.js").read_bytes()
     source = "data:text/javascript;base64," + base64.b64encode(module).decode()
     page = browser.new_page()

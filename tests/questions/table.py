@@ -20,7 +20,7 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.questions import QUESTIONS
-from gbeam.report.page.result import report_of, shown
+from gbeam.report.page.result import report_of, viewer_data
 from tests.questions.specimens import FLIGHT, KINDS, MACHINE, Kind, write
 
 HEAD = """\
@@ -307,7 +307,7 @@ def _stress(scenario: Scenario) -> Any:
 
 @asked("viewer")
 def _viewer(scenario: Scenario) -> Any:
-    return shown(gb.study(scenario.alone))
+    return viewer_data(gb.study(scenario.alone))
 
 
 @asked("report")

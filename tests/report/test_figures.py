@@ -14,7 +14,7 @@ import gbeam as gb
 from gbeam.figures import description, figures_of
 from gbeam.numerics.samples import thinned
 from gbeam.plots import draw
-from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, drawn
+from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, draw_figures
 from gbeam.report.page.result import report_of, report_of_file
 from gbeam.results.cases import Indices, Parameter, Statistics
 from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock, Sizes
@@ -153,7 +153,7 @@ def test_both_renderers_show_the_same(kind: str, results: dict[str, list[Result]
 
 def _compare(figure: description.Figure) -> None:
     numbers, header = Numbers(), {"plots": [], "maps": []}
-    page = html.unescape(drawn([figure], numbers, header))
+    page = html.unescape(draw_figures([figure], numbers, header))
     specs, maps = iter(header["plots"]), iter(header["maps"])
     shown = draw(figure)
     assert (

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.provenance import Environment, present
+from gbeam.results.provenance import Environment, current_environment
 from gbeam.scenario import provenance
 from gbeam.scenario.rerun import reproduction
 
@@ -148,8 +148,8 @@ def test_rounding_with_other_versions_is_allowed_in_errors_and_in_numbers_of_wor
 ) -> None:
     origin = gb.read_scenario("examples/zhang2020_example1.toml").provenance
     assert origin is not None
-    same = replace(origin, environment=present())
-    other = replace(origin, environment=replace(present(), python="3.99"))
+    same = replace(origin, environment=current_environment())
+    other = replace(origin, environment=replace(current_environment(), python="3.99"))
     again = reproduction("x.nc", {name: then}, {name: now}, other, lambda _: "")
     assert again.reproduced is (kept != "differs")
     assert again.rounded == (kept == "rounded")

@@ -13,7 +13,7 @@ from scipy.io import mmwrite
 import gbeam as gb
 from gbeam.questions import QUESTIONS
 from gbeam.report.page.document import html_of
-from gbeam.report.page.result import shown
+from gbeam.report.page.result import viewer_data
 from gbeam.scenario import ScenarioError
 from tests.solids.bodies import block
 from tests.solids.test_shells import sheet
@@ -137,7 +137,7 @@ def test_a_box_alone_is_a_rigid_specimen(folder: Path) -> None:
 def test_a_box_is_drawn_with_its_load(folder: Path) -> None:
     """Its corners, and the acceleration of its base at the time of the largest."""
     case = case_of(folder, BOX + SPIN)
-    header, numbers = shown(gb.study(case))
+    header, numbers = viewer_data(gb.study(case))
     (motion,) = header["scene"]["motions"]
     (part,) = motion["parts"]
     assert part["box"]["size"] == pytest.approx([0.3, 0.2, 0.1]) and part["box"]["centre"] == pytest.approx(

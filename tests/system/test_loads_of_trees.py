@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.report.page.result import report_of, shown
+from gbeam.report.page.result import report_of, viewer_data
 from gbeam.report.words import as_json
 from gbeam.results.facts import json_of
 from tests.system.trees import BEAM, flexible
@@ -137,7 +137,7 @@ def test_the_scene_has_every_body_where_it_is() -> None:
         "bolt": gb.Joint("fixed", "lump", "boom.tip"),
     }
     response = gb.simulate(gb.System(bodies, joints), duration=1.5, step=5e-3, estimate=False)
-    header, numbers = shown(response)
+    header, numbers = viewer_data(response)
     (motion,) = header["scene"]["motions"]
     hub, boom, lump = motion["parts"]
 

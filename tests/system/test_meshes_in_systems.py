@@ -12,7 +12,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.report import text
-from gbeam.report.page.result import report_of, shown
+from gbeam.report.page.result import report_of, viewer_data
 
 from ..calling import main
 from ..solids.test_damage_at_points import HALF, METAL, B, H, L, beam, block, runs, solid
@@ -127,8 +127,8 @@ def test_at_rest_a_mesh_has_the_stress_of_its_section() -> None:
 
 def test_a_mesh_in_a_system_is_drawn_where_it_is() -> None:
     """Its surface moves about its root as that of the specimen alone does, in the machine that carries both."""
-    alone, _ = shown(gb.Study("", {"machine": specimen()[1]}, ()))
-    among, _ = shown(both()[1])
+    alone, _ = viewer_data(gb.Study("", {"machine": specimen()[1]}, ()))
+    among, _ = viewer_data(both()[1])
     (one,), (two,) = alone["scene"]["motions"], among["scene"]["motions"]
     ours = next(part for part in two["parts"] if "surface" in part)
 
@@ -151,7 +151,7 @@ def test_modes_of_a_mesh_are_drawn_by_its_surface() -> None:
     assert held.reached == pytest.approx(alone.frequency[-1], rel=1e-6)
     drawn = []
     for result in (alone, held):
-        header, numbers = shown(result)
+        header, numbers = viewer_data(result)
         assert len(header["modes"]["motions"]) == len(result.frequency)
         motion = header["modes"]["motions"][1]
         (surface,) = (part["surface"] for part in motion["parts"] if "surface" in part)
@@ -165,7 +165,7 @@ def test_modes_of_a_mesh_are_drawn_by_its_surface() -> None:
         assert surface["largest"] > 0 and motion["period"] == 2.0
         drawn.append(np.abs(moved[0]) / np.abs(moved[0]).max())
     np.testing.assert_allclose(*drawn, atol=1e-4)
-    (rest,) = shown(gb.static(strip(), acceleration=(0.0, 0.0, 78.5)))[0]["scene"]["motions"]
+    (rest,) = viewer_data(gb.static(strip(), acceleration=(0.0, 0.0, 78.5)))[0]["scene"]["motions"]
     assert "surface" in rest["parts"][0] and rest["largest"] == pytest.approx(
         np.linalg.norm(gb.static(strip(), acceleration=(0.0, 0.0, 78.5)).tip), rel=0.02
     )

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import gbeam as gb
 from gbeam.report.facts import facts
-from gbeam.report.page.result import report_of, report_of_file, shown, variables_of
+from gbeam.report.page.result import report_of, report_of_file, variables_of, viewer_data
 
 STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
 SIZE = 0.15  # of the length, of what a mode moves most
@@ -50,7 +50,7 @@ def test_points_beams_and_turns_of_a_mode_belong_together() -> None:
 
 def test_a_mode_is_drawn_as_a_motion_of_a_period() -> None:
     modes = gb.modes(mast(), errors=False)
-    header, numbers = shown(modes)
+    header, numbers = viewer_data(modes)
     assert header["modes"]["labels"][0].startswith(f"1: {modes.frequency[0]:.4g} Hz, ")
     array = numbers.array
     for motion in header["modes"]["motions"]:
@@ -82,7 +82,10 @@ def test_a_page_and_a_file_show_what_a_notebook_shows(question: object, tmp_path
     header = json.loads(page.split('id="gbeam-header">')[1].split("</script>")[0])
     assert '<div id="gbeam-viewer">' in page
     key = "modes" if question is gb.modes else "scene"
-    assert json.loads(json.dumps(shown(result)[0][key]))["motions"][0]["parts"] and header[key]["motions"][0]["parts"]
+    assert (
+        json.loads(json.dumps(viewer_data(result)[0][key]))["motions"][0]["parts"]
+        and header[key]["motions"][0]["parts"]
+    )
     result.save(tmp_path / "result.nc")  # type: ignore[operator]
     assert report_of_file(tmp_path) == page  # type: ignore[arg-type]
     if question is gb.static:

@@ -62,9 +62,9 @@ def _write(folder: Path, description: Description, facts: dict[str, Any], words:
     described = figures_of(description)
     if words:
         from gbeam.report.page.document import description_page
-        from gbeam.report.words import plain
+        from gbeam.report.words import json_value
 
-        html = description_page(words, plain(facts)["provenance"], described)
+        html = description_page(words, json_value(facts)["provenance"], described)
         (folder / "check.html").write_text(html, encoding="utf-8")
     if described and figures_wanted():
         from gbeam.plots import write_figures

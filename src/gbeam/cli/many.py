@@ -128,9 +128,9 @@ def sweep(
         answer, "sweep", folder, output, page="report", also=[folder / "sweep.zarr"],
         more=lambda hidden: answer.save(hidden / "sweep.nc") if netcdf else None,
     )  # fmt: skip
-    if answer.lost:
-        complain(f"{answer.lost} of {answer.outcome.size} cases are not done")
-    return FAILED if answer.lost else 0
+    if answer.failures:
+        complain(f"{answer.failures} of {answer.outcome.size} cases are not done")
+    return FAILED if answer.failures else 0
 
 
 @with_options(*differentiable())

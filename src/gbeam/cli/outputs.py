@@ -76,9 +76,9 @@ def deliver(
 
     if not output.json:
         from gbeam.report import lines_of
-        from gbeam.report.words import plain
+        from gbeam.report.words import json_value
 
-        show_lines(lines_of(type(answers[0]), plain(signed_facts()), verbose=output.verbose, **options))
+        show_lines(lines_of(type(answers[0]), json_value(signed_facts()), verbose=output.verbose, **options))
         if copy is not None:
             print(printable(f"\n{copy} has these values"))
     files: list[Path] = []

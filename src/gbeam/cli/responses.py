@@ -151,7 +151,7 @@ def rerun(
     reproduction = answer_again(result) if result.suffix == ".json" else _of_netcdf(result)
     show(report.reproduction_text(reproduction), report.reproduction_json(reproduction), json)
     if not reproduction.reproduced:
-        complain(f"not reproduced: {reproduction.beyond} of {reproduction.compared} differ")
+        complain(f"not reproduced: {reproduction.excess_count} of {reproduction.compared} differ")
         return FAILED
     return 0
 

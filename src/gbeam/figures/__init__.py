@@ -27,7 +27,7 @@ from gbeam.results.searches import Fit, Optimum, ShapedCommand
 from gbeam.results.solids import SolidStress, SpecimenLoads
 from gbeam.results.state_space import StateSpace
 from gbeam.results.study import ModelStudy, Study
-from gbeam.results.system import named
+from gbeam.results.system import joint_histories
 
 Describe = Callable[[], Figure]
 # Of kinds that always have the same.
@@ -157,7 +157,7 @@ def _of_response(result: Response, title: str) -> dict[str, Describe]:
     """Figures of a response, of the parts that it holds, by name; those of its tips are not among them."""
     described: dict[str, Describe] = {}
     free_hub = result.hub is not None and result.base is None  # the hub's figure has its coordinate
-    joints = {} if free_hub else named(result)
+    joints = {} if free_hub else joint_histories(result)
     if result.several and (result.largest.any() or not joints):
         described["points"] = partial(response.points, result, title)
     if joints:

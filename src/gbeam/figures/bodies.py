@@ -118,7 +118,7 @@ def stress(result: SolidStress, title: str = "") -> Figure:
         levels = (Level(scale * worst.yield_strength, f"yield of {worst.material or 'the material'}"),)
     subject = of_motion(result.motion, f"von Mises stress, {result.model}")
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
-    where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.apart}"
+    where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.spread_words}"
     return Figure(title, subject, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
 
 

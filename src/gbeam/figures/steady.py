@@ -33,7 +33,7 @@ from gbeam.figures.description import (
     scaled,
 )
 from gbeam.results.equilibrium import BodyRest, Critical, CriticalMap, Rest
-from gbeam.results.errors import along
+from gbeam.results.errors import direction_words
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
 from gbeam.results.state_space import StateSpace
@@ -204,7 +204,7 @@ def critical(lost: Critical, title: str = "") -> Figure:
     spans: tuple[Span, ...] = ()
     error = lost.errors.total  # not finite where the exact model loses nothing, or it is not known
     if lost.value is not None:
-        direction = f" {along(lost.direction)}" if lost.direction else ""
+        direction = f" {direction_words(lost.direction)}" if lost.direction else ""
         marks = (Mark(factor * lost.value, f"{lost.kind}{direction}"),)
         if 0.0 < error < math.inf:
             value = factor * lost.value

@@ -20,7 +20,7 @@ from platformdirs import user_cache_path
 
 from gbeam.guards.packing import digest, read_packed, write_packed
 from gbeam.progress import PATIENCE, Bar
-from gbeam.results.provenance import present
+from gbeam.results.provenance import current_environment
 
 FOLDER = "GBEAM_CACHE"  # environment: the folder that keeps it, or "off"
 WORTH = 1.0  # s: what is computed sooner is not kept
@@ -114,7 +114,7 @@ def _private(status: os.stat_result) -> bool:
 @cache
 def _program() -> str:
     """Hash of gbeam's own files, versions and platform: what one program made, another does not read."""
-    hashed = hashlib.sha256(repr(present()).encode())
+    hashed = hashlib.sha256(repr(current_environment()).encode())
     for file in sorted(Path(__file__).parents[1].rglob("*.py")):
         hashed.update(file.read_bytes())
     return hashed.hexdigest()

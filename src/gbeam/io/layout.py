@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.results.declared import BESIDE, INSIDE, Declaration, declarations
-from gbeam.results.facts import unknown
+from gbeam.results.facts import is_unknown
 
 BASE_AXES = "B: base axes at the root, x along the beam, y along its width, z through its thickness"
 
@@ -133,7 +133,7 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
         value = getattr(record, key)
         if declaration.name is None or (value is None and (declaration.role != "variable" or declaration.dims)):
             continue
-        if declaration.optional and unknown(value):
+        if declaration.optional and is_unknown(value):
             continue
         name = name_of(key, declaration, pattern)
         after = pattern.partition("*")[2]

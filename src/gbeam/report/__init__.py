@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from gbeam.report.blocks import FIGURES, Block, Facts, Items, Place, Section, Sentence, in_words, quantities
-from gbeam.report.words import as_json, plain
+from gbeam.report.words import as_json, json_value
 from gbeam.results.result import Result, each_once
 
 __all__ = ["as_json", "blocks_of", "lines_of", "remarks_of", "text"]
@@ -63,9 +63,9 @@ def lines_of(kind: type, facts: Facts, *, verbose: bool = True, **options: Any) 
 
 def text(*answers: Result) -> str:
     """Return a result, or several of one kind, in words."""
-    from gbeam.report.facts import facts, whole
+    from gbeam.report.facts import facts, json_form
 
-    return "\n".join(line for line, _ in lines_of(type(whole(answers[0])), plain(facts(*answers))))
+    return "\n".join(line for line, _ in lines_of(type(json_form(answers[0])), json_value(facts(*answers))))
 
 
 def remarks_of(facts: Facts) -> tuple[Items, Items]:

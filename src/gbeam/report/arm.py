@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.report.blocks import Block, Columns, Facts, table
-from gbeam.report.words import along, number
+from gbeam.report.words import axis_words, number
 
 
 def levels(motions: Facts) -> Block:
@@ -16,8 +16,8 @@ def levels(motions: Facts) -> Block:
                 rows.append({"name": label, **motion["hub"]["level"], "felt": loads})
     cells: Columns = {
         "motion": "name",
-        "along": lambda row: along([*row["load"].values()]),
-        "up": lambda row: along([*row["up"].values()]),
+        "along": lambda row: axis_words([*row["load"].values()]),
+        "up": lambda row: axis_words([*row["up"].values()]),
         "level, g": "level",
         "centre, g": "felt.centre",
         "corners, g": lambda row: _range(row["felt"].get("corners", ())),

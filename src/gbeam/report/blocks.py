@@ -112,7 +112,7 @@ def table(
     caption: str = "",
     optional: Iterable[str] = (),
     scale: float = 0.0,
-    **more: Any,
+    **options: Any,
 ) -> Table:
     """Return a table of rows of JSON. `cells` are its columns by their heads; `optional` ones are left out where empty.
 
@@ -122,21 +122,25 @@ def table(
     forms = ["" if callable(column) else column.partition(":")[2] for column in cells.values()]
     units = ["" if callable(column) else _unit(head) for head, column in cells.items()]
     values = [[_value(row, column) for column in cells.values()] for row in rows]
-    largest = dict.fromkeys(units, 0.0)
-    for unit, value in (pair for row in values for pair in zip(units, row, strict=True)):
-        largest[unit] = max(largest[unit], abs(value) if isinstance(value, (int, float)) else 0.0)
+    scales = dict.fromkeys(units, 0.0)
+    for row_values in values:
+        for unit, value in zip(units, row_values, strict=True):
+            if isinstance(value, (int, float)):
+                scales[unit] = max(scales[unit], abs(value))
 
     def cell(value: Value, form: str, unit: str) -> Cell:
         if unit and isinstance(value, (int, float)):
-            value = 0.0 if abs(value) <= rounding(largest[unit], scale) else factor(unit) * value
+            value = 0.0 if abs(value) <= rounding(scales[unit], scale) else factor(unit) * value
         return _cell(value, form)
 
     cell_rows = [tuple(map(cell, row, forms, units)) for row in values]
-    kept_columns = [
-        k for k, head in enumerate(cells) if head not in optional or any(row[k].text not in " –" for row in cell_rows)
-    ]
-    heads = tuple(head.strip() for k, head in enumerate(cells) if k in kept_columns)
-    return Table(heads, tuple(tuple(row[k] for k in kept_columns) for row in cell_rows), caption, **more)
+    kept_columns, heads = [], []
+    for k, head in enumerate(cells):
+        if head not in optional or any(row[k].text not in " –" for row in cell_rows):
+            kept_columns.append(k)
+            heads.append(head.strip())
+    shown_rows = tuple(tuple(row[k] for k in kept_columns) for row in cell_rows)
+    return Table(tuple(heads), shown_rows, caption, **options)
 
 
 def _unit(head: str) -> str:
@@ -153,14 +157,14 @@ def pairs(rows: Iterable[tuple[str, Value]], caption: str = "") -> Table:
     return Table(("", ""), tuple((Cell(name), _cell(value)) for name, value in rows), caption)
 
 
-def named(rows: Facts) -> list[Facts]:
+def name_rows(rows: Facts) -> list[Facts]:
     """Return the rows of a JSON object as a list, each with its key as ``name``."""
-    return [{"name": name, **each} for name, each in rows.items()]
+    return [{"name": name, **row} for name, row in rows.items()]
 
 
-def numbered(rows: Iterable[Facts]) -> list[Facts]:
+def number_rows(rows: Iterable[Facts]) -> list[Facts]:
     """Return the rows of a JSON list, each with its number from one as ``number``."""
-    return [{"number": str(k), **each} for k, each in enumerate(rows, 1)]
+    return [{"number": str(k), **row} for k, row in enumerate(rows, 1)]
 
 
 _APART = ("form", "units", "provenance", "warnings", "notes", "files", "title", "outcome", "state", "lines")
@@ -197,11 +201,11 @@ def quantities(
         named_rows = isinstance(value, dict)
         rows = [{"": name, **row} for name, row in value.items()] if named_rows else value
         if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows):
-            below = f"{place}{key}.*." if named_rows else f"{place}{key}[i]."
+            path = f"{place}{key}.*." if named_rows else f"{place}{key}[i]."
             columns: dict[str, Column] = {}
             for column, entry in rows[0].items():
                 if not isinstance(entry, (dict, list)):
-                    unit = raised(units.get(below + column, ""))
+                    unit = raised(units.get(path + column, ""))
                     columns[", ".join(filter(None, (column.replace("_", " "), unit)))] = column
             yield Section(key.replace("_", " "), (table(rows, columns, most=24),), titled=True)
 
@@ -275,8 +279,8 @@ def _lines(blocks: Iterable[Block], verbose: bool) -> Iterator[tuple[str, str]]:
             case Section(detail=False, titled=False):
                 yield from [_BLANK, *_lines(block.blocks, verbose), _BLANK]
             case Section(detail=False):
-                below = ((f"  {line}".rstrip(), tone) for line, tone in _lines(block.blocks, verbose))
-                yield from [_BLANK, (block.title, block.tone), *below, _BLANK]
+                inner_lines = ((f"  {line}".rstrip(), tone) for line, tone in _lines(block.blocks, verbose))
+                yield from [_BLANK, (block.title, block.tone), *inner_lines, _BLANK]
 
 
 def _rows(block: Table) -> Iterator[tuple[str, str]]:
@@ -287,7 +291,8 @@ def _rows(block: Table) -> Iterator[tuple[str, str]]:
     shown_rows = block.rows[: block.most]
     flush_left = {k for k in range(len(block.heads)) if not block.numeric(k)}
     lines = columns(list(block.heads), [[cell.text for cell in row] for row in shown_rows], flush_left)
-    tones = ["faint", *("bad" if any(cell.tone == "bad" for cell in row) else "" for row in shown_rows)]
+    bad_rows = [any(cell.tone == "bad" for cell in row) for row in shown_rows]
+    tones = ["faint", *("bad" if bad else "" for bad in bad_rows)]
     folded = len(lines) != len(tones)
     toned_lines = list(zip(lines, [""] * len(lines) if folded else tones, strict=True))
     if not folded and not any(block.heads):

@@ -18,11 +18,11 @@ from gbeam.report.blocks import (
     Items,
     Section,
     Sentence,
-    named,
+    name_rows,
     six,
     table,
 )
-from gbeam.report.words import known, number
+from gbeam.report.words import float_of, number
 from gbeam.results.cases import ANSWERED, BOUNDS, PROBABILITY
 
 _FEW = 40  # cases that are all listed at once
@@ -45,7 +45,10 @@ def sweep(facts: Facts) -> Blocks:
         detail=True,
     )
     if facts["statistics"]:
-        yield Section("", tuple(block for name in facts["statistics"] for block in _estimates(facts, name)))
+        blocks: list[Block] = []
+        for name in facts["statistics"]:
+            blocks += _estimates(facts, name)
+        yield Section("", tuple(blocks))
     elif facts["measures"]:
         yield Section("", (_cases(facts, outcomes) if few else _quantiles(facts["measures"]),))
     yield Section("", tuple(_ended(facts, outcomes)))
@@ -75,8 +78,9 @@ def _titled(name: str, unit: str) -> str:
 
 
 def _ends(values: list[Any]) -> str:
-    written = [six(each).text for each in values]
-    return f"{len(values)} values, {f'{written[0]} to {written[-1]}' if len(values) > 3 else ', '.join(written)}"
+    texts = [six(value).text for value in values]
+    words = f"{texts[0]} to {texts[-1]}" if len(values) > 3 else ", ".join(texts)
+    return f"{len(values)} values, {words}"
 
 
 def _cases(facts: Facts, outcomes: Any) -> Block:
@@ -130,7 +134,7 @@ def _estimates(facts: Facts, name: str) -> Blocks:
         yield _history(facts["time"], estimates, title)
     elif isinstance(estimates["draws"], int):
         rows = [
-            (statistic, number(known(bounds["estimate"])), _interval_words(bounds))
+            (statistic, number(float_of(bounds["estimate"])), _interval_words(bounds))
             for statistic, bounds in estimates.items()
             if statistic != "draws"
         ]
@@ -144,7 +148,7 @@ def _estimates(facts: Facts, name: str) -> Blocks:
 
 def _interval_words(bounds: Facts) -> str:
     """Interval in words, ``0.1 to 0.2``; one-sided where an end is not known."""
-    low, high = (known(bounds[end]) for end in ("low", "high"))
+    low, high = (float_of(bounds[end]) for end in ("low", "high"))
     if math.isnan(low) and math.isnan(high):
         return "too few draws for a bound"
     if math.isnan(low):
@@ -156,14 +160,14 @@ def _sobol_table(indices: Facts) -> Block:
     """Table of Sobol indices, the largest in total first."""
 
     def bounded(bounds: Facts) -> str:
-        return f"{known(bounds['estimate']):.3f} ± {known(bounds['high']) - known(bounds['estimate']):.3f}"
+        return f"{float_of(bounds['estimate']):.3f} ± {float_of(bounds['high']) - float_of(bounds['estimate']):.3f}"
 
     columns: Columns = {
         "share of the variance": "name",
         "by itself": lambda row: bounded(row["first"]),
         "in total": lambda row: bounded(row["total"]),
     }
-    return table(sorted(named(indices), key=lambda row: -known(row["total"]["estimate"])), columns)
+    return table(sorted(name_rows(indices), key=lambda row: -float_of(row["total"]["estimate"])), columns)
 
 
 def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:

@@ -9,7 +9,7 @@ from typing import Any
 
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.printable import level_words
-from gbeam.report.words import along, tidy
+from gbeam.report.words import axis_words, tidy
 from gbeam.results.description import BodyDescription, Curves, Description, RecordSummary, Vector
 from gbeam.results.machine import ArmLevel
 from gbeam.results.result import part_words
@@ -24,7 +24,7 @@ def text(case: Description) -> str:
         if name in case.tracks:
             words += f" that tracks {case.tracks[name]}"
         if name in case.levels:
-            words += f", {_held(case.levels[name])}"
+            words += f", {_level_words(case.levels[name])}"
         motions.append(level_words(name, case.scales.get(name)) + (f": {words}" if words != name else ""))
     lines += _listed("motions", motions)
     for name, record in case.records.items():
@@ -43,10 +43,10 @@ def text(case: Description) -> str:
     return "\n".join([*lines, "Scenario valid."])
 
 
-def _held(level: ArmLevel) -> str:
+def _level_words(level: ArmLevel) -> str:
     """Words on what a plain arm holds."""
     return (
-        f"{level.level / STANDARD_GRAVITY:.4g} g along {along(level.load)}, {along(level.up)} up: "
+        f"{level.level / STANDARD_GRAVITY:.4g} g along {axis_words(level.load)}, {axis_words(level.up)} up: "
         f"{30 / math.pi * level.rate:.4g} rpm at {level.radius:.4g} m, {level.reached:.4g} to {level.ends:.4g} s"
     )
 
@@ -71,7 +71,7 @@ def _facts(body: BodyDescription) -> Iterator[str]:
     length = "" if body.length is None else f"{1e3 * body.length:.4g} mm, "
     added = f", {body.mass:.4g} kg with {len(body.masses)} added" if body.masses else ""
     centre = _centre(body.centre) if body.length is None else ""
-    yield ", ".join(filter(None, (body.kind, f"{length}{body.bare:.4g} kg{added}", centre)))
+    yield ", ".join(filter(None, (body.kind, f"{length}{body.bare_mass:.4g} kg{added}", centre)))
     count_words = ", ".join(f"{count} {family}" for family, count in body.counts.items())
     shape_words = f": {count_words}" if count_words else ""
     coordinates = f"{body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}{shape_words}; "
@@ -79,14 +79,14 @@ def _facts(body: BodyDescription) -> Iterator[str]:
     yield from (f"clamp {name} holds {nodes}" for name, nodes in body.clamps.items())
 
 
-def _modes(body: BodyDescription, before: str) -> list[str]:
-    ways = [""] * len(body.frequency) if body.direction is None else [f" ({each})" for each in body.direction]
-    frequencies = [f"{each:.4g}{way}" for each, way in zip(body.frequency, ways, strict=True)]
-    return [before + ", ".join(frequencies)] if frequencies else []
+def _modes(body: BodyDescription, prefix: str) -> list[str]:
+    ways = [""] * len(body.frequency) if body.direction is None else [f" ({way})" for way in body.direction]
+    frequencies = [f"{frequency:.4g}{way}" for frequency, way in zip(body.frequency, ways, strict=True)]
+    return [prefix + ", ".join(frequencies)] if frequencies else []
 
 
 def _centre(centre: Any) -> str:
-    tidied = ", ".join(f"{1e3 * each:.4g}" for each in tidy(centre, max(map(abs, centre)), scale=1.0))
+    tidied = ", ".join(f"{1e3 * component:.4g}" for component in tidy(centre, max(map(abs, centre)), scale=1.0))
     return f"centre of mass at ({tidied}) mm"
 
 
@@ -106,8 +106,10 @@ def _acting(case: Description) -> list[str]:
         for name, loop in case.controllers.items()
     ]
     gravity = () if case.gravity is None else (", ".join(f"{g:.4g}" for g in case.gravity) + " m/s²",)
-    parts = {"joints": joints, "forces": forces, "control": controllers, "gravity": gravity}
-    return [line for head, lines in parts.items() for line in _listed(head, lines)]
+    return [
+        *_listed("joints", joints), *_listed("forces", forces), *_listed("control", controllers),
+        *_listed("gravity", gravity),
+    ]  # fmt: skip
 
 
 _GAPS, _SECTIONS = 20, 40  # in lines
@@ -130,8 +132,8 @@ def _offsets(name: str, records: Mapping[str, RecordSummary]) -> Iterator[str]:
     if not record.offsets:
         return
     first = next(
-        key for key, other in records.items()
-        if other.file == record.file and other.offsets_of_columns == record.offsets_of_columns
+        key for key, candidate in records.items()
+        if candidate.file == record.file and candidate.offsets_of_columns == record.offsets_of_columns
     )  # fmt: skip
     if first != name:
         yield f"offsets as of {first} are subtracted"
@@ -149,14 +151,14 @@ def _sections(records: Mapping[str, RecordSummary]) -> Iterator[str]:
     record = next(iter(records.values()))
     widest = max(len(section.value) for section in record.sections)
     for section in record.sections[:_SECTIONS]:
-        inside = []
+        names = []
         for name, flown in records.items():
             overlaps = flown.span[0] <= section.end and flown.span[1] >= section.start
             if overlaps and flown.section in ("", section.value):
-                inside.append(name)
+                names.append(name)
         value = f"{record.sections_by} {section.value:<{widest}}"
         ends = f"{section.start:9.6g} to {f'{section.end:.6g} s':<11}"
-        yield f"{value}  {ends}  {', '.join(inside) or 'not flown'}"
+        yield f"{value}  {ends}  {', '.join(names) or 'not flown'}"
     if len(record.sections) > _SECTIONS:
         yield f"and {len(record.sections) - _SECTIONS} more, which --json has"
 
@@ -173,12 +175,12 @@ def _lines(record: RecordSummary) -> Iterator[str]:
     section = f", {record.sections_by} {record.section}" if record.section else ""
     yield f"{Path(record.file).name}{section}, {part}{clock}, {record.quantity.replace('-', ' ')}{vehicle}"
     read, flown = _cells(record, record.read), _cells(record, record.flown)
-    same = [*read.values()] == [*flown.values()]
-    rows = [("", "read and flown" if same else "read", "flown")]
+    unchanged = [*read.values()] == [*flown.values()]
+    rows = [("", "read and flown" if unchanged else "read", "flown")]
     rows += [(name, cell, flown[name]) for name, cell in read.items()]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for name, *cells in rows:
-        row_cells = cells[:1] if same else cells
+        row_cells = cells[:1] if unchanged else cells
         yield "  ".join(f"{cell:<{width}}" for cell, width in zip((name, *row_cells), widths, strict=False)).rstrip()
     if record.level is not None:
         yield f"level from {record.level.start:.6g} to {record.level.end:.6g} s: {_load(record.level.load)} on average"

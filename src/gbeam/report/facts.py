@@ -21,15 +21,15 @@ from gbeam.results.study import KINDS, Reproduction, Study, by_motion, tree_of_a
 VERSION = 1  # of the keys: raised where one changes or goes
 
 
-def whole(result: Result) -> Result:
+def json_form(result: Result) -> Result:
     """Return a result as its JSON has it: a response in a study of its own, an answer for a motion with a name."""
     if isinstance(result, Response):
         name = result.name or result.environment
         remarks: dict[str, Any] = {"warnings": result.warnings, "notes": result.notes}
         return Study("", {name: result}, (), provenance=result.provenance, **remarks)
     if result.listed_by and not getattr(result, result.listed_by):
-        named: dict[str, Any] = {result.listed_by: result.unnamed}
-        return replace(result, **named)
+        fields: dict[str, Any] = {result.listed_by: result.unnamed}
+        return replace(result, **fields)
     return result
 
 
@@ -38,14 +38,14 @@ def facts(*results: Result, title: str = "", files: Iterable[Path] | None = None
 
     It carries its form (the kind of result and the version of its keys) and the unit of every number by its path.
     """
-    answers = [whole(result) for result in results]
+    answers = [json_form(result) for result in results]
     kind = type(answers[0])
-    written = {} if files is None else {"files": [str(file) for file in files]}
+    file_names = {} if files is None else {"files": [str(file) for file in files]}
     declared = paths_of(tree_of_answers(kind))
     units = {path: quantity.unit for path, quantity in declared if quantity.unit not in ("", "unit")}
     form = {"kind": kind.__name__, "version": VERSION}
     figures = by_motion(answers, title) if kind.listed_by else json_of(answers[0])
-    return {"form": form} | _with_words(figures, answers) | written | {"units": units}
+    return {"form": form} | _with_words(figures, answers) | file_names | {"units": units}
 
 
 def _with_words(figures: dict[str, Any], answers: list[Result]) -> dict[str, Any]:
@@ -95,7 +95,7 @@ def reproduction_json(reproduction: Reproduction) -> dict[str, Any]:
         "tolerance": reproduction.tolerance,
         "rounded": reproduction.rounded,
         "differences": [asdict(difference) for difference in reproduction.differences],
-        "changed": {name: {"then": then, "now": now} for name, (then, now) in reproduction.changed.items()},
+        "changed": {name: {"then": old_value, "now": now} for name, (old_value, now) in reproduction.changed.items()},
     }
 
 
@@ -105,7 +105,7 @@ def reproduction_text(reproduction: Reproduction) -> str:
     """
     verdict = reproduction.agreement.replace("to the", "the same to the")
     lines = [f"{reproduction.file}: {reproduction.compared} values and arrays computed again: {verdict}"]
-    count = min(reproduction.beyond or 1, LISTED)  # those beyond rounding, or else the largest
+    count = min(reproduction.excess_count or 1, LISTED)  # those beyond rounding, or else the largest
     lines += [f"  {difference}" for difference in reproduction.differences[:count]]
     if len(reproduction.differences) > count:
         lines.append(f"  and {len(reproduction.differences) - count} more: see --json")

@@ -15,11 +15,11 @@ from gbeam.report.blocks import (
     Items,
     Sentence,
     Value,
-    named,
-    numbered,
+    name_rows,
+    number_rows,
     table,
 )
-from gbeam.report.words import known, number, percent, tidy
+from gbeam.report.words import float_of, number, percent, tidy
 from gbeam.results.declared import declarations
 from gbeam.results.errors import ErrorEstimate
 from gbeam.results.parts import margin_words
@@ -53,7 +53,7 @@ def resting_loads(loads: Facts, row_of: str = "motion") -> Block:
     cells = {row_of: "name", "force, N": "force", "moment, N m": "moment"}
     cells |= {"stress, MPa": "stress", "largest in": "place"}
     cells |= {"margin on yield": "least", "torque about the axis, N m": "beam_torque"}
-    rows = [_at_rest(body_loads) for body_loads in named(loads)]
+    rows = [_at_rest(body_loads) for body_loads in name_rows(loads)]
     stressed = any(row["stress"] for row in rows)
     caption = f"Of the base on the root, base axes{'; largest stress anywhere' if stressed else ''}"
     return table(rows, cells, caption, optional=tuple(cells)[3:])
@@ -93,7 +93,7 @@ def loads_table(bodies: Facts, row_of: str) -> Block:
         "at, s  ": "stress.time_of_max",
         "margin on yield": lambda body: margin(body.get("margin", {}).get("min")),
     }
-    stressed = any(known(body.get("stress", {}).get("max")) > 0 for body in rows)  # of extreme fibres
+    stressed = any(float_of(body.get("stress", {}).get("max")) > 0 for body in rows)  # of extreme fibres
     caption = f"Largest loads of the root{', and stress anywhere' if stressed else ''}"
     return table(rows, cells, caption, optional=tuple(cells)[5:], detail=True)
 
@@ -104,7 +104,7 @@ HELD = 0.1  # of the largest displacement of a body's points: a tip that moves b
 def tip_is_held(body: Facts) -> bool:
     """Return True if supports hold a body's tip: another named point moves much farther."""
     supports = body.get("loads", {}).get("supports", ())
-    sizes = [known(station["size"]["max_abs"]) for station in body.get("stations", ()) if supports]
+    sizes = [float_of(station["size"]["max_abs"]) for station in body.get("stations", ()) if supports]
     return bool(sizes) and sizes[-1] < HELD * max(sizes)
 
 
@@ -129,7 +129,7 @@ def supports_table(bodies: Facts, row_of: str) -> Block:
 def resting_supports(loads: Facts, row_of: str = "motion") -> Block:
     """Table of the loads of supports on beams at rest. `row_of` says what a row of loads is."""
     rows = list[Facts]()
-    for of_body in named(loads):
+    for of_body in name_rows(loads):
         places = of_body.get("supports", ())
         for k, at in enumerate(places):
             row: dict[str, Cell | str] = {"name": of_body["name"], "at": number(1e3 * at)}
@@ -149,8 +149,8 @@ def _by_place(vectors: Facts, count: int) -> list[Facts]:
 
 def _root_moment(loads: Facts) -> float | None:
     """Largest moment of the root; zero where it is rounding beside the force's on the length."""
-    force, moment = (known(loads[key]["size"]["max_abs"]) for key in ("root_force", "root_moment"))
-    size = max(moment, force * known(loads["sections"][-1]["at"]))
+    force, moment = (float_of(loads[key]["size"]["max_abs"]) for key in ("root_force", "root_moment"))
+    size = max(moment, force * float_of(loads["sections"][-1]["at"]))
     return tidy((moment,), size)[0] if math.isfinite(moment) else None
 
 
@@ -163,7 +163,8 @@ def margin(value: float | None) -> Cell:
 
 def parts_tables(bodies: Facts, row_of: str) -> tuple[Block, ...]:
     """Tables of the largest stress of meshes, and of the loads of rigid specimens."""
-    solids, rigid = ({n: each[key] for n, each in bodies.items() if key in each} for key in ("solid", "specimen"))
+    solids = {name: body["solid"] for name, body in bodies.items() if "solid" in body}
+    rigid = {name: body["specimen"] for name, body in bodies.items() if "specimen" in body}
     return *_stress_table(solids, row_of), *_specimen_tables(rigid, row_of)
 
 
@@ -182,7 +183,7 @@ def _stress_table(solids: Facts, row_of: str) -> Blocks:
         ),
     }
     judged = {name: solid for name, solid in solids.items() if solid.get("known", True)}
-    yield table(named(judged), cells, "Largest stress, and where it is", optional=("node",))
+    yield table(name_rows(judged), cells, "Largest stress, and where it is", optional=("node",))
     remarks = {name: solid["left_out"] for name, solid in solids.items() if solid.get("left_out")}
     if len(remarks) == len(solids) and len(set(remarks.values())) == 1:  # the same of all
         yield Items(tuple(set(remarks.values())))
@@ -200,27 +201,26 @@ _READ: Columns = {
 def _read(motion: Facts, body: str, point: str) -> Facts:
     """Readings of the accelerometer at a point of a body, and the largest stress and strain of a mesh there."""
     bodies, sensors = motion.get("bodies", {}), motion.get("sensors", {})
-    short = sensors.get(point) if [*bodies] == [body] else None
+    only_body = sensors.get(point) if [*bodies] == [body] else None
     solid = bodies.get(body, {}).get("solid", {"points": {}})
-    return {"sensor": sensors.get(f"{body}.{point}", short), "solid": solid["points"].get(point)}
+    return {"sensor": sensors.get(f"{body}.{point}", only_body), "solid": solid["points"].get(point)}
 
 
 def points_table(motion: Facts) -> Block:
     """Table of the largest motions of the points of several bodies, with what is read there."""
-    residual = f"residual from {known(motion.get('residual_from')):g} s, m"
+    residual = f"residual from {float_of(motion.get('residual_from')):g} s, m"
     moved = {"point": "name", "moves by, m": "displacement_max", "acceleration, m/s²": "acceleration_max"}
-    rows = [{**each, **_read(motion, *each["name"].split(".", 1))} for each in named(motion["points"])]
+    rows = [{**point, **_read(motion, *point["name"].split(".", 1))} for point in name_rows(motion["points"])]
     return table(rows, {**moved, **_READ, residual: "residual_size"}, optional=(*_READ, residual))
 
 
 def stations_table(bodies: Facts) -> Block:
     """Table of the largest values at named stations, by motion. It is empty if there is only a tip without a sensor."""
-    rows = [
-        {"motion": name, **station, **_read(body["of"], body["body"], station["name"])}
-        for name, body in bodies.items()
-        for station in body["stations"]
-        if station.get("name")
-    ]
+    rows = []
+    for name, body in bodies.items():
+        for station in body["stations"]:
+            if station.get("name"):
+                rows.append({"motion": name, **station, **_read(body["of"], body["body"], station["name"])})
     rigid = any("specimen" in body for body in bodies.values())
     rows = [row for row in rows if row["sensor"] or not rigid]
     if all(row["name"] == "tip" and not row["sensor"] for row in rows):
@@ -241,7 +241,7 @@ def _specimen_tables(rigid: Facts, row_of: str) -> Blocks:
     def spread(specimen: Facts) -> Value:
         verdicts = {True: (", PASS", "good"), False: (", NOT ACCEPTED", "bad"), None: ("", "")}
         words, tone = verdicts[specimen.get("within_limit")]
-        return Cell(f"{100 * known(specimen['spread']):.3g} %{words}", tone)
+        return Cell(f"{100 * float_of(specimen['spread']):.3g} %{words}", tone)
 
     corners: Columns = {
         row_of: "name",
@@ -253,8 +253,10 @@ def _specimen_tables(rigid: Facts, row_of: str) -> Blocks:
         "on the fixture, N": "force.max_abs",
         "and, N m": "moment.max_abs",
     }
-    yield table(named(rigid), corners, "Load at the corners", optional=("limit",))
-    bolts = [{"name": name, **bolt} for name, specimen in rigid.items() for bolt in numbered(specimen["bolts"])]
+    yield table(name_rows(rigid), corners, "Load at the corners", optional=("limit",))
+    bolts: list[Facts] = []
+    for name, specimen in rigid.items():
+        bolts += [{"name": name, **bolt} for bolt in number_rows(specimen["bolts"])]
     bolt_columns: Columns = {row_of: "name", "bolt": "number", **_place("place")}
     bolt_columns |= {f"{name}, N": name for name in ("tension", "compression", "shear")}
     yield table(
@@ -285,18 +287,17 @@ def errors(motions: Facts) -> Blocks:
 def _judged(motion: Facts) -> tuple[str, ...]:
     """Quantities whose errors are told: of loads alone where all is rigid and rests on its base."""
     bodies = motion.get("bodies", {}).values()
-    if bodies and all("specimen" in each for each in bodies):
+    if bodies and all("specimen" in body for body in bodies):
         return ("loads",)
-    apart = several(motion) and motion["errors"]["place"] != motion["errors"]["displacement"]
-    return ("displacement", *(("place",) if apart else ()), "loads", "stress")
+    places_differ = several(motion) and motion["errors"]["place"] != motion["errors"]["displacement"]
+    return ("displacement", "place", "loads", "stress") if places_differ else ("displacement", "loads", "stress")
 
 
 def errors_by_body(errors: Facts) -> Block:
     """Table of the share of each body in the estimated errors, of lists with one entry for each body."""
     count = len(errors.get("beams", ()))
-    rows = [
-        {key: values[k] for key, values in errors.items() if isinstance(values, list) and values} for k in range(count)
-    ]
+    by_body = {key: values for key, values in errors.items() if isinstance(values, list) and values}
+    rows = [{key: values[k] for key, values in by_body.items()} for k in range(count)]
     shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
     shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}

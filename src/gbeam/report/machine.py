@@ -21,11 +21,11 @@ from gbeam.report.blocks import (
     Sentence,
     Value,
     factor,
-    named,
+    name_rows,
     table,
 )
-from gbeam.report.words import known, percent, sentence
-from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, against, change, in_g
+from gbeam.report.words import float_of, percent, sentence
+from gbeam.results.accounting import QUANTITIES, Accounting, PeakPair, change, in_g, tolerance_words
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.criteria import GOOD, RULES, STRESS_AT, Judged
 from gbeam.results.machine import AxesResult, Driven, Shortfall
@@ -37,7 +37,7 @@ _EXACT = 1e-9  # of the load: a smaller error is rounding
 def tracked(driven: Driven) -> str:
     """Words for how well a machine follows the load."""
     errors = {"tracking_error": driven.tracking_error, "flight_error": driven.flight_error}
-    return followed({name: None if each is None else asdict(each) for name, each in errors.items()})
+    return followed({name: None if error is None else asdict(error) for name, error in errors.items()})
 
 
 def followed(facts: Mapping[str, Any]) -> str:
@@ -63,8 +63,8 @@ def _size(error: Mapping[str, Any]) -> str:
 
 def ends_line(time: Floats, axes: AxesResult) -> str:
     """Beginning and end of the machine, in words."""
-    how = "turning already" if axes.start == "idle" else "from standstill to standstill"
-    return f"{how}, from {time[0]:.3f} to {time[-1]:.3f} s on the flight's clock"
+    manner = "turning already" if axes.start == "idle" else "from standstill to standstill"
+    return f"{manner}, from {time[0]:.3f} to {time[-1]:.3f} s on the flight's clock"
 
 
 def not_followed_stretches(axes: AxesResult) -> list[tuple[float, float, str]]:
@@ -103,20 +103,19 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
     """Yield lines on up to :data:`SHOWN` load peaks, first chosen those not reproduced, then the largest, in order of
     time; on the load over the specimen; and on as many of the longest stretches that are not followed.
     """
-    yield f"followed means within {against(accounting)}"
+    yield f"followed means within {tolerance_words(accounting)}"
     listed = sorted(accounting.peaks, key=lambda peak: (not peak.reason, -peak.load))[:SHOWN]
     for peak in sorted(listed, key=lambda peak: peak.time):
         # Where the size hides a difference of direction, that is said too.
         direction = f", as a vector {share_of(peak.error)}" if peak.error > abs(peak.ratio - 1) + 0.01 else ""
-        delay = peak.time_machine - peak.time
-        timing = f", {abs(1e3 * delay):.0f} ms {'later' if delay > 0 else 'earlier'}" if abs(delay) >= _APART else ""
+        delay, timing = peak.time_machine - peak.time, ""
+        if abs(delay) >= _APART:
+            timing = f", {abs(1e3 * delay):.0f} ms {'later' if delay > 0 else 'earlier'}"
         size = f"{in_g(peak.reproduced)} ({change(peak.ratio)}{direction}{timing})"
         if math.isfinite(peak.instant_error):
             size += f", {share_of(peak.instant_error if peak.instant_error > _NONE else 0.0)} off at the same instant"
-        yield (
-            f"load peak {in_g(peak.load)} at {peak.time:.2f} s: "
-            f"{f'not reproduced, {size}: {peak.reason}' if peak.reason else size}"
-        )
+        words = f"not reproduced, {size}: {peak.reason}" if peak.reason else size
+        yield f"load peak {in_g(peak.load)} at {peak.time:.2f} s: {words}"
     if len(accounting.peaks) > SHOWN:
         yield f"load peaks {len(accounting.peaks) - SHOWN} more: see --json"
     if accounting.peaks:
@@ -125,7 +124,9 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
             yield f"load at these peaks over the control point's: root {change(1 + root)}, tip {change(1 + tip)}"
     # Those below idle are many, and the machine's own lines have them.
     stretches = [
-        each for each in accounting.not_followed if each.reason != "below idle" and each.end - each.start > SHORTEST
+        stretch
+        for stretch in accounting.not_followed
+        if stretch.reason != "below idle" and stretch.end - stretch.start > SHORTEST
     ]
     longest = sorted(stretches, key=lambda stretch: stretch.start - stretch.end)[:SHOWN]
     for stretch in sorted(longest, key=lambda stretch: stretch.start):
@@ -136,7 +137,7 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
     if len(stretches) > SHOWN:
         yield f"not followed {len(stretches) - SHOWN} times more: see --json"
     if accounting.overloads:
-        worst = max(accounting.overloads, key=lambda each: each.load - max(each.flight, accounting.idle))
+        worst = max(accounting.overloads, key=lambda overload: overload.load - max(overload.flight, accounting.idle))
         idle = f", idle {in_g(accounting.idle)}" if accounting.idle else ""
         yield (
             f"the machine loads the specimen more than the flight: {in_g(worst.load)} at {worst.time:.2f} s "
@@ -169,7 +170,7 @@ def machine_plan(facts: Facts) -> Blocks:
         yield Section(title, message or (Sentence(""),), titled=True, tone=tone)
         yield Section("Machine", tuple(_planned(plan)), verbose=True)
         yield from verdict(plan, (level_words(plan["tracks"] or "flight", plan.get("scale")), name))
-        yield from said(plan)
+        yield from verdict_sections(plan)
     yield Section("Histories", (FIGURES,))
 
 
@@ -177,7 +178,7 @@ def _planned(plan: Facts) -> Blocks:
     """Limits, tracking, stretches in which the target is not the flight's load, and loads out of reach, of one plan."""
     yield limits(plan)
     yield Sentence(followed(plan))
-    yield held(plan)
+    yield departures_table(plan)
     shortfalls = tuple(str(Shortfall(**row)) for row in plan["shortfalls"])
     yield Items(shortfalls[:SHOWN], "warning")
     if len(shortfalls) > SHOWN:
@@ -203,7 +204,7 @@ def limits(machine: Facts) -> Block:
     return table(machine["limits"], cells, "Limits used")
 
 
-def held(machine: Facts) -> Block:
+def departures_table(machine: Facts) -> Block:
     """Table of the stretches in which the target is not the flight's load, and why."""
     cells = {"from, s": "start:.3f", "to, s": "end:.3f", "why": "reason"}
     return table(
@@ -214,7 +215,7 @@ def held(machine: Facts) -> Block:
 def comparison(facts: Facts) -> Blocks:
     """Verdict on the imitation of a flight, the sentences that it rests on, and the figures."""
     yield from verdict(facts, (level_words(facts["flight"], facts.get("scale")), facts["centrifuge"]))
-    yield from said(facts)
+    yield from verdict_sections(facts)
     yield Section("Histories", (FIGURES,))
 
 
@@ -226,9 +227,10 @@ def verdict(judged: Facts, names: tuple[str, str], title: str = "Verdict") -> Bl
     )
 
 
-def said(judged: Facts, name: str = "") -> Blocks:
+def verdict_sections(judged: Facts, name: str = "") -> Blocks:
     """Sections of the verdict, with a `name` in front where there are several, and of what it rests on."""
-    tone = "bad" if not all(each["passed"] for each in judged["criteria"]) else "verdict"
+    passed = all(criterion["passed"] for criterion in judged["criteria"])
+    tone = "verdict" if passed else "bad"
     title = f"{name}: {judged['verdict']}" if name else sentence(judged["verdict"])
     yield Section(title, (Items(tuple(judged["findings"])),), titled=True, folded="Verdict in words", tone=tone)
     lines = (Items(tuple(judged["lines"])),)
@@ -244,7 +246,7 @@ def _criteria(judged: Facts) -> Block:
         bounds = tuple(criterion["limit"]) if isinstance(criterion["limit"], list) else criterion["limit"]
         return RULES[criterion["name"]].limit_written(bounds).removeprefix("limit ")
 
-    def kept(criterion: Facts) -> Value:
+    def verdict(criterion: Facts) -> Value:
         if "limit" not in criterion:
             return "needs the response: gbeam run"
         words = {True: ("kept", "good"), False: ("not kept", "bad"), None: ("not known", "bad")}
@@ -253,11 +255,11 @@ def _criteria(judged: Facts) -> Block:
     cells: Columns = {
         "limit on": lambda criterion: criterion["name"].replace("_", " "),
         "value": lambda criterion: (
-            RULES[criterion["name"]].written(known(criterion["value"])) if "limit" in criterion else None
+            RULES[criterion["name"]].write(float_of(criterion["value"])) if "limit" in criterion else None
         ),
         "where": "where",
         "limit": limit,
-        "": kept,
+        "": verdict,
     }
     rows = [*judged["criteria"], *({"name": name} for name in judged["not_judged"])]
     return table(rows, cells, "Accepted if every limit is kept", optional=("where",))
@@ -269,7 +271,7 @@ def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
     """
 
     def size(key: str) -> Column:
-        return lambda pair: factor(QUANTITIES[pair["name"]][2]) * known(pair[key])
+        return lambda pair: factor(QUANTITIES[pair["name"]][2]) * float_of(pair[key])
 
     cells: Columns = {
         "largest": lambda pair: "{}, {}".format(*QUANTITIES[pair["name"]][::2]),
@@ -280,7 +282,7 @@ def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
         "on the machine at, s": "time_machine",
         "where": lambda pair: pair.get("place_machine", "").removeprefix("the "),
     }
-    rows = [pair for pair in named(judged["peaks"]) if pair["flight"] is not None]
+    rows = [pair for pair in name_rows(judged["peaks"]) if pair["flight"] is not None]
     caption = "Largest over the whole flight; loads over the machine's whole run"
     return table(rows, cells, caption, optional=("where",))
 
@@ -303,10 +305,10 @@ def _load_peaks(judged: Facts) -> Block:
 def _not_followed(judged: Facts) -> Block:
     """Table of the stretches that are not followed. A page folds it if they are many."""
     accounting = judged["accounting"]
-    rows, share = accounting["not_followed"], known(accounting["followed_share"])
+    rows, share = accounting["not_followed"], float_of(accounting["followed_share"])
     reference = "load at the time" if accounting["tolerance_of"] == "instant" else "largest load"
-    within = f"within {share_of(accounting['tolerance'])} of the {reference}"
-    caption = f"Not followed: {_percent(1 - share)} of the flight's time ({_percent(share)} is followed, {within})"
+    tolerance = f"within {share_of(accounting['tolerance'])} of the {reference}"
+    caption = f"Not followed: {_percent(1 - share)} of the flight's time ({_percent(share)} is followed, {tolerance})"
     cells = {"from, s": "start:.3f", "to, s": "end:.3f", "flight up to, g": "flight_peak", "why": "reason"}
     stretches = table(rows, cells, caption)
     title = f"{len(rows)} stretches that are not followed"
@@ -314,9 +316,11 @@ def _not_followed(judged: Facts) -> Block:
 
 
 def _changed(pair: Facts) -> Value:
-    return change(known(pair["ratio"])) if math.isfinite(known(pair["ratio"])) else "–"
+    return change(float_of(pair["ratio"])) if math.isfinite(float_of(pair["ratio"])) else "–"
 
 
 def _percent(value: float | None) -> str:
-    share = known(value)
-    return share_of(share if abs(share) > _NONE else 0.0) if math.isfinite(share) else "–"
+    share = float_of(value)
+    if not math.isfinite(share):
+        return "–"
+    return share_of(share if abs(share) > _NONE else 0.0)

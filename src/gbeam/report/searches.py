@@ -19,12 +19,12 @@ from gbeam.report.blocks import (
     Sentence,
     Value,
     Verbatim,
-    named,
+    name_rows,
     pairs,
     six,
     table,
 )
-from gbeam.report.words import known, number, percent
+from gbeam.report.words import float_of, number, percent
 from gbeam.results.accounting import change, in_g
 from gbeam.results.placement import degrees
 from gbeam.results.searches import COMMANDS, GOALS
@@ -36,7 +36,7 @@ def sensitivity(facts: Facts) -> Blocks:
         yield Section(f"{name} = {_with_unit(measure)}", (_effects(measure),), titled=True)
     methods = [row["method"] for row in next(iter(facts["measures"].values()))["parameters"]]
     exact = methods.count("exact")
-    error = known(facts["run_error"])
+    error = float_of(facts["run_error"])
     of_run = f"; the run's own estimated error: {percent(error)}" if math.isfinite(error) else ""
     notes = []
     if exact:
@@ -53,31 +53,31 @@ def _effects(measure: Facts) -> Block:
 
     def change(parameter: Facts) -> Value:
         # A figure without a unit is a ratio, and its change one too.
-        df, size = 0.01 * known(parameter["derivative"]) * known(parameter["value"]), known(measure["value"])
+        df, size = 0.01 * float_of(parameter["derivative"]) * float_of(parameter["value"]), float_of(measure["value"])
         return percent(df / size) if measure["unit"] and size else f"{number(df)} {raised(measure['unit'])}".rstrip()
 
     columns: Columns = {
         "of": "path",
-        "value": lambda parameter: f"{known(parameter['value']):.6g} {raised(parameter['unit'])}".rstrip(),
+        "value": lambda parameter: f"{float_of(parameter['value']):.6g} {raised(parameter['unit'])}".rstrip(),
         "+1 % changes it by": change,
         "derivative, SI": lambda parameter: number(
-            known(parameter["derivative"])
+            float_of(parameter["derivative"])
         ),  # of many units: each has its own size
-        "±": lambda parameter: number(known(parameter["error"]), 1),
+        "±": lambda parameter: number(float_of(parameter["error"]), 1),
         "by": lambda parameter: f"{parameter['method']}{' kink' if parameter['kink'] else ''}",
     }
     return table(measure["parameters"], columns, optional=("±",))
 
 
 def _with_unit(figure: Facts) -> str:
-    return f"{number(known(figure['value']))} {raised(figure['unit'])}".rstrip()
+    return f"{number(float_of(figure['value']))} {raised(figure['unit'])}".rstrip()
 
 
 def _interval(ends: str) -> Column:
     """Column of the interval at the key `ends`; "on its bound" where the value lies on the bound of the search."""
 
-    def cell(each: Facts) -> Value:
-        return Cell("on its bound", "bad") if each["at_bound"] else " to ".join(six(end).text for end in each[ends])
+    def cell(row: Facts) -> Value:
+        return Cell("on its bound", "bad") if row["at_bound"] else " to ".join(six(end).text for end in row[ends])
 
     return cell
 
@@ -88,7 +88,7 @@ _UNIT: Columns = {"unit": lambda each: raised(each["unit"])}
 
 def fit(facts: Facts) -> Blocks:
     """Report of a fit: a row for each value, correlations of their errors, and the residuals."""
-    sigma: Columns = {"one sigma": lambda value: f"± {number(known(value['error']), 2)}"}
+    sigma: Columns = {"one sigma": lambda value: f"± {number(float_of(value['error']), 2)}"}
     paths = list(facts["parameters"])
     correlations = []
     for k, path in enumerate(paths):
@@ -96,11 +96,11 @@ def fit(facts: Facts) -> Blocks:
             correlation = facts["correlation"][k][j]
             if correlation is not None:
                 correlations.append((f"{paths[j]} and {path}", f"{correlation:+.4f}"))
-    values = table(named(facts["parameters"]), _VALUE | sigma | {"95 %": _interval("interval")} | _UNIT)
+    values = table(name_rows(facts["parameters"]), _VALUE | sigma | {"95 %": _interval("interval")} | _UNIT)
     residuals = {"column": "name", "residual": "noise", "data": "data"}
     yield Section("Values", (Sentence(f"fitted to {facts['data']}", "faint"), values))
     yield pairs(correlations, "correlation of the errors of")
-    yield table(named(facts["columns"]), residuals | _UNIT, "standard deviation of the residual")
+    yield table(name_rows(facts["columns"]), residuals | _UNIT, "standard deviation of the residual")
     yield Section("", (_searches(facts),))
     yield Section("Data and fit", (FIGURES,))
 
@@ -108,12 +108,10 @@ def fit(facts: Facts) -> Blocks:
 def optimum(facts: Facts) -> Blocks:
     """Report of an optimum: the figure before and after, the values, the requirements, and the steps of the search."""
 
-    def kept(requirement: Facts) -> Value:
-        return (
-            Cell("decides" if requirement["active"] else "kept", "good")
-            if requirement["kept"]
-            else Cell("NOT KEPT", "bad")
-        )
+    def verdict(requirement: Facts) -> Value:
+        if not requirement["kept"]:
+            return Cell("NOT KEPT", "bad")
+        return Cell("decides" if requirement["active"] else "kept", "good")
 
     goal = facts["minimise"]
     requirements: Columns = {
@@ -123,21 +121,21 @@ def optimum(facts: Facts) -> Blocks:
         "was": "before",
         "is": "value",
     }
-    yield Sentence(f"least {goal['name']}: {_with_unit(goal)}, was {number(known(goal['before']))}", "verdict")
-    values = table(named(facts["parameters"]), _VALUE | {"bounds": _interval("bounds")} | _UNIT)
+    yield Sentence(f"least {goal['name']}: {_with_unit(goal)}, was {number(float_of(goal['before']))}", "verdict")
+    values = table(name_rows(facts["parameters"]), _VALUE | {"bounds": _interval("bounds")} | _UNIT)
     yield Section("Values", (values,))
-    limits = table(facts["subject_to"], requirements | _UNIT | {"": kept}, optional=("at least", "at most"))
+    limits = table(facts["subject_to"], requirements | _UNIT | {"": verdict}, optional=("at least", "at most"))
     yield Section("Requirements", (limits,))
-    error = known(facts["error_estimate"])
+    error = float_of(facts["error_estimate"])
     of_run = f"; the last run's estimated error is {percent(error)}" if math.isfinite(error) else ""
     yield Section("", (_searches(facts, of_run),))
     yield Section("Way to the optimum", (FIGURES,))
 
 
-def _searches(facts: Facts, more: str = "") -> Block:
+def _searches(facts: Facts, remark: str = "") -> Block:
     tried, agreed = facts["starts"]["tried"], facts["starts"]["agreed"]
     several = (f"{agreed} of {tried} searches end at these values",) if tried > 1 else ()
-    return Items((*several, f"{facts['evaluations']} evaluations of the scenario{more}"))
+    return Items((*several, f"{facts['evaluations']} evaluations of the scenario{remark}"))
 
 
 def shaped_command(facts: Facts) -> Blocks:
@@ -152,7 +150,7 @@ def shaped_command(facts: Facts) -> Blocks:
         "run": "outcome",
     }
     yield Sentence(f"{words}, designed on {facts['design']}, run on {facts['check']}{span}")
-    yield Section("Commands", (table(named(facts["commands"]), columns),))
+    yield Section("Commands", (table(name_rows(facts["commands"]), columns),))
     yield FIGURES
 
 
@@ -169,9 +167,9 @@ def placement(facts: Facts) -> Blocks:
     measure = " + ".join(terms)
     if facts["point"] and {"tip", "vibration"} & weights.keys():
         measure += f" of {facts['point']}"
-    nearest = "" if facts["outcome"] == "done" else " (nearest to the limits, which none keeps)"
-    yield Sentence(f"{facts['centrifuge']}, tracking {facts['flight']}: least {measure}{nearest}", "verdict")
-    yield Section("Placement", (pairs(_best(facts)),))
+    remark = "" if facts["outcome"] == "done" else " (nearest to the limits, which none keeps)"
+    yield Sentence(f"{facts['centrifuge']}, tracking {facts['flight']}: least {measure}{remark}", "verdict")
+    yield Section("Placement", (pairs(_placement_rows(facts)),))
     if facts["set"]:
         flags = " ".join(f'--set "{change}"' for change in facts["set"])
         written_words = (
@@ -193,28 +191,28 @@ def placement(facts: Facts) -> Blocks:
     yield Section("Options", (_options(facts["options"], measure), refused))
 
 
-def _best(facts: Facts) -> Iterator[tuple[str, Value]]:
+def _placement_rows(facts: Facts) -> Iterator[tuple[str, Value]]:
     """Rows of the best placement (control point, largest load, mounting, smoothing), beside the present one."""
-    length_share, before, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
-    present_point = _point(before) if before else f"{number(1e3 * facts['current_control_point'])} mm"
+    length_share, present, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
+    present_point = _point(present) if present else f"{number(1e3 * facts['current_control_point'])} mm"
     length = f", {length_share:.4f} of the length" if length_share else ""
     yield "control point", f"{_point(facts)} from the root{length} (now {present_point})"
-    yield "largest load", _largest(best["largest_load"], before and before["largest_load"])
+    yield "largest load", _largest_load(best["largest_load"], present and present["largest_load"])
     yield "mounting", facts["mounting"] + _turned(facts)
     yield "smoothing", f"{number(1e3 * facts['smoothing'])} ms{_range(facts)}"
 
 
-def _largest(load: Facts, before: Facts | None) -> str:
+def _largest_load(load: Facts, present: Facts | None) -> str:
     """Largest load anywhere on the specimen as placed, in flight, and as it is mounted now."""
     if load["machine"] is None:
         return "not known"
-    now = f"; now {_load(before)}" if before else ""
+    now = f"; now {_load(present)}" if present else ""
     return f"anywhere on the specimen {_load(load)}, {in_g(load['flight'])} in flight{now}"
 
 
 def _load(load: Facts) -> str:
     place = f" at {load['place_machine']}" if load.get("place_machine") else ""
-    return f"{in_g(known(load['machine']))}{place} ({change(known(load['ratio']))})"
+    return f"{in_g(float_of(load['machine']))}{place} ({change(float_of(load['ratio']))})"
 
 
 def _range(facts: Facts) -> str:
@@ -225,7 +223,7 @@ def _range(facts: Facts) -> str:
     range_words = f", of {1e3 * low:.4g} to {1e3 * high:.4g} ms"
     if facts["smoothing"] > low * (1 + 1e-6):
         return range_words + (": the widest tried" if facts["smoothing"] > high * (1 - 1e-6) else "")
-    share = known(facts["options"][0]["share"])
+    share = float_of(facts["options"][0]["share"])
     unlimited = "; no limit of the machine forbids less" if share < 1 else ""
     return f"{range_words}: the least tried{unlimited}"
 
@@ -233,11 +231,11 @@ def _range(facts: Facts) -> str:
 def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
     """Table of every measure at every place, as a share of the flight's peak."""
 
-    def at(place: str) -> Column:
+    def share_column(place: str) -> Column:
         return lambda name: _peak_share(values.get(place, {}).get(name))
 
     cells: Columns = {"of flight's peak": lambda name: name}
-    cells |= {words: at(place) for place, words in places.items()}
+    cells |= {words: share_column(place) for place, words in places.items()}
     return table(values.get("best", ()), cells, title)
 
 
@@ -253,7 +251,7 @@ def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
     }
     rows = [{**checks[place], "name": words} for place, words in places.items() if place in checks]
     yield table(rows, cells, "By simulation, largest difference from flight")
-    gain = known(facts["vibration_gain_over_middle"])
+    gain = float_of(facts["vibration_gain_over_middle"])
     if math.isfinite(gain):
         middle = "at mid-span" if facts["fraction_of_length"] else "in the middle of the specimen"
         yield Sentence(f"{gain:.3g} times less vibration than with the control point {middle}")
@@ -278,7 +276,9 @@ def _options(options: Sequence[Facts], measure: str) -> Block:
         "error": lambda option: _peak_share(option["total_error"]),
         "largest load, g": "largest_load.machine",
         "at": lambda option: option["largest_load"].get("place_machine", "").removeprefix("the "),
-        "of axes 1, 2, 3, rad/s²": lambda option: ", ".join(f"{known(peak):.3g}" for peak in option["accelerations"]),
+        "of axes 1, 2, 3, rad/s²": lambda option: ", ".join(
+            f"{float_of(peak):.3g}" for peak in option["accelerations"]
+        ),
         "limits": limits,
     }
     caption = f"Options, best first by {measure}, with the errors of smoothing and tracking"
@@ -298,7 +298,7 @@ def _peak_share(share: float | None) -> str:
 
 def _point(facts: Facts) -> str:
     """A control point, along x or anywhere."""
-    words = [number(1e3 * each) for each in facts["place"].values()]
+    words = [number(1e3 * component) for component in facts["place"].values()]
     return f"({', '.join(words)}) mm" if any([*facts["place"].values()][1:]) else f"{words[0]} mm"
 
 

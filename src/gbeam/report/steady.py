@@ -23,15 +23,15 @@ from gbeam.report.blocks import (
     Sentence,
     Value,
     factor,
-    named,
-    numbered,
+    name_rows,
+    number_rows,
     pairs,
     table,
 )
 from gbeam.report.loads import by_body, errors, errors_by_body, parts_tables, resting_loads, resting_supports, several
-from gbeam.report.words import errors_in_words, known, number, percent, tidy
+from gbeam.report.words import errors_in_words, float_of, number, percent, tidy
 from gbeam.results.equilibrium import CriticalMap
-from gbeam.results.errors import Accelerated, along
+from gbeam.results.errors import Accelerated, direction_words
 from gbeam.results.state_space import ACCURATE
 
 SYSTEM = "system"  # in the place of a model's name, of several bodies
@@ -47,11 +47,11 @@ def rest(facts: Facts) -> Blocks:
     messages = (f"motion {name}: {motion['message']}" for name, motion in motions.items() if motion["message"])
     yield Items(tuple(messages), "bad")
     for motion in motions.values():
-        yield from evenly(motion)
+        yield from acceleration_sentence(motion)
     yield Section("View", (Place("viewer"),))
     tips: Columns = {head: "name", "at, s": "of.time", "model": "model"}
     tips |= {f"{axis}, mm": f"tip.{axis}" for axis in "xyz"}
-    bending = [body for body in named(bodies) if "specimen" not in body]
+    bending = [body for body in name_rows(bodies) if "specimen" not in body]
     yield Section("Deflection", (table(bending, tips, "Displacement of the tip"), *_points(of_systems)))
     loads = {name: body["loads"] for name, body in bodies.items() if "loads" in body}
     of_bodies = resting_loads(loads, head), resting_supports(loads, head), *parts_tables(bodies, head)
@@ -64,13 +64,13 @@ def rest(facts: Facts) -> Blocks:
 
 def _points(motions: Facts) -> Blocks:
     """Tables of the displacements of points and, on a page, of all coordinates and drives."""
-    rows = [{"motion": name, **point} for name, rest in motions.items() for point in named(rest["points"])]
+    rows = [{"motion": name, **point} for name, rest in motions.items() for point in name_rows(rest["points"])]
     motion_column: Columns = {"motion": "motion"} if len(motions) > 1 else {}
     cells: Columns = {**motion_column, "point": "name", **{f"{axis}, mm": f"displacement.{axis}" for axis in "xyz"}}
     scale = max((abs(component) for row in rows for component in row["place"].values()), default=0.0)
     yield table(rows, cells, "Displacement of points from the start, axes of the ground", scale=scale)
     coordinates: Columns = motion_column | {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
-    rows = [{"motion": name, **row} for name, rest in motions.items() for row in named(rest["coordinates"])]
+    rows = [{"motion": name, **row} for name, rest in motions.items() for row in name_rows(rest["coordinates"])]
     yield table(rows, coordinates, "Coordinates", detail=True)
 
 
@@ -100,11 +100,11 @@ def modes(facts: Facts) -> Blocks:
     rate = float(max(rates, default=0.0))
     turning = [f"turning at {number(rate)} rad/s"] if rate > RESTING else []
     coupling = [] if facts["gyroscopic"] else ["Coriolis coupling left out"]
-    yield where(facts, f"at {number(facts['time'])} s", *turning, *coupling)
-    yield from evenly(facts)
-    yield growing(facts, lambda mode: f" {along(mode['direction'])}")
+    yield subject_sentence(facts, f"at {number(facts['time'])} s", *turning, *coupling)
+    yield from acceleration_sentence(facts)
+    yield instability_items(facts, lambda mode: f" {direction_words(mode['direction'])}")
     yield modes_table(facts, {"along": "direction"} | ERROR | {"kinetic energy": shares})
-    reached = known(facts["reached"])
+    reached = float_of(facts["reached"])
     if any(mode["frequency"] > reached for mode in facts["modes"]):
         yield Sentence(f"above {reached:.4g} Hz, to which the modes of meshes and matrices reach, upper bounds")
     undamped = [f"{name}.damping_ratio" for name, body in bodies.items() if not body["damping_given"]]
@@ -116,30 +116,32 @@ def modes(facts: Facts) -> Blocks:
     yield Section("Shapes", (Place("viewer", drawing), FIGURES))
 
 
-def where(facts: Facts, *words: str) -> Sentence:
+def subject_sentence(facts: Facts, *words: str) -> Sentence:
     """Sentence on the motion, if it has a name, the models, and other words."""
     motion = f"motion {facts['motion']}" if facts["motion"] else ""
     modelled = [facts, *facts.get("bodies", {}).values()]  # a rigid body has no model
-    models = dict.fromkeys(each["model"] for each in modelled if "model" in each)
-    return Sentence(", ".join(filter(None, (motion, *(f"model {each}" for each in models if each != SYSTEM), *words))))
+    models = dict.fromkeys(part["model"] for part in modelled if "model" in part)
+    return Sentence(
+        ", ".join(filter(None, (motion, *(f"model {model}" for model in models if model != SYSTEM), *words)))
+    )
 
 
 ERROR: Columns = {"estimated error": "error_estimate:%"}
 
 
-def modes_table(facts: Facts, more: Mapping[str, Column]) -> Block:
+def modes_table(facts: Facts, columns: Mapping[str, Column]) -> Block:
     """Table of the frequency, damping and `more` columns of every mode, and a note on errors that are not estimated."""
 
     def damping(mode: Facts) -> Value:
         return f"{mode['damping_ratio'] if abs(mode['damping_ratio']) > ROUNDING else 0.0:.4g}"
 
     cells: Columns = {"mode": "number", "frequency, Hz": "frequency", GROUND: "ground_frequency"}
-    cells |= {"damping ratio": damping, **more}
-    modes_of = table(numbered(facts["modes"]), cells, optional=(GROUND, *ERROR, "kinetic energy"))
+    cells |= {"damping ratio": damping, **columns}
+    modes_of = table(number_rows(facts["modes"]), cells, optional=(GROUND, *ERROR, "kinetic energy"))
     return Section("Modes", (modes_of, *framed(facts), *noted(facts)))
 
 
-def evenly(facts: Facts) -> Blocks:
+def acceleration_sentence(facts: Facts) -> Blocks:
     """Sentence on the coordinates that a steady state accelerates: translations (m/s²), then rotations (rad/s²)."""
     accelerated = [Accelerated(**row) for row in facts.get("accelerated", ())]
     slides = ", ".join(str(coordinate) for coordinate in accelerated if not math.isnan(coordinate.acceleration))
@@ -150,11 +152,11 @@ def evenly(facts: Facts) -> Blocks:
         yield Sentence(f"accelerated evenly, {', '.join(parts)}; all else rests")
 
 
-def growing(facts: Facts, which: Callable[[Facts], str]) -> Block:
+def instability_items(facts: Facts, describe: Callable[[Facts], str]) -> Block:
     """Items on what grows, with words of `which` mode that is, and that stability is not known."""
     grows = (
-        f"{each['kind']}{which(each)}: grows by {number(each['growth_rate'])} per second"
-        for each in facts["instabilities"]
+        f"{instability['kind']}{describe(instability)}: grows by {number(instability['growth_rate'])} per second"
+        for instability in facts["instabilities"]
     )
     return Items(tuple(filter(None, (*grows, facts.get("message")))), "bad")
 
@@ -184,24 +186,26 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
         return lambda row: factor * row["speed"]
 
     low, high = facts["speed"][0], facts["speed"][-1]
-    span = where(facts, *(f"{factor * low:.4g} to {factor * high:.4g} {unit}" for unit, factor in speeds.items()))
+    span = subject_sentence(
+        facts, *(f"{factor * low:.4g} to {factor * high:.4g} {unit}" for unit, factor in speeds.items())
+    )
     yield Section("Campbell diagram", (span, FIGURES))
     if facts["critical_speed"] is not None:
         critical = ", ".join(f"{number(factor * facts['critical_speed'])} {unit}" for unit, factor in speeds.items())
         reason = f" ({facts['critical_speed_reason']})" if facts.get("critical_speed_reason") else ""
         error = _stated(facts.get("critical_speed_errors", {}))
         goes_on = high > facts["critical_speed"]
-        beyond = "; stable beyond" if goes_on and not facts["unstable"] else ""
+        stability = "; stable beyond" if goes_on and not facts["unstable"] else ""
         event = "critical" if goes_on else "the equilibrium is lost"
-        yield Sentence(f"{event} at {critical}{reason}{error}{beyond}", "bad")
+        yield Sentence(f"{event} at {critical}{reason}{error}{stability}", "bad")
     yield Items(tuple(_stretch(stretch, speeds) for stretch in facts["unstable"]), "bad")
     (unit, factor), *_ = speeds.items()
-    ends: Columns = {
-        f"at {factor * rate:.4g} {raised(unit)}, Hz{' ' * k}": f"frequency.{k - 1}" for k, rate in ((1, low), (0, high))
-    }
+    ends: Columns = {}
+    for speed_at_end, path, space in ((low, "frequency.0", " "), (high, "frequency.-1", "")):
+        ends[f"at {factor * speed_at_end:.4g} {raised(unit)}, Hz{space}"] = path
     ends |= {GROUND: "ground_frequency.-1"}
     cells: Columns = {"mode": "number", "along": "direction", **ends, **ERROR}
-    tracks = table(numbered(facts["tracks"]), cells, optional=(GROUND,))
+    tracks = table(number_rows(facts["tracks"]), cells, optional=(GROUND,))
     yield Section("Modes", (tracks, *framed(facts), *noted(facts)))
     crossings: Columns = {
         "mode": lambda row: row["track"] + 1,
@@ -214,11 +218,14 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     yield Section("Crossings", (table(facts["crossings"], crossings), *remark))
 
 
-def _stretch(each: Facts, speeds: Mapping[str, float]) -> str:
+def _stretch(stretch: Facts, speeds: Mapping[str, float]) -> str:
     """Words for a stretch of speed in which the equilibrium is not stable."""
-    ends = ", ".join(f"{number(k * each['start'])} to {number(k * each['end'])} {unit}" for unit, k in speeds.items())
-    growth = each["growth"]
-    return f"{ends}: {'no equilibrium' if growth is None else f'not stable, growing with up to {number(growth)} 1/s'}"
+    ends = ", ".join(
+        f"{number(k * stretch['start'])} to {number(k * stretch['end'])} {unit}" for unit, k in speeds.items()
+    )
+    if stretch["growth"] is None:
+        return f"{ends}: no equilibrium"
+    return f"{ends}: not stable, growing with up to {number(stretch['growth'])} 1/s"
 
 
 GROUND = "in the ground frame, Hz"
@@ -258,7 +265,7 @@ def critical_map(facts: Facts) -> Blocks:
     """Table of the hub rates at which the equilibrium is lost, by the size and the position of one more mass."""
     speed, errors_by_source = facts["critical_speed"], facts.get("errors", {})
     masses = {f"{mass:.4g} kg": f"{k}:.5f" for k, mass in enumerate(facts["mass"], 1)}
-    yield where(facts)
+    yield subject_sentence(facts)
     rows = zip(facts["position"], *speed, strict=True)
     yield table(rows, {"at, m": "0:.4g"} | masses, "Critical hub rate, rad/s, with one more mass")
     if any(None in rates for rates in speed):
@@ -278,29 +285,32 @@ def state_space(facts: Facts) -> Blocks:
     """Report of a state space: its signals, accuracy of the poles, a loop's margins, and what a
     reduction leaves out.
     """
-    yield where(facts, f"{len(facts['states'])} states")
-    yield from evenly(facts)
+    yield subject_sentence(facts, f"{len(facts['states'])} states")
+    yield from acceleration_sentence(facts)
     signals = ("states", "inputs", "outputs")
     # Angles are of the scale of a radian, beams' coordinates, which have no unit, of that of lengths.
     sizes = {"rad": 1.0}
-    for signal in (row for name in signals for row in facts[name]):
-        sizes[signal["unit"]] = max(sizes.get(signal["unit"], 0.0), abs(signal["value"]))
+    for name in signals:
+        for signal in facts[name]:
+            sizes[signal["unit"]] = max(sizes.get(signal["unit"], 0.0), abs(signal["value"]))
     cells: Columns = {
         "name": "name",
-        "unit": lambda each: raised(each["unit"]),
-        "at equilibrium": lambda each: tidy((each["value"],), sizes[each["unit"]], max(1.0, sizes.get("m", 0.0)))[0],
+        "unit": lambda signal: raised(signal["unit"]),
+        "at equilibrium": lambda signal: tidy((signal["value"],), sizes[signal["unit"]], max(1.0, sizes.get("m", 0.0)))[
+            0
+        ],
     }
     for name in signals:
         yield Section(name, (table(facts[name], cells),), titled=True)
     gauges: Columns = {
-        "gauge": lambda each: f"strain_{each['number']}",
-        "at": lambda each: ", ".join(filter(None, (each["body"], _station(each["at"])))),
-        "fibre y, mm": lambda each: None if isinstance(each["at"], str) else 1e3 * each["y"],
-        "fibre z, mm": lambda each: None if isinstance(each["at"], str) else 1e3 * each["z"],
-        "along": lambda each: "({:g}, {:g}, {:g})".format(*each["along"]),
+        "gauge": lambda gauge: f"strain_{gauge['number']}",
+        "at": lambda gauge: ", ".join(filter(None, (gauge["body"], _station(gauge["at"])))),
+        "fibre y, mm": lambda gauge: None if isinstance(gauge["at"], str) else 1e3 * gauge["y"],
+        "fibre z, mm": lambda gauge: None if isinstance(gauge["at"], str) else 1e3 * gauge["z"],
+        "along": lambda gauge: "({:g}, {:g}, {:g})".format(*gauge["along"]),
     }
-    names = {each["name"] for each in facts["outputs"]}
-    used = [each for each in numbered(facts.get("gauges", ())) if f"strain_{each['number']}" in names]
+    names = {output["name"] for output in facts["outputs"]}
+    used = [gauge for gauge in number_rows(facts.get("gauges", ())) if f"strain_{gauge['number']}" in names]
     yield table(used, gauges, "Gauges", optional=("fibre y, mm", "fibre z, mm"))
     yield from framed(facts)
     yield from _accuracy(facts)
@@ -313,8 +323,8 @@ def state_space(facts: Facts) -> Blocks:
     yield Sentence("--json prints the matrices, --out writes them for MATLAB too.", "faint")
 
 
-def _station(at: float | str) -> str:
-    return at if isinstance(at, str) else f"{at:g} m"
+def _station(station: float | str) -> str:
+    return station if isinstance(station, str) else f"{station:g} m"
 
 
 def _accuracy(facts: Facts) -> Blocks:
@@ -330,8 +340,8 @@ def _accuracy(facts: Facts) -> Blocks:
         worst, end = percent(float(totals[:accurate].max())), facts["accurate_to"]
         words.append(f"frequencies accurate to {worst} up to {number(end)} Hz ({accurate} of {len(totals)})")
     if accurate < len(totals):
-        beyond = totals[accurate:][np.isfinite(totals[accurate:])]
-        error = f"up to {percent(float(beyond.max()))} off" if len(beyond) else "not judged"
+        others = totals[accurate:][np.isfinite(totals[accurate:])]
+        error = f"up to {percent(float(others.max()))} off" if len(others) else "not judged"
         words.append(f"{'higher ones' if accurate else 'frequencies'} {error}")
     reference = "the model with more modes"
     if any(pole_errors.get("beam_theory") is not None for pole_errors in errors):

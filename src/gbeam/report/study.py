@@ -22,7 +22,7 @@ from gbeam.report.blocks import (
     Place,
     Section,
     Sentence,
-    named,
+    name_rows,
     quantities,
     table,
 )
@@ -45,11 +45,11 @@ from gbeam.report.machine import (
     limits,
     not_followed_stretches,
     peak_lines,
-    said,
     tracked,
     verdict,
+    verdict_sections,
 )
-from gbeam.report.words import angle_words, errors_in_words, known, largest_loads, number, percent, sentence, tidy
+from gbeam.report.words import angle_words, errors_in_words, float_of, largest_loads, number, percent, sentence, tidy
 from gbeam.results.accounting import in_g, metres, seconds
 from gbeam.results.accounting import percent as share_of
 from gbeam.results.body_response import BodyResponse
@@ -59,7 +59,7 @@ from gbeam.results.errors import ErrorEstimate
 from gbeam.results.facts import facts_of
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
-from gbeam.results.system import named as named_histories
+from gbeam.results.system import joint_histories
 
 ROUNDING = 1e-9  # of what it belongs to: a smaller number is none
 EPISODES = 8  # of holding listed; a rough record has hundreds
@@ -73,7 +73,7 @@ def response_lines(response: Response) -> Iterator[str]:
         if response.initial:
             yield response.initial
     free_hub = response.hub is not None and response.base is None  # freely: the hub's line has its coordinate
-    joints = {} if free_hub else named_histories(response)
+    joints = {} if free_hub else joint_histories(response)
     if joints:
         yield f"at the end {_at_end(response, joints)}"
     if response.loop is not None:
@@ -165,7 +165,7 @@ def _of_largest(error: ErrorEstimate, what: str) -> str:
 def _damping(body: BodyResponse) -> str:
     """Modes that the damping ratio is of, where that is not obvious: with a free hub the beam's modes are others."""
     ratios = np.atleast_1d(body.damping_ratio)
-    size = " to ".join(f"{100 * each:.3g}" for each in sorted({float(ratios.min()), float(ratios.max())}))
+    size = " to ".join(f"{100 * ratio:.3g}" for ratio in sorted({float(ratios.min()), float(ratios.max())}))
     return f"damping {size} % of critical, of the modes of the beam on a hub at rest; those with the free hub have more"
 
 
@@ -214,21 +214,21 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
         )
     if comparison.fatigue is not None and math.isfinite(comparison.fatigue.damage_ratio):
         fatigue = comparison.fatigue
-        in_flight, machine = (1e-6 * each.largest for each in (fatigue.flight, fatigue.machine))
+        in_flight, machine = (1e-6 * cycles.largest for cycles in (fatigue.flight, fatigue.machine))
         yield (
             f"stress cycles {fatigue.place} up to {in_flight:.4g} MPa in flight, {machine:.4g} MPa on the centrifuge: "
             + f"{number(fatigue.damage_ratio, 3)} times flight's damage (Wöhler exponent {fatigue.exponent:g})"
         )
     if comparison.shock is not None and comparison.shock.extremes:
-        least, most = sorted(comparison.shock.extremes, key=lambda each: each.ratio)
-        written = RULES["srs"].written
+        least, most = sorted(comparison.shock.extremes, key=lambda extreme: extreme.ratio)
+        write = RULES["srs"].write
         yield (
-            f"shock response spectra of {comparison.shock.control} on the centrifuge {written(least.ratio)} {least} to "
-            f"{written(most.ratio)} {most}, beside flight's"
+            f"shock response spectra of {comparison.shock.control} on the centrifuge {write(least.ratio)} {least} to "
+            f"{write(most.ratio)} {most}, beside flight's"
         )
     if comparison.stations is not None:
-        both = comparison.stations.flight, comparison.stations.centrifuge
-        flight, centrifuge = (1e3 * sizes.residual[comparison.stations.tip, main] for sizes in both)
+        environments = comparison.stations.flight, comparison.stations.centrifuge
+        flight, centrifuge = (1e3 * sizes.residual[comparison.stations.tip, main] for sizes in environments)
         yield (
             f"elastic vibration of the tip {flight:.3g} mm in flight, {centrifuge:.3g} mm on the centrifuge "
             f"(above {comparison.stations.cutoff:.3g} Hz, zero phase)"
@@ -253,10 +253,10 @@ def study(facts: Facts) -> Blocks:
     yield Section("Motion", (Place("viewer"),))
     yield Section("Histories", (Place("figures", HINT),))
     yield Section("Arm", (levels(motions), balance(motions)))
-    alone = {name: body for name, body in bodies.items() if not several(body["of"])}
+    single = {name: body for name, body in bodies.items() if not several(body["of"])}
     response = (
         _tips(bodies, head),
-        stations_table(alone),
+        stations_table(single),
         loads_table(bodies, head),
         supports_table(bodies, head),
         *parts_tables(bodies, head),
@@ -283,7 +283,7 @@ _TOLD = ("points", "coordinates", "bodies", "errors", "limits", "name", "environ
 
 def _of_joints(motion: Facts, units: dict[str, str]) -> Blocks:
     """Coordinates of several bodies at the end, and all else, for a page only."""
-    yield table(named(motion["coordinates"]), {"coordinate": "name", "at the end, m or rad": "end"}, detail=True)
+    yield table(name_rows(motion["coordinates"]), {"coordinate": "name", "at the end, m or rad": "end"}, detail=True)
     others = {key: value for key, value in motion.items() if key not in _TOLD}
     yield Section("", tuple(quantities(others, units)), detail=True)
 
@@ -309,8 +309,10 @@ def _of_records(facts: Facts) -> Block:
     files = {record["motion"]: Path(record["file"]).name for record in records}
 
     def verdict_of(compared: Facts) -> Cell:
-        kept = all(criterion["passed"] for criterion in compared["criteria"])
-        return Cell(compared["verdict"], ("good" if compared["criteria"] else "") if kept else "bad")
+        criteria = compared["criteria"]
+        if not all(criterion["passed"] for criterion in criteria):
+            return Cell(compared["verdict"], "bad")
+        return Cell(compared["verdict"], "good" if criteria else "")
 
     cells: Columns = {
         "flight": lambda comparison: level_words(comparison["flight"], comparison.get("scale")),
@@ -323,7 +325,7 @@ def _of_records(facts: Facts) -> Block:
 
 def compared_in(facts: Facts) -> set[str]:
     """Names of the motions that verdicts are on."""
-    return {each[key] for each in facts["comparisons"] for key in ("flight", "centrifuge")}
+    return {comparison[key] for comparison in facts["comparisons"] for key in ("flight", "centrifuge")}
 
 
 def in_words_of(facts: Facts) -> Blocks:
@@ -331,8 +333,8 @@ def in_words_of(facts: Facts) -> Blocks:
     compared = compared_in(facts)
     for name, run in facts["motions"].items():
         kind = run.get("environment", name)
-        named = level_words(name, run.get("scale")) if kind == "flight" else name
-        title = f"{named}{'' if kind == name else f' ({kind})'}: {run['outcome']}"
+        flight_name = level_words(name, run.get("scale")) if kind == "flight" else name
+        title = f"{flight_name}{'' if kind == name else f' ({kind})'}: {run['outcome']}"
         folded, tone = (title, "good") if run["outcome"] == "done" else ("", "bad")
         message = (Sentence(sentence(run["message"]), "bad"),) if run.get("message") else ()
         limits_used = (limits(run),) if "limits" in run else ()
@@ -341,7 +343,7 @@ def in_words_of(facts: Facts) -> Blocks:
         yield Section(title, blocks, titled=True, folded=folded, tone=tone, verbose=verbose)
     several = len(facts["comparisons"]) > 1
     for comparison in facts["comparisons"]:
-        yield from said(comparison, comparison["centrifuge"] if several else "")
+        yield from verdict_sections(comparison, comparison["centrifuge"] if several else "")
 
 
 def _tips(bodies: Facts, head: str) -> Block:
@@ -350,7 +352,7 @@ def _tips(bodies: Facts, head: str) -> Block:
     for name, body in bodies.items():
         if tip_is_held(body):
             continue
-        sizes = {axis: known(peak["max_abs"]) for axis, peak in body["tip"].items()}
+        sizes = {axis: float_of(peak["max_abs"]) for axis, peak in body["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.
         axes = [axis for axis, size in sizes.items() if size > ROUNDING * max(sizes.values())]
         shown_axes = [axis for axis in axes if axis != "size" or len(axes) > 2]
@@ -369,19 +371,19 @@ def _tips(bodies: Facts, head: str) -> Block:
 def model_study(facts: Facts) -> Blocks:
     """Table with a row for each motion and model, and remarks on rows that have no answer or may be doubted."""
 
-    def written(key: str, form: str, scale: float = 1.0) -> Column:
+    def formatted(key: str, form: str, scale: float = 1.0) -> Column:
         return lambda row: "–" if row[key] is None else _signed(format(scale * row[key], form))
 
     cells: Columns = {
         "motion": lambda row: f"{row['motion']}, {facts['direction'][row['motion']]}",
         "model": "model",
         "outcome": lambda row: Cell(row["outcome"], "" if row["outcome"] == "done" else "bad"),
-        "peak, mm": written("peak", ".5g", 1e3),
-        "error": written("peak_error", "+.2%"),
-        "residual, mm": written("residual", ".4g", 1e3),
-        "error ": written("residual_error", "+.2%"),
-        "phase, rad": written("phase", "+.4f"),
-        "seconds": written("seconds", ".2f"),
+        "peak, mm": formatted("peak", ".5g", 1e3),
+        "error": formatted("peak_error", "+.2%"),
+        "residual, mm": formatted("residual", ".4g", 1e3),
+        "error ": formatted("residual_error", "+.2%"),
+        "phase, rad": formatted("phase", "+.4f"),
+        "seconds": formatted("seconds", ".2f"),
     }
     yield table(facts["rows"], cells)
     remarks = []

@@ -26,17 +26,17 @@ LARGEST_WRITTEN = 1e6  # from here on numbers have an exponent
 
 def as_json(value: Any) -> str:
     """Write a value as JSON, with null for what is not finite, which JSON has no word for."""
-    return json_printable(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
+    return json_printable(json.dumps(json_value(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def plain(value: Any) -> Any:
+def json_value(value: Any) -> Any:
     """Return a value as JSON has it: None for what is not finite, and functions called for their value."""
     if callable(value):  # what takes time to find, and is not always printed
-        return plain(value())
+        return json_value(value())
     if isinstance(value, Mapping):
-        return {key: plain(entry) for key, entry in value.items()}
+        return {key: json_value(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(entry) for entry in value]
+        return [json_value(entry) for entry in value]
     if isinstance(value, float):  # numpy's float64 is one
         return float(value) if math.isfinite(value) else None
     return value
@@ -47,12 +47,12 @@ def terminal_width() -> int:
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
 
 
-def known(value: float | None) -> float:
+def float_of(value: float | None) -> float:
     """Return a number of JSON as a float: NaN for null."""
     return math.nan if value is None else float(value)
 
 
-def columns(heads: list[str], rows: list[list[str]], left: Collection[int] = (0,)) -> list[str]:
+def columns(heads: list[str], rows: list[list[str]], flush_left: Collection[int] = (0,)) -> list[str]:
     """Return the lines of a table. Columns are flush right, except those of the indices `left`.
 
     If the terminal is narrow, each cell has a line of its own.
@@ -66,10 +66,11 @@ def columns(heads: list[str], rows: list[list[str]], left: Collection[int] = (0,
             cells = zip(heads[1:], others, strict=True)
             folded += [first, *(f"  {head:<{head_width}}  {cell}" for head, cell in cells if cell)]
         return folded
-    return [
-        "  ".join(f"{cell:{'<' if k in left else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip()
-        for row in [heads, *rows]
-    ]
+    forms = [f"{'<' if k in flush_left else '>'}{width}" for k, width in enumerate(widths)]
+    lines = []
+    for row in [heads, *rows]:
+        lines.append("  ".join(f"{cell:{form}}" for cell, form in zip(row, forms, strict=True)).rstrip())
+    return lines
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -88,10 +89,10 @@ def percent(share: float) -> str:
 
 def errors_in_words(errors: Mapping[str, float | None]) -> str:
     """An error with what it is made of, the largest first: ``0.29 % (model 0.27, shapes 0.01, step 0.002)``."""
-    parts = {name.replace("_", " "): known(size) for name, size in errors.items() if name not in WHOLE}
+    parts = {name.replace("_", " "): float_of(size) for name, size in errors.items() if name not in WHOLE}
     ranked = sorted(((size, name) for name, size in parts.items() if size > rounding(0.0, 1.0)), reverse=True)
     shares = ", ".join(f"{name} {percent(size).removesuffix(' %')}" for size, name in ranked)
-    return f"{percent(known(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"
+    return f"{percent(float_of(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"
 
 
 def rounding(size: float, scale: float = 0.0) -> float:
@@ -144,10 +145,10 @@ def sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def along(direction: ArrayLike) -> str:
+def axis_words(direction: ArrayLike) -> str:
     """Return the word for a direction (3,): +x where it lies along an axis, else its components."""
     components = np.asarray(direction, dtype=float)
     largest = int(np.abs(components).argmax())
     if abs(abs(components[largest]) - 1) < ALONG:
         return f"{'-' if components[largest] < 0 else '+'}{'xyz'[largest]}"
-    return f"({', '.join(f'{each:.3g}' for each in tidy(components.tolist(), 1.0))})"
+    return f"({', '.join(f'{component:.3g}' for component in tidy(components.tolist(), 1.0))})"

@@ -165,7 +165,7 @@ class PeakPair(Part):
 _TIMES = 3.0  # from here on a ratio says more than a change of so many per cent
 
 
-def against(accounting: Accounting) -> str:
+def tolerance_words(accounting: Accounting) -> str:
     """Write the difference from the flight's load within which it counts as followed."""
     share = percent(accounting.tolerance)
     if accounting.tolerance_of == "instant":
@@ -198,12 +198,12 @@ def change(ratio: float) -> str:
     return f"{share:+.0f} %" if abs(share) >= 10 else f"{share:+.1f} %"
 
 
-def percent(share: float, *, up: bool = False) -> str:
+def percent(share: float, *, ceiling: bool = False) -> str:
     """Write a share with two digits and no exponent; rounded `up` where it is a bound."""
     if not math.isfinite(share):
         return "an unknown share"
     value = 100 * share
-    if up and value > 0:
+    if ceiling and value > 0:
         unit = 10.0 ** (math.floor(math.log10(value)) - 1)
         value = math.ceil(value / unit - 1e-9) * unit
     return f"{float(f'{value:.2g}'):g} %"

@@ -79,8 +79,8 @@ class BodyResponse(Part):
         peaks = self.peaks.displacement
         if peaks is None:
             return {}
-        named = [(k, name) for k, name in enumerate(self.points) if name.isidentifier() and name != "tip"]
-        return {name: peaks[k] for k, name in named}
+        indices = [(k, name) for k, name in enumerate(self.points) if name.isidentifier() and name != "tip"]
+        return {name: peaks[k] for k, name in indices}
 
     @property
     def tip(self) -> Floats:

@@ -152,21 +152,22 @@ class Sweep(Figured[str]):
     @declared("", "estimates by name with their bounds; lists along the grid", role="fact", key="statistics")
     def estimates(self) -> Mapping[str, Mapping[str, Any]]:
         """Every estimate by name with its bounds; lists along the grid, and along the times of a history."""
-        return {
-            name: {"draws": statistics.count, **{kind: _bounds(statistics[kind]) for kind in statistics.names}}
-            for name, statistics in self.statistics.items()
-        }
+        estimates: dict[str, dict[str, Any]] = {}
+        for name, statistics in self.statistics.items():
+            bounds = {kind: _bounds(statistics[kind]) for kind in statistics.names}
+            estimates[name] = {"draws": statistics.count, **bounds}
+        return estimates
 
     @declared("", "Sobol indices by measure, parameter and order; lists along the grid", role="fact", key="indices")
     def shares(self) -> Mapping[str, Mapping[str, Any]]:
         """First and total index of every parameter with its bounds; lists along the grid."""
-        return {
-            name: {
-                path: {order: _bounds(indices.values[..., k, i, :]) for i, order in enumerate(ORDERS)}
-                for k, path in enumerate(indices.parameters)
-            }
-            for name, indices in self.indices.items()
-        }
+        shares: dict[str, dict[str, Any]] = {}
+        for name, indices in self.indices.items():
+            shares[name] = {}
+            for k, path in enumerate(indices.parameters):
+                orders = indices.values[..., k, :, :]
+                shares[name][path] = {order: _bounds(orders[..., i, :]) for i, order in enumerate(ORDERS)}
+        return shares
 
     @declared("", "dimensions of every list", role="fact")
     def dimensions(self) -> tuple[str, ...]:
@@ -185,14 +186,14 @@ class Sweep(Figured[str]):
         return np.isin(self.outcome.astype(str), ("done", *ANSWERED))
 
     @property
-    def lost(self) -> int:
+    def failures(self) -> int:
         """Number of cases that are not computed to the end."""
         return int((~self.computed).sum())
 
     @property
     def state(self) -> str:
         """Outcome of the sweep: done, some cases failed, or some cases not accepted."""
-        if self.lost:
+        if self.failures:
             return "some cases failed"
         return "done" if set(self.counts) <= {"done"} else "some cases not accepted"
 
@@ -281,10 +282,11 @@ class Sensitivity(Figured[str]):
     @declared("", "figures, and the parameters that matter most to each first", "measure", role="rows", name=None,
               key="measures")  # fmt: skip
     def effects(self) -> Mapping[str, Effects]:
-        return {
-            name: Effects(float(self.figures[k]), self.units[k], tuple(self._effect(k, j) for j in self.ranked(name)))
-            for k, name in enumerate(self.measures)
-        }
+        answers = {}
+        for k, name in enumerate(self.measures):
+            effects = tuple(self._effect(k, j) for j in self.ranked(name))
+            answers[name] = Effects(float(self.figures[k]), self.units[k], effects)
+        return answers
 
     def _effect(self, k: int, j: int) -> Effect:
         """Effect of parameter j on measure k."""

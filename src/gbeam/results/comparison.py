@@ -184,7 +184,7 @@ class MachinePlan(Worded, Driven, Figured[AxesFigure]):
     @property
     def words(self) -> Verdict:
         """The verdict as words are made of it."""
-        return Verdict(self, exceeded=self.axes.beyond, scale=self.scale)
+        return Verdict(self, exceeded=self.axes.largest_excess, scale=self.scale)
 
     @declared("", "the outcome, with what limits make of it", role="fact", name=None)
     def state(self) -> str:
@@ -203,9 +203,9 @@ class MachinePlan(Worded, Driven, Figured[AxesFigure]):
         if error.size:
             first, last = self.axes.span
             flown = (self.time >= first) & (self.time <= last)  # without spin-up and spin-down
-            aside = float(self.axes.not_followed[flown].mean()) if flown.any() else 0.0
-            other = f"another than the flight's load for {aside:.0%} of the flight"
-            lines.append(f"target followed within {in_g(error.max())}, {other}")
+            share = float(self.axes.not_followed[flown].mean()) if flown.any() else 0.0
+            remark = f"another than the flight's load for {share:.0%} of the flight"
+            lines.append(f"target followed within {in_g(error.max())}, {remark}")
         return "\n  ".join(lines)
 
 

@@ -74,15 +74,17 @@ class Judged:
     def figures(self) -> dict[str, float]:
         """Value of every criterion that can be judged, by its name."""
         rules = (rule for rule in RULES.values() if self.with_response or not rule.response)
-        return {rule.name: rule.worst(self, rule.bounds(rule.usual))[0] for rule in rules}
+        return {rule.name: rule.governing_value(self, rule.bounds(rule.usual))[0] for rule in rules}
 
     @declared("", "limits that can be judged", "criterion", role="rows", name="criterion_")
     def criteria(self) -> tuple[Criterion, ...]:
-        return tuple(
-            Criterion(name, self.accept[name], *rule.worst(self, rule.bounds(self.accept[name])), point=self.point)
-            for name, rule in RULES.items()
-            if name in self.accept and name not in self.not_judged
-        )
+        criteria = []
+        for name, rule in RULES.items():
+            if name in self.accept and name not in self.not_judged:
+                limit = self.accept[name]
+                value, where = rule.governing_value(self, rule.bounds(limit))
+                criteria.append(Criterion(name, limit, value, where, self.point))
+        return tuple(criteria)
 
     @declared("", "limits that need a response, where there is none", role="fact", name=None)
     def not_judged(self) -> tuple[str, ...]:
@@ -103,20 +105,22 @@ class Judged:
         """PASS; NOT ACCEPTED where a limit is not kept; else NOT DECIDED where a value is not known; empty where none
         can be judged.
         """
-        kept = [each.passed for each in self.criteria]
-        if False in kept:
+        verdicts = [criterion.passed for criterion in self.criteria]
+        if False in verdicts:
             return NOT_ACCEPTED
-        return NOT_DECIDED if None in kept else PASS if kept else ""
+        if None in verdicts:
+            return NOT_DECIDED
+        return PASS if verdicts else ""
 
     @property
     def refusal(self) -> str:
         """The limits that are not kept, or else those whose values are not known, in words; empty where accepted."""
-        missed = {NOT_ACCEPTED: False, NOT_DECIDED: None}.get(self.decision, 0)
-        return ", ".join(str(each) for each in self.criteria if each.passed is missed)
+        verdict = {NOT_ACCEPTED: False, NOT_DECIDED: None}.get(self.decision, 0)
+        return ", ".join(str(criterion) for criterion in self.criteria if criterion.passed is verdict)
 
 
 def state_of(
-    outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, kept: Sequence[bool | None] = ()
+    outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, verdicts: Sequence[bool | None] = ()
 ) -> str:
     """Return the verdict on an answer, or its outcome where nothing is decided; only :data:`GOOD` ones are good.
 
@@ -125,7 +129,7 @@ def state_of(
     if outcome not in ("done", BROKEN):
         return outcome
     decisions = [imitation.decision for imitation in imitations]
-    if False in kept or NOT_ACCEPTED in decisions:
+    if False in verdicts or NOT_ACCEPTED in decisions:
         return NOT_ACCEPTED
     if NOT_DECIDED in decisions:
         return NOT_DECIDED
@@ -133,7 +137,7 @@ def state_of(
         return EXCEEDED
     # A part of a flight, or one of which some limits are not judged, passes nothing.
     passed = any(imitation.accepted and not imitation.not_judged and not imitation.part for imitation in imitations)
-    state = PASS if passed or True in kept else "done"
+    state = PASS if passed or True in verdicts else "done"
     main_peaks = [imitation.accounting.main for imitation in imitations]
     missed = any(peak is not None and peak.reason for peak in main_peaks)
     return f"{state}, largest peak missed" if missed else state
@@ -191,11 +195,11 @@ class Rule:
             return limit, math.inf
         return (1 / limit, limit) if self.band else (-limit, limit)
 
-    def worst(self, judged: Judged, bounds: tuple[float, float]) -> Value:
+    def governing_value(self, judged: Judged, bounds: tuple[float, float]) -> Value:
         """Return the value nearest to its bound or furthest beyond it, and where; NaN, and why, if none is known."""
         values = [*self.values(judged), (math.nan, "")]
-        known = (value for value in values if not math.isnan(value[0]))
-        return max(known, key=lambda value: self.use(value[0], bounds), default=values[0])
+        finite_values = (value for value in values if not math.isnan(value[0]))
+        return max(finite_values, key=lambda value: self.use(value[0], bounds), default=values[0])
 
     def use(self, value: float, bounds: tuple[float, float]) -> float:
         """Return the share of its bounds that a value uses: 1 on a bound, more beyond it."""
@@ -208,7 +212,7 @@ class Rule:
             return math.inf
         return math.log(value) / math.log(high if value > 1 else low)
 
-    def written(self, value: float) -> str:
+    def write(self, value: float) -> str:
         """Write a value with its unit: dB of a level, % of a share, none of a ratio."""
         if not math.isfinite(value):
             return "unknown"
@@ -220,10 +224,10 @@ class Rule:
         """Write a limit, or the least and the largest value, with the unit."""
         if not isinstance(limit, tuple):
             if not self.band:
-                return f"limit {self.written(limit)}{' or more' if self.kind == 'least' else ''}"
+                return f"limit {self.write(limit)}{' or more' if self.kind == 'least' else ''}"
             if self.kind == "level":
                 return f"limit ±{_decibels(limit):.3g} dB"
-        return f"limit {' to '.join(self.written(end) for end in self.bounds(limit))}"
+        return f"limit {' to '.join(self.write(end) for end in self.bounds(limit))}"
 
 
 @dataclass(frozen=True)
@@ -267,26 +271,26 @@ class Criterion:
         return RULES[self.name].use(self.value, self.bounds)
 
     @property
-    def written(self) -> str:
+    def value_words(self) -> str:
         """The value in words."""
         return self.number + " of the time" * (self.name == "followed")
 
     @property
     def number(self) -> str:
         """Value, with as many digits as show on which side of its limit it lies."""
-        rule, size = RULES[self.name], 100 * self.value
-        if rule.band or not math.isfinite(size):
-            return rule.written(self.value)
+        rule, percentage = RULES[self.name], 100 * self.value
+        if rule.band or not math.isfinite(percentage):
+            return rule.write(self.value)
         sign = "+" if rule.kind == "most" and self.name != "peaks" else ""
-        if abs(size) < 0.05 and self.passed and self.bounds[1] >= 1e-3:
+        if abs(percentage) < 0.05 and self.passed and self.bounds[1] >= 1e-3:
             return "under 0.1 %"
         low, high = self.bounds
-        first = 0 if abs(size) >= 10 else 1
-        texts = (f"{size:{sign}.{digits}f}" for digits in range(first, first + 8))
-        return (
-            next((text for text in texts if (low <= float(text) / 100 <= high) == self.passed), f"{size:{sign}g}")
-            + " %"
-        )
+        least_digits = 0 if abs(percentage) >= 10 else 1
+        for digits in range(least_digits, least_digits + 8):
+            text = f"{percentage:{sign}.{digits}f}"
+            if (low <= float(text) / 100 <= high) == self.passed:
+                return f"{text} %"
+        return f"{percentage:{sign}g} %"
 
     @property
     def limit_written(self) -> str:
@@ -297,13 +301,13 @@ class Criterion:
     def brief(self) -> str:
         """The value and the limit on its side, without where and when that is."""
         rule, nearest = RULES[self.name], self.bounds[self.value > 1]
-        limit = f"limit {rule.written(nearest)}" if rule.band else self.limit_written
+        limit = f"limit {rule.write(nearest)}" if rule.band else self.limit_written
         where = f" {self.where}" if math.isinf(self.value) else ""
-        return f"{self.words} {self.written}{where} ({limit})"
+        return f"{self.words} {self.value_words}{where} ({limit})"
 
     def __str__(self) -> str:
         where = f" {self.where}" if self.where else ""
-        return f"{self.words} {self.written}{where} ({self.limit_written})"
+        return f"{self.words} {self.value_words}{where} ({self.limit_written})"
 
 
 def in_words(name: str) -> str:
@@ -321,21 +325,21 @@ def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, An
     return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
 
 
-def refuse_unknown(where: str, limits: Iterable[str]) -> None:
+def refuse_unknown(table: str, limits: Iterable[str]) -> None:
     """InputError unless every name is a limit of acceptance or one of their settings."""
     for name in limits:
         if name not in Acceptance.__annotations__:
-            raise InputError(f"{where}.{name}", "is no limit of acceptance", advise(name, Acceptance.__annotations__))
+            raise InputError(f"{table}.{name}", "is no limit of acceptance", advise(name, Acceptance.__annotations__))
 
 
-def refuse_lacking(where: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
+def refuse_lacking(table: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
     """InputError for a limit on a quantity that the specimen lacks; `lacking` says by quantity why it lacks it."""
     for name in limits:
         rule = RULES.get(name)
         if rule is not None and rule.needs in lacking:
-            others = ", ".join(other.name for other in RULES.values() if other.needs not in lacking)
+            others = ", ".join(alternative.name for alternative in RULES.values() if alternative.needs not in lacking)
             raise InputError(
-                f"{where}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {others}"
+                f"{table}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {others}"
             )
 
 

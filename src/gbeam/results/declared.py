@@ -81,7 +81,7 @@ def quantity(
     dim_names, json_key = _placed(dims, key)
     declaration = Declaration(words, unit, dim_names, role, name, json_key, note, frame, flags, optional)
     if empty:
-        default["default_factory"] = lambda: _empty(declaration.dims)
+        default["default_factory"] = lambda: _empty_array(declaration.dims)
     return dataclasses.field(metadata={_METADATA: declaration}, **default)
 
 
@@ -97,30 +97,30 @@ def _placed(dims: tuple[str, ...], key: str | EllipsisType | None) -> tuple[tupl
     return names, None if _HISTORIES & set(names) else ""
 
 
-def _empty(dims: tuple[str, ...]) -> Any:
+def _empty_array(dims: tuple[str, ...]) -> Any:
     import numpy as np  # which reading a scenario needs not
 
     return np.empty([_SIZES.get(dim, 0) for dim in dims])
 
 
-def fact(words: str, unit: str = "", **more: Any) -> Any:
+def fact(words: str, unit: str = "", **options: Any) -> Any:
     """Declare a field that is one word, number or truth: an attribute of a file."""
-    return quantity(unit, words, role="fact", **more)
+    return quantity(unit, words, role="fact", **options)
 
 
-def part(words: str, *dims: str, unit: str = "", **more: Any) -> Any:
+def part(words: str, *dims: str, unit: str = "", **options: Any) -> Any:
     """Declare a field that is another record."""
-    return quantity(unit, words, *dims, role="part", **more)
+    return quantity(unit, words, *dims, role="part", **options)
 
 
-def rows(words: str, dim: str, units: dict[str, str] | None = None, **more: Any) -> Any:
+def rows(words: str, dim: str, units: dict[str, str] | None = None, **options: Any) -> Any:
     """Declare a field that is a tuple of records, one for each place along a dimension of its own, or a mapping."""
-    return quantity(units or "", words, dim, role="rows", **more)
+    return quantity(units or "", words, dim, role="rows", **options)
 
 
-def labels(words: str, *dim: str, key: str | None = None, **more: Any) -> Any:
+def labels(words: str, *dim: str, key: str | None = None, **options: Any) -> Any:
     """Declare a field that is a tuple of words, the names of the places along a dimension; of a row its own name."""
-    return quantity("", words, *dim, role="labels", key=key, **more)
+    return quantity("", words, *dim, role="labels", key=key, **options)
 
 
 class Declared(property, Generic[_T]):
@@ -160,17 +160,23 @@ def declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
 
 @cache
 def _declarations(kind: type) -> tuple[tuple[str, Declaration], ...]:
-    fields = ((each.name, each.metadata.get(_METADATA)) for each in dataclasses.fields(kind))
-    values = ((name, value) for base in reversed(kind.__mro__) for name, value in vars(base).items())
-    properties = ((name, value.declaration) for name, value in values if isinstance(value, Declared))
-    return (*((name, each) for name, each in fields if each is not None), *properties)
+    declared_fields = []
+    for field in dataclasses.fields(kind):
+        declaration = field.metadata.get(_METADATA)
+        if declaration is not None:
+            declared_fields.append((field.name, declaration))
+    properties = []
+    for base in reversed(kind.__mro__):
+        properties += [(name, value.declaration) for name, value in vars(base).items() if isinstance(value, Declared)]
+    return (*declared_fields, *properties)
 
 
 def along_time(record: Any) -> dict[str, Any]:
     """Return the arrays of a record that stand along time, by the name of their field."""
-    fields = {each.name for each in dataclasses.fields(record)}
-    histories = (name for name, each in declarations(type(record)) if name in fields and each.dims[:1] == ("time",))
-    return {name: getattr(record, name) for name in histories if getattr(record, name) is not None}
+    fields = {field.name for field in dataclasses.fields(record)}
+    dims = {name: declaration.dims for name, declaration in declarations(type(record)) if name in fields}
+    histories = {name: getattr(record, name) for name in dims if dims[name][:1] == ("time",)}
+    return {name: history for name, history in histories.items() if history is not None}
 
 
 def parameters(kind: type) -> str:
@@ -191,16 +197,16 @@ def document(kind: type) -> None:
     text = kind.__doc__ or ""
     section = parameters(kind)
     if "Parameters\n" not in text and section.count("\n") > 1:
-        above, examples, below = text.partition("    Examples\n")
+        start, examples, end = text.partition("    Examples\n")
         section = textwrap.indent(section, "    ")
-        kind.__doc__ = f"{above.rstrip()}\n\n{section}\n" + (f"\n{examples}{below}" if examples else "")
+        kind.__doc__ = f"{start.rstrip()}\n\n{section}\n" + (f"\n{examples}{end}" if examples else "")
 
 
 def _type_words(annotation: str, declaration: Declaration) -> str:
     """Type of a field as docstrings have it: shape, kind and unit."""
     kinds = {"Floats": "", "Complex": "complex", "Flags": "bool", "NDArray[np.int_]": "int"}
-    *parts, last = annotation.split(" | ")
-    parts, optional = (parts, True) if last == "None" else ([*parts, last], False)
+    *parts, final = annotation.split(" | ")
+    parts, optional = (parts, True) if final == "None" else ([*parts, final], False)
     words = " | ".join(kinds.get(part, _word(part)) for part in parts) + (" or None" if optional else "")
     unit = declaration.unit if isinstance(declaration.unit, str) else ""
     shape = _shape(declaration) if parts[0] in kinds else ""
@@ -214,7 +220,9 @@ def _word(annotation: str) -> str:
 
 def _shape(declaration: Declaration) -> str:
     dims = [dim.rstrip("_") for dim in declaration.dims]
-    return f"({', '.join(dims)}{',' if len(dims) == 1 else ''})" if dims else ""
+    if not dims:
+        return ""
+    return f"({dims[0]},)" if len(dims) == 1 else f"({', '.join(dims)})"
 
 
 def annotation(kind: type, name: str) -> Any:
@@ -228,9 +236,9 @@ def annotation(kind: type, name: str) -> Any:
 
 
 @cache
-def _type_of(written: str | None, module: str) -> Any:
+def _type_of(annotation: str | None, module: str) -> Any:
     """Type that an annotation of a module names."""
-    return get_type_hints(SimpleNamespace(__annotations__={"": written}), vars(sys.modules[module]))[""]
+    return get_type_hints(SimpleNamespace(__annotations__={"": annotation}), vars(sys.modules[module]))[""]
 
 
 def types_in(hint: Any) -> Iterator[Any]:
@@ -249,7 +257,7 @@ def record_in(kind: type, name: str) -> Any:
 def records_in(kind: type, name: str) -> tuple[Any, ...]:
     """Return the records that a field's type has in it, of which a value is any."""
     return tuple(
-        each
-        for each in types_in(annotation(kind, name))
-        if isinstance(each, type) and get_origin(each) is None and dataclasses.is_dataclass(each)
+        member
+        for member in types_in(annotation(kind, name))
+        if isinstance(member, type) and get_origin(member) is None and dataclasses.is_dataclass(member)
     )

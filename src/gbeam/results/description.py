@@ -134,15 +134,15 @@ class RecordSummary(Part):
     @property
     def words(self) -> str:
         """Sentence on what was done to it; empty where nothing was."""
-        return "; ".join([*self.done, *([self._off] if self.offsets else [])])
+        return "; ".join([*self.done, *([self._offset_words] if self.offsets else [])])
 
     @property
-    def _off(self) -> str:
+    def _offset_words(self) -> str:
         """Words on the offsets that were subtracted."""
-        where = ", ".join(f"{each.start:.6g} to {each.end:.6g} s" for each in self.offsets)
-        said = [f"{axis} {' to '.join(values)} {unit}" for axis, unit, values in self.offsets_of_columns]
+        stretches = ", ".join(f"{stretch.start:.6g} to {stretch.end:.6g} s" for stretch in self.offsets)
+        sizes = [f"{axis} {' to '.join(values)} {unit}" for axis, unit, values in self.offsets_of_columns]
         drifting = ", and their drift on straight lines between," if len(self.offsets) > 1 else ""
-        return f"offsets at rest ({where}){drifting} are subtracted: {', '.join(said)}"
+        return f"offsets at rest ({stretches}){drifting} are subtracted: {', '.join(sizes)}"
 
     @property
     def offsets_of_columns(self) -> list[tuple[str, str, list[str]]]:
@@ -158,11 +158,11 @@ class RecordSummary(Part):
 
     def scaled(self, scale: float) -> RecordSummary:
         """The record, flown with accelerations times a level factor."""
-        low, high, peak = (
+        smallest, largest, peak = (
             (scale * x, scale * y, scale * z) for x, y, z in (self.flown.smallest, self.flown.largest, self.flown.peak)
         )
         rates = "" if self.rate_columns is None else ", rates as they are recorded"
-        flown, curves = replace(self.flown, smallest=low, largest=high, peak=peak), self.as_flown
+        flown, curves = replace(self.flown, smallest=smallest, largest=largest, peak=peak), self.as_flown
         if curves is not None:
             sizes = [scale if unit == "m/s^2" else 1.0 for unit in curves.units]
             curves = replace(curves, values=curves.values * sizes)
@@ -202,9 +202,9 @@ class BodyDescription(Part):
     )
 
     @property
-    def bare(self) -> float:
+    def bare_mass(self) -> float:
         """Mass of a beam without what it carries, kg."""
-        return self.mass - sum(each.mass for each in self.masses)
+        return self.mass - sum(mass.mass for mass in self.masses)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

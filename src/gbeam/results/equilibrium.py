@@ -24,7 +24,7 @@ from gbeam.results.errors import (
     ErrorEstimate,
     Errors,
     accelerated,
-    evenly,
+    acceleration_lines,
 )
 from gbeam.results.facts import at_place
 from gbeam.results.one_body import RestingBody
@@ -79,7 +79,7 @@ class BodyRest(Part):
         """Displacement of the tip and stress, or the loads of a rigid specimen, in words."""
         if self.specimen is not None:
             return tuple(self.specimen.lines)
-        tip = ", ".join(f"{1e3 * each:.4g}" for each in self.tip)
+        tip = ", ".join(f"{1e3 * component:.4g}" for component in self.tip)
         return f"tip ({tip}) mm", *(() if self.solid is None else self.solid.lines)
 
 
@@ -140,16 +140,15 @@ class Rest(RestingBody, Placed, Decided, Figured[str]):
         motion = f" {self.motion!r}" if self.motion else ""
         kinds = dict.fromkeys(body.model for body in self.bodies.values())
         models = f" ({', '.join(kinds)})" if kinds else ""
-        sentences = [
-            f"{name}: {line}" if len(self.bodies) > 1 else line
-            for name, body in self.bodies.items()
-            for line in body.lines
-        ]
+        sentences = []
+        for name, body in self.bodies.items():
+            start = f"{name}: " if len(self.bodies) > 1 else ""
+            sentences += [f"{start}{line}" for line in body.lines]
         if self.several:
             sentences.insert(0, most_moved(self, np.linalg.norm(self.point_displacement, axis=-1)))
         force = ", ".join(f"{component:.4g}" for component in self.ground_force)
         lines = [f"Rest{motion}{models} at {self.time:.4g} s: {sentences[0]}", *sentences[1:]]
-        lines += [f"force on the ground ({force}) N", *evenly(self.accelerated)]
+        lines += [f"force on the ground ({force}) N", *acceleration_lines(self.accelerated)]
         total = self.errors.displacement.total
         if self.errors.beams and math.isfinite(total):
             lines.append(f"estimated error {percent(total)}")

@@ -75,9 +75,8 @@ class ErrorEstimate(Lacking, Part):
     @property
     def causes(self) -> dict[str, float]:
         """Errors by their causes, in words."""
-        return {
-            each.name.replace("_", " "): getattr(self, each.name) for each in fields(self) if each.name not in WHOLE
-        }
+        names = [field.name for field in fields(self) if field.name not in WHOLE]
+        return {name.replace("_", " "): getattr(self, name) for name in names}
 
     @property
     def few_shapes(self) -> float:
@@ -92,16 +91,19 @@ class ErrorEstimate(Lacking, Part):
     def adding(self, **parts: float) -> ErrorEstimate:
         """Return the errors with others added to the total: `beam_theory`, `mesh`, `friction`; NaN adds nothing."""
         added = {name: share for name, share in parts.items() if not math.isnan(share)}
-        whole = sum(added.values())
-        slender = self.slender + whole - added.get("beam_theory", 0.0)
-        return replace(self, slender=slender, total=self.total + whole, **added)
+        addition = sum(added.values())
+        slender = self.slender + addition - added.get("beam_theory", 0.0)
+        return replace(self, slender=slender, total=self.total + addition, **added)
 
     @classmethod
-    def largest(cls, errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
+    def from_largest(cls, errors: Iterable[ErrorEstimate]) -> ErrorEstimate:
         """Return the largest error of several quantities by each cause, and in all; unknown if there are none."""
-        every = list(errors)
-        largest = (np.fmax.reduce([getattr(each, part.name) for each in every] or [math.nan]) for part in fields(cls))
-        return cls(*map(float, largest))
+        estimates = list(errors)
+        maxima = {}
+        for field in fields(cls):
+            values = [getattr(estimate, field.name) for estimate in estimates]
+            maxima[field.name] = float(np.fmax.reduce(values or [math.nan]))
+        return cls(**maxima)
 
     def __repr__(self) -> str:
         parts = self.causes | {"total": self.total, "of the peak": self.peak}
@@ -187,7 +189,7 @@ class Errors(Part):
     @property
     def few_strains(self) -> float:
         """Largest error of the theory of slender beams, of displacement, loads and stress."""
-        return largest_known(*(each.beam_theory for each in (self.displacement, self.loads, self.stress)))
+        return largest_known(*(part.beam_theory for part in (self.displacement, self.loads, self.stress)))
 
     def __repr__(self) -> str:
         lines = [f"displacement: {self.displacement}"]
@@ -246,9 +248,9 @@ class FrequencyErrors(Part):
         return {name: getattr(self, name) for name in PARTS}
 
     def __getitem__(self, chosen: Any) -> FrequencyErrors:
-        return replace(self, **{name: each[chosen] for name, each in self.parts.items()})
+        return replace(self, **{name: errors[chosen] for name, errors in self.parts.items()})
 
-    def within(self, share: float) -> int:
+    def count_within(self, share: float) -> int:
         """Number of frequencies, counted from the first, whose total errors are known and at most `share`."""
         return int(np.append(np.flatnonzero(~(self.total <= share)), len(self.total))[0])
 
@@ -275,7 +277,7 @@ class Noted:
         return "" if self.errors is None else self.errors.note
 
 
-def along(direction: str) -> str:
+def direction_words(direction: str) -> str:
     """Words for the direction of a mode: along z, in twist, or of a system's body along or about its z."""
     body, _, direction = direction.rpartition(" ")
     if body:
@@ -295,7 +297,7 @@ class Instability(Part):
     )
 
     def __str__(self) -> str:
-        return f"{self.kind} {along(self.direction)}, growing with {self.growth_rate:.4g} 1/s"
+        return f"{self.kind} {direction_words(self.direction)}, growing with {self.growth_rate:.4g} 1/s"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -325,9 +327,9 @@ def accelerated() -> Any:
     return rows(words, "accelerated", name="accelerated_", optional=True, default=())
 
 
-def evenly(every: tuple[Accelerated, ...]) -> list[str]:
-    """Return a line on what is accelerated; no line where all rests."""
-    return [f"accelerated evenly: {', '.join(map(str, every))}"] if every else []
+def acceleration_lines(coordinates: tuple[Accelerated, ...]) -> list[str]:
+    """Return a line on the coordinates that are accelerated; no line where all rest."""
+    return [f"accelerated evenly: {', '.join(map(str, coordinates))}"] if coordinates else []
 
 
 class Oscillating(Noted):

@@ -33,12 +33,12 @@ def facts_of(record: Any) -> dict[str, Any]:
     row_keys: dict[str, str] = getattr(record, "json_rows", {})
     for name, declaration in declarations(type(record)):
         value = getattr(record, name)
-        if declaration.key is None or (declaration.optional and unknown(value)):
+        if declaration.key is None or (declaration.optional and is_unknown(value)):
             continue
-        key, row_dim = declaration.key or name, _along(declaration, row_keys)
+        key, row_dim = declaration.key or name, _row_dimension(declaration, row_keys)
         for suffix, part in _parts(value):
             if row_dim is None:
-                _put(facts, f"{key}{suffix}", _plain(part, declaration))
+                _put(facts, f"{key}{suffix}", _json_value(part, declaration))
                 continue
             row_labels = _labels(record, row_dim)
             axis = declaration.dims.index(row_dim)
@@ -47,7 +47,7 @@ def facts_of(record: Any) -> dict[str, Any]:
                 cells: list[Any] = [dict.fromkeys(units_of(record_in(type(record), name)), math.nan)] * len(rows)
             else:
                 of_row = replace(declaration, dims=tuple(dim for dim in declaration.dims if dim != row_dim))
-                cells = [_plain(at_place(part, i, axis), of_row) for i in range(len(rows))]
+                cells = [_json_value(at_place(part, i, axis), of_row) for i in range(len(rows))]
             for row, cell in zip(rows, cells, strict=True):
                 _put(row, f"{key}{suffix}", cell)
     return facts
@@ -84,7 +84,7 @@ def tree_of(kind: type) -> dict[str, Any]:
         records = records_in(kind, name) if declaration.role in ("part", "rows") else ()
         inner = next(iter(records), None)
         leaf: Any = _joined(*map(tree_of, records)) if records else _leaf(declaration, row_keys, hint)
-        row_dim = _along(declaration, row_keys)
+        row_dim = _row_dimension(declaration, row_keys)
         if declaration.role == "part" and NoneType in types_in(hint) and row_dim is None and not declaration.optional:
             leaf = Nullable(leaf)
         if inner and declaration.unit and isinstance(declaration.unit, str):
@@ -140,8 +140,8 @@ def _leaf(declaration: Declaration, row_keys: Mapping[str, str], hint: Any) -> E
 
 def _joined(tree: dict[str, Any], *others: dict[str, Any]) -> dict[str, Any]:
     """Return a tree with the entries of any of several; where more have one, that of the first."""
-    for other in others:
-        for key, branch in other.items():
+    for branches in others:
+        for key, branch in branches.items():
             both = isinstance(branch, dict) and isinstance(tree.get(key), dict)
             tree[key] = type(tree[key])(_joined(tree[key], branch)) if both else tree.get(key, branch)
     return tree
@@ -155,7 +155,9 @@ def _changed(tree: Any, change: Callable[[Entry], Entry]) -> Any:
 
 
 def _united(entry: Entry, unit: str) -> Entry:
-    return replace(entry, unit="" if unit == "1" else unit) if entry.unit == "unit" else entry
+    if entry.unit != "unit":
+        return entry
+    return replace(entry, unit="" if unit == "1" else unit)
 
 
 def _explained(entry: Entry, words: str) -> Entry:
@@ -171,10 +173,10 @@ def units_of(kind: type) -> Units:
     return dict(units(tree_of(kind)))
 
 
-def paths_of(tree: dict[str, Any], before: str = "") -> Iterator[tuple[str, Entry]]:
+def paths_of(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Entry]]:
     """Yield path and entry of every quantity that is not text; ``*`` in a path is a name, ``[i]`` a place in a list."""
     for key, branch in tree.items():
-        path = f"{before}{key}"
+        path = f"{prefix}{key}"
         if isinstance(branch, dict):
             yield from paths_of(branch, f"{path}{'[i]' if isinstance(branch, Rows) else ''}.")
         elif "string" not in branch.types:
@@ -187,9 +189,9 @@ def schema_of(tree: Any) -> dict[str, Any]:
     if isinstance(tree, Rows):
         return {"type": "array", "items": schema_of(dict(tree))}
     if isinstance(tree, dict):
-        named = {key: schema_of(each) for key, each in tree.items() if key != ANY}
+        properties = {key: schema_of(branch) for key, branch in tree.items() if key != ANY}
         types = ["object", "null"] if isinstance(tree, Nullable) else "object"
-        return {"type": types, "properties": named} | (
+        return {"type": types, "properties": properties} | (
             {"additionalProperties": schema_of(tree[ANY])} if ANY in tree else {}
         )
     form: dict[str, Any] = {"type": [*tree.types, "null"]}
@@ -215,7 +217,7 @@ def unit_at(facts: Any, tree: Any, keys: tuple[str | int, ...]) -> str | None:
     return str(record["unit"]) if tree.unit == "unit" else tree.unit
 
 
-def unknown(value: Any) -> bool:
+def is_unknown(value: Any) -> bool:
     """Return True for None, for what is empty, and for numbers that are all NaN."""
     if isinstance(value, (float, np.ndarray)):
         values = np.asarray(value)
@@ -230,7 +232,7 @@ def _parts(value: Any) -> list[tuple[str, Any]]:
     return [("", value)]
 
 
-def _plain(value: Any, declaration: Declaration) -> Any:
+def _json_value(value: Any, declaration: Declaration) -> Any:
     """JSON of a value: records as objects, rows as a list or by name, vectors by component."""
     if value is None or declaration.role == "part":
         return None if value is None else facts_of(value)
@@ -242,15 +244,15 @@ def _plain(value: Any, declaration: Declaration) -> Any:
         return {getattr(row, label): facts_of(row) for row in value} if label else [facts_of(row) for row in value]
     if declaration.dims and declaration.dims[-1] in NAMES:
         return dict(zip(NAMES[declaration.dims[-1]], np.asarray(value).T.tolist(), strict=True))
-    return _bare(value)
+    return _plain_lists(value)
 
 
-def _bare(value: Any) -> Any:
+def _plain_lists(value: Any) -> Any:
     """A value as JSON has it: lists for tuples and arrays, at any depth."""
     if isinstance(value, Mapping):
-        return {key: _bare(each) for key, each in value.items()}
+        return {key: _plain_lists(entry) for key, entry in value.items()}
     if isinstance(value, tuple):
-        return [_bare(each) for each in value]
+        return [_plain_lists(entry) for entry in value]
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
@@ -280,7 +282,7 @@ def _merge(facts: dict[str, Any], others: dict[str, Any]) -> None:
             facts[key] = value
 
 
-def _along(declaration: Declaration, row_keys: Mapping[str, str]) -> str | None:
+def _row_dimension(declaration: Declaration, row_keys: Mapping[str, str]) -> str | None:
     """Dimension along which JSON has a value in each row; None where it has none."""
     if declaration.role == "rows" or (declaration.key or "").startswith("/"):
         return None
@@ -291,17 +293,18 @@ def _labels(record: Any, dim: str) -> tuple[str, ...] | None:
     """Keys by which JSON has the places along a dimension; None where it lists them."""
     if dim in NAMES:
         return NAMES[dim]
-    name = next((name for name, each in declarations(type(record)) if _names(each, dim)), None)
+    name = next((name for name, declaration in declarations(type(record)) if _names(declaration, dim)), None)
     return None if name is None else getattr(record, name)
 
 
 def _label(kind: type) -> str:
     """Name of the field that is the key of a row in JSON; empty where rows are listed."""
-    return next((name for name, each in declarations(kind) if each.role == "labels" and each.key is None), "")
+    labels = (name for name, field in declarations(kind) if field.role == "labels" and field.key is None)
+    return next(labels, "")
 
 
 def _is_labelled(kind: type, dim: str) -> bool:
-    return dim in NAMES or any(_names(each, dim) for _, each in declarations(kind))
+    return dim in NAMES or any(_names(declaration, dim) for _, declaration in declarations(kind))
 
 
 def _names(declaration: Declaration, dim: str) -> bool:
@@ -311,8 +314,8 @@ def _names(declaration: Declaration, dim: str) -> bool:
 def _rows(facts: dict[str, Any], key: str, labels: tuple[str, ...] | None, count: int) -> list[dict[str, Any]]:
     """Objects of the rows along a dimension under `key`: by label, or in a list of `count`; missing ones are added."""
     if labels is not None:
-        named = facts.setdefault(key, {}) if key else facts
-        return [named.setdefault(label, {}) for label in labels]
+        objects = facts.setdefault(key, {}) if key else facts
+        return [objects.setdefault(label, {}) for label in labels]
     listed: list[dict[str, Any]] = facts.setdefault(key, [])
     listed.extend({} for _ in range(count - len(listed)))
     return listed
@@ -322,7 +325,7 @@ def _count(value: Any, axis: int) -> int:
     """Number of places along an axis of an array or a tuple, or of the arrays of a record; zero for None."""
     if value is None or not dataclasses.is_dataclass(value):
         return 0 if value is None else np.shape(value)[axis]
-    return max(_count(each, axis) for _, each in _arrays(value))
+    return max(_count(array, axis) for _, array in _arrays(value))
 
 
 def at_place(value: Any, place: int, axis: int = 0) -> Any:
@@ -330,7 +333,7 @@ def at_place(value: Any, place: int, axis: int = 0) -> Any:
     if isinstance(value, tuple):
         return value[place]
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return replace(value, **{name: at_place(each, place, axis) for name, each in _arrays(value)})
+        return replace(value, **{name: at_place(array, place, axis) for name, array in _arrays(value)})
     return np.take(value, place, axis)
 
 

@@ -149,7 +149,7 @@ class AxesResult(Part):
         key="not_followed",
     )
     def departures(self) -> tuple[Departure, ...]:
-        return tuple(Departure(*each) for each in self.episodes)
+        return tuple(Departure(*episode) for episode in self.episodes)
 
     @property
     def within_limits(self) -> bool:
@@ -163,7 +163,7 @@ class AxesResult(Part):
         return f"exceeds {'; '.join(broken)}" if broken else ""
 
     @property
-    def beyond(self) -> str:
+    def largest_excess(self) -> str:
         """The limit that is exceeded most, and by how much; empty where none is."""
         worst = max((use for use in self.limits if use.exceeded), key=lambda use: use.share, default=None)
         return f"{worst.axis} {worst.quantity} {worst.share:.0%}".replace("%", " % of its limit") if worst else ""
@@ -210,14 +210,14 @@ class Imitated:
 _BOUND, _BEYOND = 0.99, 1.001  # shares of a limit between which the limit holds an axis back
 
 
-def used_up(shares: Mapping[str, Floats], during: slice) -> list[str]:
+def used_up(shares: Mapping[str, Floats], stretch: slice) -> list[str]:
     """Names of the limits that hold an axis back in a stretch, the longest first, by their used `shares` (t,)."""
-    held = {
-        name: int(np.count_nonzero(share[during] >= _BOUND))
+    counts = {
+        name: int(np.count_nonzero(share[stretch] >= _BOUND))
         for name, share in shares.items()
-        if _BOUND <= share[during].max() <= _BEYOND
+        if _BOUND <= share[stretch].max() <= _BEYOND
     }
-    return sorted(held, key=lambda name: -held[name])
+    return sorted(counts, key=lambda name: -counts[name])
 
 
 @dataclass(frozen=True)
@@ -292,8 +292,8 @@ class Imbalance(Part):
         "kg m^2", "dynamic imbalance that it leaves, which takes two counterweights at different heights", name=None
     )
     def left(self) -> float:
-        left, size = (float(np.linalg.norm(each)) for each in (self.dynamic - self.height * self.static, self.dynamic))
-        return left if left > _SAME * size else 0.0
+        remainder = float(np.linalg.norm(self.dynamic - self.height * self.static))
+        return remainder if remainder > _SAME * float(np.linalg.norm(self.dynamic)) else 0.0
 
 
 class Driven:
@@ -319,8 +319,10 @@ class Driven:
         if self.axes is None:
             return {}
         time, axes = self._at_own_times(self.axes)
-        histories = zip(axes.rate.T, axes.acceleration.T, strict=True)
-        return {str(i): AxisPeaks(*(_peak(time, each) for each in both)) for i, both in enumerate(histories, 1)}
+        peaks = {}
+        for i, (rate, acceleration) in enumerate(zip(axes.rate.T, axes.acceleration.T, strict=True), 1):
+            peaks[str(i)] = AxisPeaks(_peak(time, rate), _peak(time, acceleration))
+        return peaks
 
     @declared("", "largest error of the load against the target", role="part", name=None, optional=True)
     def tracking_error(self) -> Tracking | None:

@@ -22,7 +22,7 @@ from gbeam.results.errors import (
     Noted,
     Oscillating,
     accelerated,
-    evenly,
+    acceleration_lines,
     totals,
 )
 from gbeam.results.one_body import ShapedBody
@@ -159,7 +159,7 @@ class Modes(ShapedBody, Oscillating, Decided, Figured[Literal["modes"]]):
     @declared("", "whether every body has a damping ratio, be it zero", role="fact")
     def damping_given(self) -> bool:
         """True if every body that deforms has a damping ratio, be it zero; others are undamped."""
-        return all(each.damping_given for each in self.bodies.values())
+        return all(body.damping_given for body in self.bodies.values())
 
     @declared("", "body that moves most", "mode", name=None)
     def foremost(self) -> tuple[str, ...]:
@@ -171,13 +171,13 @@ class Modes(ShapedBody, Oscillating, Decided, Figured[Literal["modes"]]):
         kinds = dict.fromkeys(body.model for body in self.bodies.values())
         models = f" ({', '.join(kinds)})" if kinds else ""
         modes = [f"{f:.4g} Hz {way}" for f, way in zip(self.frequency, self.direction, strict=True)]
-        more = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
-        lines = [f"Modes{motion}{models} at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{more}"]
+        remainder = f" and {len(modes) - SHOWN} more" if len(modes) > SHOWN else ""
+        lines = [f"Modes{motion}{models} at {self.time:.4g} s: {', '.join(modes[:SHOWN])}{remainder}"]
         if self.rigid == 1:
             lines.append("one motion of zero frequency is left out")
         elif self.rigid:
             lines.append(f"{self.rigid} motions of zero frequency are left out")
-        lines += [*evenly(self.accelerated), *map(str, self.instabilities)]
+        lines += [*acceleration_lines(self.accelerated), *map(str, self.instabilities)]
         if self.message:
             lines.append(self.message)
         return self._with_warnings(*lines)
@@ -285,5 +285,5 @@ def near_multiples(frequency: Floats, speed: Floats, orders: Sequence[int]) -> l
     """Return the indices of the modes that a Campbell diagram draws, from frequencies (k, v), Hz, at speeds (v,),
     rad/s: the first two, and those that are not far above every multiple of the speed.
     """
-    far = FAR * max(orders, default=0) * speed[-1] / (2 * np.pi) if len(orders) else np.inf
-    return [k for k, history in enumerate(frequency) if k < FEW or not np.nanmin(history, initial=np.inf) > far]
+    limit = FAR * max(orders, default=0) * speed[-1] / (2 * np.pi) if len(orders) else np.inf
+    return [k for k, history in enumerate(frequency) if k < FEW or not np.nanmin(history, initial=np.inf) > limit]

@@ -15,11 +15,11 @@ def brief(record: Any) -> str:
     What is None is left out.
     """
     shown = {f.name: getattr(record, f.name) for f in fields(record) if f.repr}
-    values = ", ".join(f"{name}={_short(value)}" for name, value in shown.items() if value is not None)
+    values = ", ".join(f"{name}={_shorten(value)}" for name, value in shown.items() if value is not None)
     return f"{type(record).__name__}({values})"
 
 
-def _short(value: Any) -> str:
+def _shorten(value: Any) -> str:
     """A value on a line: arrays by their shapes, other records by their names, long tuples and mappings by length."""
     if isinstance(value, (str, bool, int)) or value is None:
         return repr(value)
@@ -30,9 +30,11 @@ def _short(value: Any) -> str:
     if isinstance(value, (tuple, dict)) and len(value) > 3:
         return f"<{len(value)}>"
     if isinstance(value, tuple):
-        return f"({', '.join(_short(each) for each in value)}{',' if len(value) == 1 else ''})"
+        entries = ", ".join(_shorten(entry) for entry in value)
+        return f"({entries},)" if len(value) == 1 else f"({entries})"
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_short(each)}' for key, each in value.items())}}}"
+        pairs = [f"{key}: {_shorten(entry)}" for key, entry in value.items()]
+        return f"{{{', '.join(pairs)}}}"
     return f"<{type(value).__name__}>"
 
 
@@ -45,7 +47,7 @@ class Part(Value):
         super().__init_subclass__(**options)
         document(cls)
 
-    def during(self, times: Any) -> Self:
+    def select_times(self, times: Any) -> Self:
         """Return the part at some of its `times`, an index or slice of them."""
         part: Any = self
         return replace(part, **{name: values[times] for name, values in along_time(self).items()})

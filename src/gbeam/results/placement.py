@@ -153,7 +153,7 @@ class Placement(Figured[Literal["difference"]]):
 
     @declared("", "simulations by name", "check", role="rows", name=None, key="verifications")
     def checks(self) -> Mapping[str, Verification]:
-        return {each.name: each for each in self.verifications}
+        return {verification.name: verification for verification in self.verifications}
 
     @declared("", "control point, mounting and smoothing of the best", role="part", name=None, key=INSIDE)
     def placed(self) -> Setting:
@@ -203,8 +203,8 @@ class Placement(Figured[Literal["difference"]]):
         if before is None or before.exceeded or best.total_error <= (1 - _LEVER) * before.total_error:
             return ""
         most_used = best.most_used
-        full = most_used is not None and most_used.share >= _FULL
-        limit = f"; the machine is at its limit: {most_used}" if full else ""
+        at_limit = most_used is not None and most_used.share >= _FULL
+        limit = f"; the machine is at its limit: {most_used}" if at_limit else ""
         return (
             f"another place changes little: the measure goes from {100 * before.total_error:.3g} % to "
             f"{100 * best.total_error:.3g} % of flight's peak, of which the error of the load at the control point "

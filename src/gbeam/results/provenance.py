@@ -63,9 +63,9 @@ class Environment(Part):
     platform: str = fact("system, its release and the processor's kind")
     dependencies: Mapping[str, str] = fact("version of each package that gbeam needs")
 
-    def changes(self, other: Environment) -> dict[str, tuple[str, str]]:
+    def changes(self, environment: Environment) -> dict[str, tuple[str, str]]:
         """Return what differs in another environment, by name: the values in this one and in the other."""
-        mine, theirs = self._facts(), other._facts()
+        mine, theirs = self._facts(), environment._facts()
         names = [*mine, *(name for name in theirs if name not in mine)]
         pairs = {name: (mine.get(name, "missing"), theirs.get(name, "missing")) for name in names}
         return {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
@@ -95,19 +95,19 @@ class Provenance(Part):
 
     def stated(self) -> tuple[Provenance, Environment]:
         """Return the provenance with date and environment filled in, and the environment, which takes time to find."""
-        environment = self.environment or present()
+        environment = self.environment or current_environment()
         return replace(self, environment=environment, date=self.date or _now()), environment
 
 
 def _now() -> str:
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")  # of builds that must be the same again
-    known = epoch.isdecimal() and len(epoch) < 12  # before the year 5139
-    now = datetime.fromtimestamp(int(epoch), UTC) if known else datetime.now(UTC)
+    decimal = epoch.isdecimal() and len(epoch) < 12  # before the year 5139
+    now = datetime.fromtimestamp(int(epoch), UTC) if decimal else datetime.now(UTC)
     return now.isoformat(timespec="seconds")
 
 
 @cache
-def present() -> Environment:
+def current_environment() -> Environment:
     """The present environment."""
     from importlib.metadata import PackageNotFoundError, requires, version
 
@@ -118,10 +118,11 @@ def present() -> Environment:
             return "missing"
 
     try:
-        needed = requires("gbeam") or []
+        requirements = requires("gbeam") or []
     except PackageNotFoundError:  # from a source tree that is not installed
-        needed = []
-    names = {re.split(r"[^\w.-]", each)[0] for each in needed if "extra ==" not in each} | {"jaxlib", "h5py", "numpy"}
+        requirements = []
+    needed = (requirement for requirement in requirements if "extra ==" not in requirement)
+    names = {re.split(r"[^\w.-]", requirement)[0] for requirement in needed} | {"jaxlib", "h5py", "numpy"}
     system = f"{platform.system()} {platform.release()} {platform.machine()}"
     dependencies = MappingProxyType({name: version_of(name) for name in sorted(names)})
     return Environment(__version__, sys.version.split()[0], system, dependencies)

@@ -36,7 +36,7 @@ from gbeam.results.system import (
     turned,
 )
 
-_OF_POINTS = {each: each for each in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
+_OF_POINTS = {kind: kind for kind in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -246,11 +246,11 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         """Numbers of steps and their lengths: those of the flight, and others of a machine from and to standstill."""
         first, last = self.flight_span
         length, middle = np.diff(self.time), (self.time[1:] + self.time[:-1]) / 2
-        between = length[(middle < first) | (middle > last)]  # which every step of these ways is
-        if not between.size or math.isclose(between.max(), self.step, rel_tol=1e-6):
+        outer = length[(middle < first) | (middle > last)]  # which every step of these ways is
+        if not outer.size or math.isclose(outer.max(), self.step, rel_tol=1e-6):
             return f"{self.steps} steps of {seconds(self.step)}"
-        way = f"{between.size} of {seconds(float(between.max()))} from and to standstill"
-        return f"{self.steps - between.size} steps of {seconds(self.step)}, {way}"
+        way = f"{outer.size} of {seconds(float(outer.max()))} from and to standstill"
+        return f"{self.steps - outer.size} steps of {seconds(self.step)}, {way}"
 
     def reading_at(self, point: str, sensor: Sensor | None = None) -> Floats:
         """Return what an accelerometer at a point reads, (t, 3) m/s².
@@ -291,9 +291,10 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         """
         if self.hub is not None and name in ("hub.angle", "hub.rate"):
             return np.asarray(getattr(self.hub, name.removeprefix("hub.")))
-        only = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
-        for each in (name, *only):
-            if (history := self._signal(each)) is not None:
+        alternatives = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
+        for candidate in (name, *alternatives):
+            history = self._signal(candidate)
+            if history is not None:
                 return history
         return self.q[:, index_of("name", name, self.coordinates)]
 
@@ -309,7 +310,7 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
             return self.bodies[body].signal(f"{of_body}.{kind}")
         if f"{owner}.{EULER[0]}" in self.coordinates and kind in (*TURNS, *SPINS):
             start = self.coordinates.index(f"{owner}.{EULER[0]}")
-            e, rate = (each[:, start : start + 4] for each in (self.q, self.qd))
+            e, rate = (histories[:, start : start + 4] for histories in (self.q, self.qd))
             return turned(e)[:, TURNS.index(kind)] if kind in TURNS else spun(e, rate)[:, SPINS.index(kind)]
         if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
             return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]

@@ -21,20 +21,21 @@ from gbeam.results.provenance import Provenance
 
 def each_once(sentences: Mapping[str, Iterable[str]]) -> tuple[str, ...]:
     """Sentences of answers by the motion's name, each once, and with the names unless it is of all or says its own."""
-    names: dict[str, list[str]] = {}
-    for name, of_answer in sentences.items():
-        for sentence in of_answer:
-            names.setdefault(sentence, []).append(name)
-    return tuple(
-        each if len(of) == len(sentences) or each.startswith(f"motion.{of[0]}") else f"{', '.join(of)}: {each}"
-        for each, of in names.items()
-    )
+    names_by_sentence: dict[str, list[str]] = {}
+    for name, own_sentences in sentences.items():
+        for sentence in own_sentences:
+            names_by_sentence.setdefault(sentence, []).append(name)
+    lines = []
+    for sentence, names in names_by_sentence.items():
+        named = len(names) == len(sentences) or sentence.startswith(f"motion.{names[0]}")
+        lines.append(sentence if named else f"{', '.join(names)}: {sentence}")
+    return tuple(lines)
 
 
-def part_words(span: tuple[float, float], whole: tuple[float, float]) -> str:
+def part_words(span: tuple[float, float], flight: tuple[float, float]) -> str:
     """Part of a flight in words: ``0 to 6 of 15.99 s``, ``102 to 108 of 100 to 116 s``; all s."""
-    beginning = "" if whole[0] == 0 else f"{whole[0]:.6g} to "
-    return f"{span[0]:.6g} to {span[1]:.6g} of {beginning}{whole[1]:.6g} s"
+    beginning = "" if flight[0] == 0 else f"{flight[0]:.6g} to "
+    return f"{span[0]:.6g} to {span[1]:.6g} of {beginning}{flight[1]:.6g} s"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -70,8 +71,9 @@ class Result(Value):
 
     def _with_warnings(self, *lines: str) -> str:
         """Lines on the screen, with the warnings and notes below."""
-        remarks = {"warning": self.warnings, "note": self.notes}
-        return "\n  ".join([*lines, *(f"{kind}: {each}" for kind, said in remarks.items() for each in said)])
+        warnings = [f"warning: {sentence}" for sentence in self.warnings]
+        notes = [f"note: {sentence}" for sentence in self.notes]
+        return "\n  ".join([*lines, *warnings, *notes])
 
     def _repr_html_(self) -> str:
         """The verdict and a small table, in notebooks."""

@@ -198,8 +198,8 @@ class Optimum(Figured[Literal["optimum"]]):
 
     def __repr__(self) -> str:
         rows = [
-            f"{path} = {value:.6g} {unit}".rstrip() + f" (was {old:.6g})"
-            for path, value, old, unit in zip(self.parameters, self.values, self.before, self.units, strict=True)
+            f"{path} = {value:.6g} {unit}".rstrip() + f" (was {start:.6g})"
+            for path, value, start, unit in zip(self.parameters, self.values, self.before, self.units, strict=True)
         ]
         end = "" if self.outcome == "done" else f" ({self.outcome})"
         heading = f"Optimum of {self.minimise}: {self.figure:.4g} {self.unit}".rstrip()
@@ -292,9 +292,11 @@ class ShapedCommand(Figured[Literal["shaping", "robustness"]]):
 
     @declared("m", "displacement of the tip", "run run_time axis", name="tip")
     def tip(self) -> Floats:
-        return np.stack(
-            [np.stack([np.interp(self.run_time, r.time, r.tip[:, i]) for i in range(3)], axis=1) for r in self.runs]
-        )
+        histories = []
+        for run in self.runs:
+            components = [np.interp(self.run_time, run.time, component) for component in run.tip.T]
+            histories.append(np.stack(components, axis=1))
+        return np.stack(histories)
 
     @property
     def outcome(self) -> str:
@@ -307,6 +309,6 @@ class ShapedCommand(Figured[Literal["shaping", "robustness"]]):
         return self.runs[0].residual
 
     def __repr__(self) -> str:
-        left = ", ".join(f"{run.name} {1e3 * run.residual:.3g} mm" for run in self.runs)
+        residuals = ", ".join(f"{run.name} {1e3 * run.residual:.3g} mm" for run in self.runs)
         words = f"Shaped {self.kind} {self.task} in {self.duration:.4g} s"
-        return self._with_warnings(f"{words}; left by {self.check}: {left}")
+        return self._with_warnings(f"{words}; left by {self.check}: {residuals}")

@@ -42,7 +42,7 @@ class StressAt(Part):
         return float(yield_margin(self.yield_strength, np.array(self.von_mises)))
 
     @property
-    def apart(self) -> str:
+    def spread_words(self) -> str:
         """Difference of the elements that share the node, in words."""
         return (
             f"; elements there differ by {float(f'{100 * self.spread:.2g}'):g} %" if self.spread else ", of one element"
@@ -135,7 +135,7 @@ class SolidStress(Figured[Literal["stress"]]):
         return (
             f"{UNLIMITED}: {self.singular_nodes} nodes, up to "
             f"{1e3 * self.singular_depth:.3g} mm from the others, are left out, the "
-            f"largest {said(self.singular)}"
+            f"largest {stress_words(self.singular)}"
         )
 
     @declared("Pa", "normal stress at the worst place, on the plane where it ranges most", "time", name="worst_normal")
@@ -170,18 +170,19 @@ class SolidStress(Figured[Literal["stress"]]):
         if not self.known:
             return "the largest stress is not known", "margin on yield not known"
         if self.nearest_yield is None:
-            return said(self.worst), "margin on yield not known: no material has a yield_strength"
+            return stress_words(self.worst), "margin on yield not known: no material has a yield_strength"
         assert self.nearest_yield.margin is not None
         words = margin_words(self.nearest_yield.margin)
         material = self.nearest_yield.material or "the material"
         same_node = (self.worst.node, self.worst.material) == (self.nearest_yield.node, self.nearest_yield.material)
-        place = ", there" if same_node else f": {said(self.nearest_yield)}"
-        return said(self.worst), f"{words} in {material}{place}"
+        place = ", there" if same_node else f": {stress_words(self.nearest_yield)}"
+        return stress_words(self.worst), f"{words} in {material}{place}"
 
     def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
+        motion = f" {self.motion!r}" if self.motion else ""
         worst, margin = self.lines
-        return self._with_warnings(f"SolidStress{of} ({self.model}): {worst}", margin, *filter(None, [self.left_out]))
+        lines = [f"SolidStress{motion} ({self.model}): {worst}", margin]
+        return self._with_warnings(*lines, *filter(None, [self.left_out]))
 
 
 def von_mises(stress: Floats) -> Floats:
@@ -197,11 +198,11 @@ def place_words(place: Floats) -> str:
     return f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
 
 
-def said(stress: StressAt) -> str:
+def stress_words(stress: StressAt) -> str:
     """A stress with its place and time, and the spread of the elements there."""
     return (
         f"von Mises {1e-6 * stress.von_mises:.4g} MPa at {place_words(stress.place)}, node {stress.node}, at "
-        f"{stress.time:.4g} s{stress.apart}"
+        f"{stress.time:.4g} s{stress.spread_words}"
     )
 
 
@@ -321,13 +322,13 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
 
     @declared("N", "largest size of the force on the specimen", name=None, key="force.max_abs")
     def force_max(self) -> float:
-        between = 0.0 if self.root is None else float(self.root.root_force.size.value)
-        return max(float(np.linalg.norm(self.force, axis=-1).max()), between)
+        peak = 0.0 if self.root is None else float(self.root.root_force.size.value)
+        return max(float(np.linalg.norm(self.force, axis=-1).max()), peak)
 
     @declared("N m", "largest size of the moment on the specimen about the root", name=None, key="moment.max_abs")
     def moment_max(self) -> float:
-        between = 0.0 if self.root is None else float(self.root.root_moment.size.value)
-        return max(float(np.linalg.norm(self.moment, axis=-1).max()), between)
+        peak = 0.0 if self.root is None else float(self.root.root_moment.size.value)
+        return max(float(np.linalg.norm(self.moment, axis=-1).max()), peak)
 
     @property
     def bolt_pull(self) -> Floats:
@@ -347,8 +348,8 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
     def shear(self) -> Floats:
         if not len(self.bolts):
             return np.empty((len(self.time), 0))
-        along = (self.bolt_force @ self.bolt_axis)[..., None] * self.bolt_axis
-        return np.linalg.norm(self.bolt_force - along, axis=-1)
+        tension = (self.bolt_force @ self.bolt_axis)[..., None] * self.bolt_axis
+        return np.linalg.norm(self.bolt_force - tension, axis=-1)
 
     @declared("N", "largest tension of the bolt", "bolt", name=None, key="tension")
     def bolt_tension(self) -> Floats:
@@ -381,6 +382,6 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
         return lines
 
     def __repr__(self) -> str:
-        of = f" {self.motion!r}" if self.motion else ""
+        motion = f" {self.motion!r}" if self.motion else ""
         first, *others = self.lines
-        return self._with_warnings(f"SpecimenLoads{of} ({self.environment}): {first}", *others)
+        return self._with_warnings(f"SpecimenLoads{motion} ({self.environment}): {first}", *others)

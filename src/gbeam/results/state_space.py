@@ -17,7 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
-from gbeam.results.errors import FRAME, Accelerated, FrequencyErrors, Noted, accelerated, evenly
+from gbeam.results.errors import FRAME, Accelerated, FrequencyErrors, Noted, accelerated, acceleration_lines
 from gbeam.results.result import Complex, Figured, Floats, Part
 
 MARGINS = ("gain", "gain_low", "phase", "delay", "modulus")
@@ -193,7 +193,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
 
     @declared("", "names of the states", "state_of", role="labels", key=None)
     def state_of(self) -> tuple[str, ...]:
-        return tuple(each.name for each in self.states)
+        return tuple(signal.name for signal in self.states)
 
     @declared("", "estimated error of the frequency, a fraction", "pole", key=None, optional=True)
     def pole_error(self) -> Floats:
@@ -220,7 +220,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         """
         if self.errors is None or not np.isfinite(self.errors.total).any():
             return math.nan
-        count = self.errors.within(ACCURATE)
+        count = self.errors.count_within(ACCURATE)
         return float(self.frequency[count - 1]) if count else 0.0
 
     def select(self, *, inputs: Sequence[str] | None = None, outputs: Sequence[str] | None = None) -> StateSpace:
@@ -270,8 +270,9 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         """
         control = import_control()
         # It takes no dots, as those of a system's signals.
-        kinds = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
-        names = {kind: [re.sub(r"\W+", "_", each.name) for each in signals] for kind, signals in kinds.items()}
+        names = {}
+        for kind, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs)):
+            names[kind] = [re.sub(r"\W+", "_", signal.name) for signal in signals]
         return control.ss(self.a, self.b, self.c, self.d, self.step, **names)
 
     @typed
@@ -285,11 +286,11 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
         """
         import scipy.io
 
-        named = {"state": self.states, "input": self.inputs, "output": self.outputs}
+        groups = {"state": self.states, "input": self.inputs, "output": self.outputs}
         texts: dict[str, Any] = {}
-        for key, signals in named.items():
-            texts[f"{key}_name"] = np.array([each.name for each in signals], dtype=object)
-            texts[f"{key}_unit"] = np.array([each.unit for each in signals], dtype=object)
+        for key, signals in groups.items():
+            texts[f"{key}_name"] = np.array([signal.name for signal in signals], dtype=object)
+            texts[f"{key}_unit"] = np.array([signal.unit for signal in signals], dtype=object)
         if self.provenance is not None:
             stated, environment = self.provenance.stated()
             texts["provenance"] = f"gbeam {environment.gbeam}: {stated.command}; scenario SHA-256 {stated.sha256}"
@@ -310,7 +311,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
     def __repr__(self) -> str:
         model = f" of {self.model}" if self.model else ""
         motion = f" on {self.motion!r}" if self.motion else ""
-        lines = evenly(self.accelerated)
+        lines = acceleration_lines(self.accelerated)
         for kind, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs)):
             names = ", ".join(signal.name for signal in signals[:4])
             lines.append(f"{len(signals)} {kind} ({names}{', …' if len(signals) > 4 else ''})")
@@ -335,11 +336,11 @@ def _indices(argument: str, names: Sequence[str] | None, signals: Sequence[Signa
     """Indices of named signals, of all without names; InputError, at an argument, for an unknown name."""
     if names is None:
         return list(range(len(signals)))
-    known = [signal.name for signal in signals]
+    choices = [signal.name for signal in signals]
     for name in names:
-        if name not in known:
-            raise InputError(argument, f"has no {name!r}", f"choose from {', '.join(known)}")
-    return [known.index(name) for name in names]
+        if name not in choices:
+            raise InputError(argument, f"has no {name!r}", f"choose from {', '.join(choices)}")
+    return [choices.index(name) for name in names]
 
 
 def slowest_first(poles: Complex) -> Indices:

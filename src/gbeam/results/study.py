@@ -54,18 +54,19 @@ class Study(Figured[str]):
     @property
     def _specimens(self) -> list[tuple[str, str, SpecimenLoads]]:
         """Names of motions and bodies, the latter empty where there is one alone, with the loads of rigid specimens."""
-        bodies = (
-            (name, key if len(each.bodies) > 1 else "", body.specimen)
-            for name, each in self.responses.items()
-            for key, body in each.bodies.items()
-        )
-        return [(name, key, specimen) for name, key, specimen in bodies if specimen is not None]
+        specimens = []
+        for name, response in self.responses.items():
+            several = len(response.bodies) > 1
+            for body_name, body in response.bodies.items():
+                if body.specimen is not None:
+                    specimens.append((name, body_name if several else "", body.specimen))
+        return specimens
 
     @property
     def exceeding(self) -> Mapping[str, str]:
         """Limits of machines that are exceeded, by the motion's name."""
-        axes = {name: each.axes for name, each in self.responses.items() if each.axes is not None}
-        return {name: each.exceeding for name, each in axes.items() if each.exceeding}
+        machines = {name: response.axes for name, response in self.responses.items() if response.axes is not None}
+        return {name: axes.exceeding for name, axes in machines.items() if axes.exceeding}
 
     @property
     def not_accepted(self) -> Mapping[str, str]:
@@ -83,7 +84,8 @@ class Study(Figured[str]):
     @property
     def not_decided(self) -> Mapping[str, str]:
         """Limits of acceptance whose values are not known, by the motion's name."""
-        return {each.centrifuge: each.refusal for each in self.comparisons if each.decision == NOT_DECIDED}
+        undecided = (comparison for comparison in self.comparisons if comparison.decision == NOT_DECIDED)
+        return {comparison.centrifuge: comparison.refusal for comparison in undecided}
 
     @property
     def refusals(self) -> Mapping[str, str]:
@@ -92,9 +94,10 @@ class Study(Figured[str]):
 
     @declared("", "the outcome, with what limits make of it", role="fact")
     def state(self) -> str:
-        exceeded = any(each.axes is not None and not each.axes.within_limits for each in self.responses.values())
-        kept = [each.within_limit for *_, each in self._specimens]
-        return state_of(self.outcome, self.comparisons, exceeded=exceeded, kept=kept)
+        axes = [response.axes for response in self.responses.values() if response.axes is not None]
+        exceeded = any(not machine.within_limits for machine in axes)
+        verdicts = [loads.within_limit for *_, loads in self._specimens]
+        return state_of(self.outcome, self.comparisons, exceeded=exceeded, verdicts=verdicts)
 
     def __repr__(self) -> str:
         parts = [repr(response) for response in self.responses.values()]
@@ -193,8 +196,8 @@ class ModelStudy(Figured[Literal["models"]]):
         return all(row.outcome == "done" for row in self.rows if row.model == self.reference)
 
     def __repr__(self) -> str:
-        of = f" {self.title!r}" if self.title else ""
-        return "\n  ".join([f"ModelStudy{of}, against {self.reference}", *(str(row) for row in self.rows)])
+        title = f" {self.title!r}" if self.title else ""
+        return "\n  ".join([f"ModelStudy{title}, against {self.reference}", *(str(row) for row in self.rows)])
 
 
 SAME, ELSEWHERE = 0.0, 1e-9  # differences allowed in the same environment, and in another
@@ -235,12 +238,12 @@ class Reproduction(Part):
     @property
     def reproduced(self) -> bool:
         """True if no difference is larger than the tolerance."""
-        return not self.beyond
+        return not self.excess_count
 
     @property
-    def beyond(self) -> int:
+    def excess_count(self) -> int:
         """Number of differences that are larger than the tolerance."""
-        return sum(each.size > self.tolerance for each in self.differences)
+        return sum(difference.size > self.tolerance for difference in self.differences)
 
     @property
     def agreement(self) -> str:
@@ -251,13 +254,13 @@ class Reproduction(Part):
 
     def __repr__(self) -> str:
         lines = [f"Reproduction of {self.file}: {self.agreement}, {self.compared} values and arrays compared"]
-        lines += [str(each) for each in self.differences[:10]]
+        lines += [str(difference) for difference in self.differences[:10]]
         lines += self.circumstances()
         return "\n  ".join(lines)
 
     def circumstances(self) -> list[str]:
         """Lines on what has changed since the file was written."""
-        return [f"{name} was {then}, is {now}" for name, (then, now) in self.changed.items()]
+        return [f"{name} was {old_value}, is {now}" for name, (old_value, now) in self.changed.items()]
 
 
 # Every kind of result by its name.
@@ -289,11 +292,12 @@ KINDS: dict[str, type[Result]] = {
 
 def by_motion(answers: Sequence[Any], title: str = "") -> dict[str, Any]:
     """Return results of one kind in several motions as JSON, by the motions' names."""
-    outcome = next((end for each in answers if (end := getattr(each, "outcome", "done")) != "done"), "done")
-    judged = [each for each in answers if isinstance(each, Judged)]
+    outcomes = (getattr(answer, "outcome", "done") for answer in answers)
+    outcome = next((outcome for outcome in outcomes if outcome != "done"), "done")
+    judged = [answer for answer in answers if isinstance(answer, Judged)]
     state = {"state": state_of(outcome, judged)} if judged else {}
-    named = {getattr(each, each.listed_by): json_of(each) for each in answers}
-    return {"title": title, "outcome": outcome, **state, "motions": named}
+    motions = {getattr(answer, answer.listed_by): json_of(answer) for answer in answers}
+    return {"title": title, "outcome": outcome, **state, "motions": motions}
 
 
 def tree_of_answers(kind: type) -> dict[str, Any]:

@@ -171,9 +171,9 @@ class Placed:
         InputError
             If there is no such point.
         """
-        short = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
-        known = [each for each in short if each in self.points]
-        return index_of(where, known[0] if known else name, self.points)
+        candidates = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
+        existing = [candidate for candidate in candidates if candidate in self.points]
+        return index_of(where, existing[0] if existing else name, self.points)
 
     @property
     def several(self) -> bool:
@@ -196,7 +196,7 @@ class Placed:
         return self.q[..., index_of("name", name, self.coordinates)]
 
 
-def named(result: Placed) -> Mapping[str, tuple[Floats, str, Floats]]:
+def joint_histories(result: Placed) -> Mapping[str, tuple[Floats, str, Floats]]:
     """Coordinates of joints by name: history, unit and drive's effort; of a ball its rotation vector, ``joint.rx``."""
     histories: dict[str, tuple[Floats, str, Floats]] = {}
     q, effort = np.atleast_2d(result.q), np.atleast_2d(result.effort)
@@ -211,13 +211,13 @@ def named(result: Placed) -> Mapping[str, tuple[Floats, str, Floats]]:
     return histories
 
 
-def most_moved(result: Placed, sizes: Floats, up: str = "") -> str:
+def most_moved(result: Placed, sizes: Floats, qualifier: str = "") -> str:
     """Words for the point with the largest of `sizes` (p,) m; where none moves, for the largest coordinate."""
-    most = int(sizes.argmax())
-    coordinates = {name: (history, unit) for name, (history, unit, _) in named(result).items()}
-    if sizes[most] or not coordinates:
-        return f"{result.points[most]} moves by {up}{sizes[most]:.4g} m"
-    name, (history, unit) = max(coordinates.items(), key=lambda each: np.abs(each[1][0]).max())
+    index = int(sizes.argmax())
+    coordinates = {name: (history, unit) for name, (history, unit, _) in joint_histories(result).items()}
+    if sizes[index] or not coordinates:
+        return f"{result.points[index]} moves by {qualifier}{sizes[index]:.4g} m"
+    name, (history, unit) = max(coordinates.items(), key=lambda item: np.abs(item[1][0]).max())
     return f"no point moves; {name} reaches {history[np.abs(history).argmax()]:.4g} {unit}"
 
 
@@ -231,5 +231,5 @@ def turned(e: Floats) -> Floats:
 def spun(e: Floats, rate: Floats) -> Floats:
     """Angular velocities (t, 3) rad/s, turned axes, of Euler parameters (t, 4) and their rates."""
     square = (e * e).sum(axis=1, keepdims=True)
-    along = e[:, :1] * rate[:, 1:] - rate[:, :1] * e[:, 1:] - np.cross(e[:, 1:], rate[:, 1:])
-    return np.asarray(2 * along / square)
+    vector = e[:, :1] * rate[:, 1:] - rate[:, :1] * e[:, 1:] - np.cross(e[:, 1:], rate[:, 1:])
+    return np.asarray(2 * vector / square)

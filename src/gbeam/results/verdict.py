@@ -50,10 +50,10 @@ class Verdict:
         judged = self.judged
         decision, intro, reason, worst = self._decided
         numbers = {
-            "largest_load": self._loads(beside=not judged.criteria),
+            "largest_load": self._loads(with_flight=not judged.criteria),
             "followed": f"followed {self._followed} of the time",
         }
-        beside = [words for name, words in numbers.items() if words and not (worst and worst.name == name)]
+        figures = [words for name, words in numbers.items() if words and not (worst and worst.name == name)]
         # A criterion that is told has a number of its own.
         count = 1 if worst is not None and worst.passed is not None else 2
         flight = level_words("the flight", self.scale)
@@ -63,7 +63,7 @@ class Verdict:
             decision += f" for {flight}"
         main_peak = judged.accounting.main
         missed = "largest peak missed" if main_peak is not None and main_peak.reason else ""
-        return _shortened(decision, intro, reason, beside[:count], missed)
+        return _shortened(decision, intro, reason, figures[:count], missed)
 
     @property
     def _decided(self) -> tuple[str, str, str, Criterion | None]:
@@ -93,17 +93,17 @@ class Verdict:
     @property
     def findings(self) -> tuple[str, ...]:
         """At most six sentences: largest load, peaks, time followed, tip, root, and what the machine could not do."""
-        said = (
-            self._largest(), self._peaks(), self._time(), self._tip(), self._root(), self._machine(), self._specimen()
+        sentences = (
+            self._load(), self._peaks(), self._time(), self._tip(), self._root(), self._machine(), self._specimen()
         )  # fmt: skip
-        return tuple(filter(None, said))
+        return tuple(filter(None, sentences))
 
     @property
     def _followed(self) -> str:
-        followed = next((each for each in self.judged.criteria if each.name == "followed"), None)
+        followed = next((criterion for criterion in self.judged.criteria if criterion.name == "followed"), None)
         return followed.number if followed else f"{100 * self.judged.accounting.followed_share:.0f} %"
 
-    def _loads(self, *, beside: bool) -> str:
+    def _loads(self, *, with_flight: bool) -> str:
         """The machine's largest load, or its largest peak where that is not known; with the flight's `beside` it."""
         load, main = self.judged.peaks.get("largest_load", PeakPair()), self.judged.accounting.main
         if math.isfinite(load.machine):
@@ -113,23 +113,23 @@ class Verdict:
         else:
             return ""
         words = f"largest {quantity} {in_g(machine)}"
-        return f"{words} (flight {in_g(flight)})" if beside else words
+        return f"{words} (flight {in_g(flight)})" if with_flight else words
 
     def _limit(self, *names: str, otherwise: str = "no limit set") -> str:
         """Limit of the first of these criteria, whether it is missed, and those of the others that are missed."""
-        limits = {each.name: each for each in self.judged.criteria if each.name in names}
+        limits = {criterion.name: criterion for criterion in self.judged.criteria if criterion.name in names}
         first = limits.pop(names[0], None)
         words = f"({otherwise})" if first is None else f"({_with_miss(first)})"
-        others = [each for each in limits.values() if each.passed is not True]
-        return words + "".join(f"; missed: {each}" for each in others)
+        others = [criterion for criterion in limits.values() if criterion.passed is not True]
+        return words + "".join(f"; missed: {criterion}" for criterion in others)
 
-    def _largest(self) -> str:
+    def _load(self) -> str:
         load = self.judged.peaks.get("largest_load", PeakPair())
         if not math.isfinite(load.machine):
             return ""
         place = f" at {load.place_machine}" if load.place_machine else ""
         return (
-            f"Largest load: {in_g(load.machine)}{place} at {load.time_machine:.2f} s, {_beside(load, in_g)} "
+            f"Largest load: {in_g(load.machine)}{place} at {load.time_machine:.2f} s, {_comparison(load, in_g)} "
             f"{self._limit('largest_load', 'spread')}."
         )
 
@@ -145,28 +145,28 @@ class Verdict:
             name, worst = "the largest", main
         size = f"{percent(worst.error)} off" if worst.error >= _APART else "within 0.1 %"
         limit = self._limit("peaks", otherwise=f"tolerance {percent(accounting.tolerance)}")
-        why = f"; {_because(worst.reason)}" if worst.reason else ""
-        said = f"{in_g(worst.load)} at {worst.time:.2f} s"
-        peak = said if len(peaks) == 1 else f"{name}, {said},"
-        return f"Peaks: {count}; {peak} is {size} {limit.removesuffix(')')}{why})."
+        reason = f"; {_because(worst.reason)}" if worst.reason else ""
+        load = f"{in_g(worst.load)} at {worst.time:.2f} s"
+        peak = load if len(peaks) == 1 else f"{name}, {load},"
+        return f"Peaks: {count}; {peak} is {size} {limit.removesuffix(')')}{reason})."
 
     def _time(self) -> str:
         accounting = self.judged.accounting
         limit, shares = self._limit("followed"), accounting.shares
         rest = [f"{percent(share)} {reason}" for reason, share in shares.items() if share >= _BRIEF][:2]
-        why = f"; {' and '.join(rest)}" if rest else ""
+        reasons = f"; {' and '.join(rest)}" if rest else ""
         part = f" from {self.judged.part}, the part that was run," if self.judged.part else ""
-        return f"Followed: {self._followed} of the time{part} {limit}{why}."
+        return f"Followed: {self._followed} of the time{part} {limit}{reasons}."
 
     def _tip(self) -> str:
         if "tip" not in self.judged.peaks:
             return ""
         tip, name = self.judged.peaks["tip"], self.point[:1].upper() + self.point[1:]
         limit = self._limit("tip", "srs")
-        return f"{name}: {metres(tip.machine)} at {tip.time_machine:.2f} s, {_beside(tip, metres)} {limit}."
+        return f"{name}: {metres(tip.machine)} at {tip.time_machine:.2f} s, {_comparison(tip, metres)} {limit}."
 
     def _root(self) -> str:
-        limited = {each.name for each in self.judged.criteria}
+        limited = {criterion.name for criterion in self.judged.criteria}
         name = "root_force" if "root_force" in limited and "root_moment" not in limited else "root_moment"
         pair, unit = self.judged.peaks.get(name, PeakPair()), "N" if name == "root_force" else "N m"
         if not math.isfinite(pair.ratio):
@@ -174,12 +174,12 @@ class Verdict:
         limit = self._limit(name, "root_force", "root_moment", "stress", "damage")
         yielding = ""
         if self.margins is not None:
-            beyond = [
+            places = [
                 name for name, margin in zip(("in flight", "on the machine"), self.margins, strict=True) if margin < 0
             ]
-            yielding = f"; ABOVE YIELD {' and '.join(beyond)}" if beyond else ""
+            yielding = f"; ABOVE YIELD {' and '.join(places)}" if places else ""
         quantity = name.replace("root_", "")
-        compared = _beside(pair, lambda size: f"{size:.4g} {unit}")
+        compared = _comparison(pair, lambda size: f"{size:.4g} {unit}")
         return f"Root: {quantity} {pair.machine:.4g} {unit}, {compared} {limit}{yielding}."
 
     def _specimen(self) -> str:
@@ -193,18 +193,18 @@ class Verdict:
         if self.exceeded:
             return f"Machine: it exceeds {self.exceeded}."
         stretches = self.judged.accounting.not_followed
-        above = [each for each in stretches if each.reason != _IDLE and each.end - each.start > _BRIEF]
 
         def length(stretch: NotFollowed) -> float:
             return stretch.end - stretch.start
 
-        worst = max(above or stretches, key=length, default=None)
+        above_idle = [stretch for stretch in stretches if stretch.reason != _IDLE and length(stretch) > _BRIEF]
+        worst = max(above_idle or stretches, key=length, default=None)
         if worst is None:
             return ""
-        when = f"from {worst.start:.2f} to {worst.end:.2f} s"
+        span = f"from {worst.start:.2f} to {worst.end:.2f} s"
         if worst.reason == _IDLE:
-            return f"Machine: it cannot go below idle, {in_g(self.judged.accounting.idle)}, longest {when}."
-        return f"Machine: it cannot follow {in_g(worst.flight_peak)} {when} ({_because(worst.reason)})."
+            return f"Machine: it cannot go below idle, {in_g(self.judged.accounting.idle)}, longest {span}."
+        return f"Machine: it cannot follow {in_g(worst.flight_peak)} {span} ({_because(worst.reason)})."
 
 
 def _because(reason: str) -> str:
@@ -229,8 +229,8 @@ _NAMED = 2  # limits that are named one by one
 def _listed(names: Sequence[str]) -> str:
     """Words for limits, ``tip and root moment``; of many the first and how many more."""
     words = [in_words(name) for name in names]
-    shown, more = words[:_NAMED], len(words) - _NAMED
-    return f"{', '.join(shown)} and {more} more" if more > 0 else " and ".join(shown)
+    first_words, remaining = words[:_NAMED], len(words) - _NAMED
+    return f"{', '.join(first_words)} and {remaining} more" if remaining > 0 else " and ".join(first_words)
 
 
 def _with_miss(criterion: Criterion) -> str:
@@ -238,11 +238,11 @@ def _with_miss(criterion: Criterion) -> str:
     return criterion.limit_written + missed
 
 
-def _beside(pair: PeakPair, written: Callable[[float], str]) -> str:
+def _comparison(pair: PeakPair, write: Callable[[float], str]) -> str:
     """Words for the machine's size of a quantity beside the flight's."""
     if not math.isfinite(pair.ratio):
         return "in flight none"
-    flight = f"the flight's {written(pair.flight)}"
+    flight = f"the flight's {write(pair.flight)}"
     if abs(pair.ratio - 1) < _APART:
         return f"within 0.1 % of {flight}"
     if pair.ratio >= _TIMES:

@@ -20,7 +20,7 @@ from gbeam.guards.limits import BINARY_BYTES, SMALLEST, existing, parse_json, re
 from gbeam.io.hdf5 import RECORD
 from gbeam.io.netcdf import FACTS, Stored
 from gbeam.progress import Progress
-from gbeam.results.provenance import Provenance, present
+from gbeam.results.provenance import Provenance, current_environment
 from gbeam.results.study import Difference, Reproduction
 from gbeam.scenario.build import build
 from gbeam.scenario.load import fingerprint, loads
@@ -162,7 +162,7 @@ def reproduction(
     In another environment than that of the file, differences are allowed that rounding makes.
     """
     assert origin.environment is not None
-    changed = origin.environment.changes(present())
+    changed = origin.environment.changes(current_environment())
     names = [*then, *(name for name in now if name not in then)]
     scales = _scales(then, [name for name in then if name in now], unit_of) if changed else {}
 
@@ -197,7 +197,7 @@ def _by_rounding(difference: Difference, then: Any, now: Any) -> bool:
 def checked(file: str, origin: Provenance) -> None:
     """Raise InputError unless there is a scenario, the one that was run, by this release of gbeam."""
     assert origin.environment is not None
-    version, ours = origin.environment.gbeam, present().gbeam
+    version, ours = origin.environment.gbeam, current_environment().gbeam
     if version.split(".")[:2] != ours.split(".")[:2]:
         fix = f"compute it again by gbeam {version}, or run its scenario anew"
         raise InputError(file, f"was computed by gbeam {version}, and this is {ours}", fix)

@@ -217,4 +217,4 @@ class Judgement(NamedTuple):
 
     def loads(self, body: str) -> ErrorEstimate:
         """The larger errors of the force and the moment at a body's root."""
-        return ErrorEstimate.largest(self.error((body, load)) for load in ("force", "moment"))
+        return ErrorEstimate.from_largest(self.error((body, load)) for load in ("force", "moment"))

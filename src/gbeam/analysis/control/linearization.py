@@ -36,7 +36,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
-from gbeam.results.errors import along
+from gbeam.results.errors import direction_words
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, import_control
 
 
@@ -240,9 +240,9 @@ def _poles(state: SteadySystem, subject: Subject) -> tuple[dict[str, Any], tuple
     turning = {"frame": "turning"} if state.whirl is not None and state.whirl.turning else {}
     if judged_bodies(state.system):
         frequency, errors = pole_errors(state)
-        doubts = doubtful(errors) if errors.within(ACCURATE) == 0 else ()
+        doubts = doubtful(errors) if errors.count_within(ACCURATE) == 0 else ()
     growing = (
-        f"the operating point is not stable: {motion.kind} {along(motion.direction)}, growing with "
+        f"the operating point is not stable: {motion.kind} {direction_words(motion.direction)}, growing with "
         f"{motion.growth_rate:.4g} 1/s"
         for motion in instabilities(state, state.moving, subject.directions)
     )

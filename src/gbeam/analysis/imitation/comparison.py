@@ -217,7 +217,7 @@ def compare(
         margins_of_materials=(margins[0], margins[1]) if len(margins) == 2 else None,
         whole=whole,
         scale=flight.scale,
-        exceeded="" if axes is None else axes.beyond,
+        exceeded="" if axes is None else axes.largest_excess,
         kept_every=centrifuge.kept_every,
         point=chosen,
     )  # fmt: skip

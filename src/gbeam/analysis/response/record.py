@@ -115,7 +115,7 @@ class Histories:
         loads = self._loads_in(name, state, self.time) if settings.loads else None
         if loads is not None and not traced:
             at = self._loads_between(name)
-            peaks = replace(peaks, loads=load_peaks(loads.during(self.flown), run.flight.time, at, self.every))
+            peaks = replace(peaks, loads=load_peaks(loads.select_times(self.flown), run.flight.time, at, self.every))
         beyond = len(run.trajectory.time) > len(run.flight.time)
         source, acceleration = structure.source, None
         if loads is not None:
@@ -136,7 +136,7 @@ class Histories:
             qdd=kept.qdd,
             peaks=peaks,
             acceleration=None if acceleration is None else acceleration[self.kept],
-            loads=None if loads is None else loads.during(self.kept),
+            loads=None if loads is None else loads.select_times(self.kept),
             frequencies=structure.rest[0],
             damping_ratio=structure.damping_ratio,
             shapes=None if source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
@@ -155,7 +155,7 @@ class Histories:
         for name, body in judged_bodies(run.posed.system).items():
             response = bodies[name]
             assert response.loads is not None
-            out |= reading_of(name, body, response.q[flown], response.loads.during(flown))
+            out |= reading_of(name, body, response.q[flown], response.loads.select_times(flown))
         return out
 
     def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
@@ -285,7 +285,7 @@ def response_of(
         units=units_of(system),
         bodies=bodies,
         base=base,
-        loop=None if run.loop is None else run.loop.during(read.steps[read.kept]),
+        loop=None if run.loop is None else run.loop.select_times(read.steps[read.kept]),
         hub=read.hub(base, bodies),
         axes=axes,
         assembly=assembly_of(system) if settings.loads and not traced else None,

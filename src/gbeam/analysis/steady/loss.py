@@ -32,7 +32,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import ZERO, symmetric, symmetric_modes, vibrations
 from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import Critical
-from gbeam.results.errors import ErrorEstimate, along
+from gbeam.results.errors import ErrorEstimate, direction_words
 from gbeam.results.result import NOT_KNOWN
 
 SCAN = 64  # values at which the equilibrium is looked at before Brent's method
@@ -105,7 +105,7 @@ def first_loss_along(
         # Only symmetric parts store energy.
         stiffness, mass = symmetric(state.linear.stiffness), symmetric(state.linear.mass)
         direction = subject.directions(state, symmetric_modes(stiffness, mass)[1][:, :1])[0]
-    way = f" {along(direction)}" if direction else ""
+    way = f" {direction_words(direction)}" if direction else ""
     reason = f"{kind}{way} at {root:.6g} {unit}"
     # Half way, where nothing grows yet without bound, with half of the load or less.
     undecided = not_known(2 * path(of, root / 2).bend, reason)

@@ -96,9 +96,9 @@ def unjudged(
         return ErrorEstimate(step, rest, rest, total=step + rest).adding(friction=friction.get(key, math.nan))
 
     place, bent = error(PLACE), [error((name, DEFLECTION)) for name in system.flexible]
-    deflected = ErrorEstimate.largest(bent)
-    loads = ErrorEstimate.largest(error(key) for key in steps if key[1] in ("force", "moment"))
-    stress = ErrorEstimate.largest(error(key) for key in steps if key[1] == "stress")
+    deflected = ErrorEstimate.from_largest(bent)
+    loads = ErrorEstimate.from_largest(error(key) for key in steps if key[1] in ("force", "moment"))
+    stress = ErrorEstimate.from_largest(error(key) for key in steps if key[1] == "stress")
     return Errors(deflected if deflected.step > 0 else place, place, loads=loads, stress=stress, note=note)
 
 
@@ -227,10 +227,10 @@ def _judged(system: System, known: _Known, readings: RicherReadings, lacking: La
     deforms = any((name, DEFLECTION) not in known.nothing for name in judged)
     places = [judgement.difference(PLACE, (computed, better)) for better in readings.alone or [readings.truth]]
     return Errors(
-        displacement=ErrorEstimate.largest(bent) if deforms else of_places,
+        displacement=ErrorEstimate.from_largest(bent) if deforms else of_places,
         place=of_places,
-        loads=ErrorEstimate.largest(loads),
-        stress=ErrorEstimate.largest(stress),
+        loads=ErrorEstimate.from_largest(loads),
+        stress=ErrorEstimate.from_largest(stress),
         beams=tuple(judged),
         by_beam=np.array(places),
         displacement_by_beam=np.array([error.total for error in bent]),
@@ -254,7 +254,7 @@ def _bounded(judged: Mapping[str, Structure], known: _Known) -> Errors | None:
         size, step = known.sizes[name, DEFLECTION], known.steps.get((name, DEFLECTION), math.nan)
         model = LARGEST * (size / body.length) ** 2
         bounds[name] = ErrorEstimate(step, math.nan, model, total=step + model)
-    return Errors(ErrorEstimate.largest(bounds.values()), note=TOO_FAR)
+    return Errors(ErrorEstimate.from_largest(bounds.values()), note=TOO_FAR)
 
 
 def _missed(rings: Ringing, known: _Known, errors: Errors, fastest: float) -> float:

@@ -18,7 +18,7 @@ from gbeam.printable import json_printable
 from gbeam.report import blocks_of, remarks_of
 from gbeam.report.blocks import FIGURES, Block, Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
-from gbeam.report.page.parts import Numbers, badge, drawn, drawn_blocks, escaped, heading
+from gbeam.report.page.parts import Numbers, badge, draw_blocks, draw_figures, escaped, heading
 from gbeam.report.page.records import figures_in
 from gbeam.report.page.scene import scene, shapes
 from gbeam.report.words import as_json
@@ -83,10 +83,10 @@ def assembled(
     """
     numbers = Numbers()
     header: dict[str, Any] = {"plots": [], "maps": []}
-    plots = drawn((describe() for describe in figures.values()), numbers, header)
+    plots = draw_figures((describe() for describe in figures.values()), numbers, header)
     header |= view(numbers)
     viewer_place = '<div id="gbeam-viewer"></div>' if header.keys() & {"scene", "modes"} else ""
-    body = drawn_blocks([*blocks, *_origin(origin)], viewer_place, plots)
+    body = draw_blocks([*blocks, *_origin(origin)], viewer_place, plots)
     return _page(title, badge(state), _subject(verb, origin), body, header, numbers)
 
 
@@ -195,6 +195,6 @@ def _hash(text: str) -> str:
 def html_of(result: Result) -> str:
     """Return a result as HTML for a notebook: the blocks of its page, without figures and viewer."""
     facts = json.loads(facts_text(result))
-    blocks = drawn_blocks([*remarks_of(facts), *blocks_of(str(facts["form"]["kind"]), facts)], "", "")
+    blocks = draw_blocks([*remarks_of(facts), *blocks_of(str(facts["form"]["kind"]), facts)], "", "")
     title, state = facts.get("title", ""), badge(facts.get("state", facts["outcome"]))
     return f"<div>{heading(title, 3) if title else ''}<p>{state}</p>{blocks}</div>"

@@ -37,17 +37,17 @@ def paragraph(text: str, kind: str = "") -> str:
     return f"<p{_class(kind)}>{escaped(sentence(text))}</p>"
 
 
-def drawn_blocks(blocks: Iterable[Block], viewer: str, figures: str, level: int = 2) -> str:
+def draw_blocks(blocks: Iterable[Block], viewer: str, figures: str, level: int = 2) -> str:
     """Return blocks as HTML, under headings of a level. The viewer and the figures stand at their places."""
     groups = []
     for are_tables, group in groupby(blocks, lambda block: isinstance(block, Table)):
-        parts = list(filter(None, (_drawn_block(block, viewer, figures, level) for block in group)))
+        parts = list(filter(None, (_draw_block(block, viewer, figures, level) for block in group)))
         side_by_side = are_tables and len(parts) > 1
         groups.append(f'<div class="gbeam-tables">{"".join(parts)}</div>' if side_by_side else "".join(parts))
     return "".join(groups)
 
 
-def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
+def _draw_block(block: Block, viewer: str, figures: str, level: int) -> str:
     """HTML of one block; empty if it has nothing to show."""
     match block:
         case Table():
@@ -62,12 +62,12 @@ def _drawn_block(block: Block, viewer: str, figures: str, level: int) -> str:
         case Place():
             content = viewer if block.of == "viewer" else figures
             return (paragraph(block.hint, "faint gbeam-screen") if content and block.hint else "") + content
-    inside = drawn_blocks(block.blocks, viewer, figures, level + bool(block.title))
-    if not inside:
+    inner = draw_blocks(block.blocks, viewer, figures, level + bool(block.title))
+    if not inner:
         return ""
     if block.folded:
-        return f"<details><summary>{escaped(block.folded)}</summary>{inside}</details>"
-    return (heading(block.title, level) if block.title else "") + inside
+        return f"<details><summary>{escaped(block.folded)}</summary>{inner}</details>"
+    return (heading(block.title, level) if block.title else "") + inner
 
 
 def table(block: Table) -> str:
@@ -96,20 +96,20 @@ def badge(state: str) -> str:
 
 
 def _cell(cell: Cell, numeric: bool) -> str:
-    inside = escaped(cell.text)
+    content = escaped(cell.text)
     if math.isfinite(cell.share):
         bar = f'<meter class="share" min="0" max="1" value="{min(cell.share, 1.0):.3f}"></meter>'
-        inside = f"{bar}<span>{inside}</span>"
-    return f"<td{_class(' '.join(filter(None, (cell.tone, 'number' if numeric else ''))))}>{inside}</td>"
+        content = f"{bar}<span>{content}</span>"
+    return f"<td{_class(' '.join(filter(None, (cell.tone, 'number' if numeric else ''))))}>{content}</td>"
 
 
 def _class(names: str) -> str:
     return f' class="{names}"' if names else ""
 
 
-def under(place: str, variables: Mapping[str, Any]) -> dict[str, Any]:
+def variables_under(place: str, variables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the variables whose names begin with `place`, by the rest of their names."""
-    return {name.removeprefix(place): each for name, each in variables.items() if name.startswith(place)}
+    return {name.removeprefix(place): variable for name, variable in variables.items() if name.startswith(place)}
 
 
 COLUMNS = 600  # across a plot, of which a line has no more samples than show
@@ -148,9 +148,9 @@ FITTING = 30  # letters beside an axis; of longer labels the caption has the qua
 _NUDGE = 1e-5  # of the whole width: places that are the same are drawn beside each other
 
 
-def drawn(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -> str:
+def draw_figures(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -> str:
     """Return the places of figures on a page; what is drawn there goes into `header`, its arrays into `numbers`."""
-    return "".join(_figure(each, numbers, header) for each in figures)
+    return "".join(_figure(figure, numbers, header) for figure in figures)
 
 
 def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
@@ -158,10 +158,10 @@ def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
     reasons = dict.fromkeys(reason for panel in figure.panels for *_, reason in panel.spans)
     notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
     parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
-    plain = [panel for panel in figure.panels if panel.bars is None and panel.map is None]
+    plots = [panel for panel in figure.panels if panel.bars is None and panel.map is None]
     places = "".join(
         f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
-        for name, title in (_plot(panel, figure.subject, numbers, header["plots"]) for panel in plain)
+        for name, title in (_plot(panel, figure.subject, numbers, header["plots"]) for panel in plots)
     )
     parts.append(f'<div class="gbeam-plots">{places}</div>' if places else "")
     parts += [_table(panel, panel.bars) for panel in figure.panels if panel.bars is not None]
@@ -192,8 +192,8 @@ def _caption_words(panel: Panel) -> Iterator[str]:
     """Yield, in words, the marks, texts and ticks that Matplotlib would write into the plot."""
     for mark in panel.marks:
         yield f"{mark.label} at {number(mark.value)}"
-    named = {line.label.removeprefix("_") for line in panel.lines}
-    yield from (words for *_, words in panel.texts if words not in named)
+    line_names = {line.label.removeprefix("_") for line in panel.lines}
+    yield from (words for *_, words in panel.texts if words not in line_names)
     if panel.ticks:
         yield ", ".join(f"{k}: {word}" for k, word in enumerate(panel.ticks))
 
@@ -223,15 +223,14 @@ def _look(line: Line, quantity: str) -> dict[str, Any]:
 
 def _ascending(x: Floats) -> Floats:
     """Return x with every value that repeats the one before moved on by a little."""
-    same = np.concatenate([[False], np.diff(x) <= 0])
-    return x + _NUDGE * np.ptp(x) * same if same.any() else x
+    repeated = np.concatenate([[False], np.diff(x) <= 0])
+    return x + _NUDGE * np.ptp(x) * repeated if repeated.any() else x
 
 
 def _table(panel: Panel, bars: Bars) -> str:
     """Table of bars: a row for each name, with its values, their intervals, and bars beside them."""
-    largest = (
-        max((float(np.nanmax(np.abs(values), initial=0.0)) for values in bars.values.values()), default=0.0) or 1.0
-    )
+    sizes = [float(np.nanmax(np.abs(values), initial=0.0)) for values in bars.values.values()]
+    largest = max(sizes, default=0.0) or 1.0
 
     def cell(label: str, k: int) -> Cell:
         value, words = bars.values[label][k], number(bars.values[label][k])

@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.figures import Describe, figures_of
 from gbeam.io.layout import SHARED, name_of, pattern_of
-from gbeam.report.page.parts import under
+from gbeam.report.page.parts import variables_under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.declared import INSIDE, NAMES, Declaration, annotation, declarations, record_in, types_in
@@ -54,7 +54,7 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
     if record.listed_by:
         answers = []
         for name, answer in facts["motions"].items():
-            v = under(f"motions/{name}/", variables)
+            v = variables_under(f"motions/{name}/", variables)
             if needed is None or needed in v:
                 answers.append(read(record, answer, v, **{record.listed_by: name}))
         return figures_of(tuple(answers))
@@ -78,7 +78,9 @@ def read(kind: type[_R], facts: Facts, v: Facts | None = None, pattern: str = "*
         value = None if declaration.name is None or not v else _stored(kind, name, declaration, facts, v, pattern)
         if value is not None and declaration.role == "variable":
             sizes |= dict(zip(declaration.dims, np.shape(value), strict=False))
-        if value is not None or (value := _value(kind, name, declaration, facts)) is not None:
+        if value is None:
+            value = _value(kind, name, declaration, facts)
+        if value is not None:
             more[name] = value
     for name, declaration in declarations(kind):
         if name in by_name and name not in more and _is_needed(by_name[name]):
@@ -108,14 +110,14 @@ def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Fa
     if inner is not None:
         inner_facts: Any = None
         if key is not None:
-            inner_facts = facts if key == INSIDE else _at(facts, key or name)
+            inner_facts = facts if key == INSIDE else _lookup(facts, key or name)
         inner_pattern = pattern_of(declaration, pattern)
         if declaration.role == "part" and _has(inner, v, inner_pattern):
             return read(inner, inner_facts or {}, v, inner_pattern)
         if declaration.role == "rows" and isinstance(inner_facts, dict):
             shared = {name: v[name] for name in SHARED if name in v}
             rows = inner_facts.items()
-            return {row: read(inner, row_facts, shared | under(f"{row}_", v)) for row, row_facts in rows}
+            return {row: read(inner, row_facts, shared | variables_under(f"{row}_", v)) for row, row_facts in rows}
     elif f"{variable}_real" in v:
         return v[f"{variable}_real"] + 1j * v[f"{variable}_imag"]
     elif declaration.role == "coordinate" or (declaration.role == "variable" and variable in v):
@@ -166,7 +168,7 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
     inner = record_in(kind, name) if declaration.role in ("part", "rows") else None
     if row_dim is not None:
         row_list = rows if isinstance(rows, list) else [rows[place] for place in NAMES.get(row_dim, rows)]
-        cells = [_at(row, key) for row in row_list]
+        cells = [_lookup(row, key) for row in row_list]
         if inner is not None:  # such as errors: of a record of arrays, what the rows have
             names: Facts = next((cell for cell in cells if cell), {})
             return read(inner, {part: [cell[part] for cell in cells] for part in names}) if names else None
@@ -174,11 +176,11 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
             return tuple(cells)
         if len(declaration.dims) > 1 and all(cell is None for cell in cells):
             return None
-        arrays = [_bare(np.nan if cell is None else cell, hint, declaration) for cell in cells]
+        arrays = [_record_value(np.nan if cell is None else cell, hint, declaration) for cell in cells]
         return np.stack(arrays, declaration.dims.index(row_dim)) if arrays else None
-    value: Any = facts if key == INSIDE else _at(facts, key)
+    value: Any = facts if key == INSIDE else _lookup(facts, key)
     if inner is None or value is None:
-        return _bare(value, hint, declaration)
+        return _record_value(value, hint, declaration)
     if declaration.role == "part":
         return read(inner, value)
     if isinstance(value, dict):
@@ -186,13 +188,13 @@ def _at_key(kind: type, name: str, declaration: Declaration, facts: Facts, key: 
     return tuple(read(inner, row) for row in value)
 
 
-def _at(facts: Any, key: str) -> Any:
+def _lookup(facts: Any, key: str) -> Any:
     for word in key.removeprefix("/").split("."):
         facts = facts.get(word) if isinstance(facts, dict) else None
     return facts
 
 
-def _bare(value: Any, hint: Any, declaration: Declaration) -> Any:
+def _record_value(value: Any, hint: Any, declaration: Declaration) -> Any:
     """Value of JSON in the form that a record has: arrays for lists, vectors for components, NaN for null."""
     if isinstance(value, dict) and declaration.dims[-1:] and declaration.dims[-1] in NAMES:
         return _vectors(value)
@@ -209,15 +211,15 @@ def _array(values: Any) -> Floats:
 
 
 def _column(rows: Any, key: str) -> Floats:
-    return _array([each.get(key) for each in rows])
+    return _array([row.get(key) for row in rows])
 
 
 def _words(rows: Any, key: str) -> tuple[str, ...]:
-    return tuple(each[key] for each in rows)
+    return tuple(row[key] for row in rows)
 
 
 def _vectors(values: Facts) -> Floats:
-    return np.stack([_array(each) for each in values.values()], axis=-1)
+    return np.stack([_array(component) for component in values.values()], axis=-1)
 
 
 def _study(facts: Facts, variables: Facts) -> Study:
@@ -225,11 +227,11 @@ def _study(facts: Facts, variables: Facts) -> Study:
     responses: dict[str, Any] = {}
     comparisons = []
     for name, entry in facts["motions"].items():
-        v = under(f"motions/{name}/", variables)
+        v = variables_under(f"motions/{name}/", variables)
         if "time" in v:
             responses[name] = read(Response, entry, v)
     for entry in facts["comparisons"]:
-        v = under(f"comparisons/{entry['centrifuge']}/", variables)
+        v = variables_under(f"comparisons/{entry['centrifuge']}/", variables)
         if "time" in v and entry["flight"] in responses:
             comparisons.append(read(Comparison, entry, v))
     return Study("", responses, tuple(comparisons))
@@ -243,7 +245,9 @@ def _at_rest(loads: Facts) -> Loads:
 
 
 def _axes(facts: Facts, _: Facts) -> Facts:
-    return {"episodes": tuple((each["start"], each["end"], each["reason"]) for each in facts["not_followed"])}
+    return {
+        "episodes": tuple((episode["start"], episode["end"], episode["reason"]) for episode in facts["not_followed"])
+    }
 
 
 def _eigenvalues(facts: Facts, _: Facts) -> Facts:
@@ -261,17 +265,21 @@ def _sensitivity(facts: Facts, _: Facts) -> Facts:
     """Fields of a Sensitivity: derivatives (measures, parameters), parameters as in the first measure."""
     measures = facts["measures"].values()
     rows = {row["path"]: row for row in next(iter(measures))["parameters"]}
-    by_path = [{row["path"]: row["derivative"] for row in measure["parameters"]} for measure in measures]
+    derivatives = []
+    for measure in measures:
+        by_path = {row["path"]: row["derivative"] for row in measure["parameters"]}
+        derivatives.append([by_path[path] for path in rows])
     return {
         "measures": tuple(facts["measures"]), "units": _words(measures, "unit"), "figures": _column(measures, "value"),
         "parameters": tuple(rows), "parameter_units": _words(rows.values(), "unit"),
-        "values": _column(rows.values(), "value"), "derivatives": _array([[row[k] for k in rows] for row in by_path]),
+        "values": _column(rows.values(), "value"), "derivatives": _array(derivatives),
     }  # fmt: skip
 
 
 def _sweep(facts: Facts, variables: Facts) -> Facts:
     """Fields of a Sweep. Its histories come from the file's variables, all others from JSON."""
-    named = {key: facts.get(key, {}) for key in ("measures", "histories")}
+    measures, histories = facts.get("measures", {}), facts.get("histories", {})
+    quantities = {**measures, **histories}
     parameters = [
         Parameter(row["path"], np.array(row["values"]), row["unit"], row["distribution"] or "")
         for row in facts["parameters"]
@@ -279,11 +287,9 @@ def _sweep(facts: Facts, variables: Facts) -> Facts:
     return {
         "parameters": tuple(parameters), "outcome": np.array(facts["outcomes"], dtype=object),
         "message": np.array(facts["messages"], dtype=object), "time": _array(facts.get("time", [])),
-        "measures": {name: _array(measure["values"]) for name, measure in named["measures"].items()},
-        "units": {name: quantity["unit"] for quantities in named.values() for name, quantity in quantities.items()},
-        "histories": {
-            name: variables[f"{name} history"] for name in named["histories"] if f"{name} history" in variables
-        },
+        "measures": {name: _array(measure["values"]) for name, measure in measures.items()},
+        "units": {name: quantity["unit"] for name, quantity in quantities.items()},
+        "histories": {name: variables[f"{name} history"] for name in histories if f"{name} history" in variables},
         "statistics": {name: _statistics(bounds) for name, bounds in facts["statistics"].items()},
         "indices": {name: _indices(shares) for name, shares in facts["indices"].items()},
     }  # fmt: skip
@@ -301,8 +307,10 @@ def _statistics(facts: Facts) -> Statistics:
 
 
 def _indices(facts: Facts) -> Indices:
-    values = np.stack([np.stack([_bounds(each[order]) for order in ORDERS], axis=-2) for each in facts.values()], -3)
-    return read(Indices, {}, parameters=tuple(facts), values=values)
+    values = []
+    for shares in facts.values():
+        values.append(np.stack([_bounds(shares[order]) for order in ORDERS], axis=-2))
+    return read(Indices, {}, parameters=tuple(facts), values=np.stack(values, axis=-3))
 
 
 def _fit(facts: Facts, v: Facts) -> Facts:

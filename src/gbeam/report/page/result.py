@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.figures import Describe, figures_of
 from gbeam.guards.limits import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of, read_stored
-from gbeam.report.facts import facts, origin_json, whole
+from gbeam.report.facts import facts, json_form, origin_json
 from gbeam.report.page.document import html, viewer
 from gbeam.report.page.parts import Numbers
 from gbeam.results.equilibrium import Rest
@@ -31,34 +31,35 @@ _FIX = "give the result.nc of `gbeam run`, its folder, or the JSON of another ve
 
 
 def report_of(
-    result: Any, known: Mapping[str, Any] | None = None, figures: Mapping[str, Describe] | None = None
+    result: Any, facts_json: Mapping[str, Any] | None = None, figures: Mapping[str, Describe] | None = None
 ) -> str:
     """Return the page of a result, or of several of one kind.
 
     Its JSON `known` and figures are computed unless they are given.
     """
-    if known is None:
-        known = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
-        figures = figures_of(whole(result))
+    if facts_json is None:
+        facts_json = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
+        figures = figures_of(json_form(result))
     variables: dict[str, Any] = {}
     for answer in result if isinstance(result, tuple) else (result,):
         if isinstance(answer, SHOWN):
             variables |= variables_of(answer)
-    return html(known, variables, figures=figures)
+    return html(facts_json, variables, figures=figures)
 
 
 def variables_of(result: Result) -> dict[str, Any]:
     """Return the arrays of a result's file by path. Those of a result listed by motion stand under that motion."""
-    named = whole(result)
-    folder = f"motions/{getattr(named, named.listed_by)}" if named.listed_by else ""
-    return {
-        f"{path or folder}/{name}" if path or folder else name: variable.values
-        for path, group in groups_of(named).items()
-        for name, variable in (group.variables | group.coordinates).items()
-    }
+    record = json_form(result)
+    folder = f"motions/{getattr(record, record.listed_by)}" if record.listed_by else ""
+    arrays = {}
+    for path, group in groups_of(record).items():
+        prefix = f"{path or folder}/" if path or folder else ""
+        for name, variable in (group.variables | group.coordinates).items():
+            arrays[f"{prefix}{name}"] = variable.values
+    return arrays
 
 
-def shown(result: Result) -> tuple[dict[str, Any], Numbers]:
+def viewer_data(result: Result) -> tuple[dict[str, Any], Numbers]:
     """Header and numbers of a result in the viewer; InputError if it has nothing to show."""
     numbers, facts_json = Numbers(), facts(result)
     view = viewer(
@@ -110,14 +111,14 @@ def file_in(folder: Path) -> Path:
     """Return the file of the only result in a folder; InputError if there is none, or several."""
     candidates = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
     if len(candidates) != 1:
-        named = ", ".join(each.name for each in candidates[:4])
-        raise InputError(str(folder), f"holds several results, {named}" if candidates else "holds no result", _FIX)
+        names = ", ".join(candidate.name for candidate in candidates[:4])
+        raise InputError(str(folder), f"holds several results, {names}" if candidates else "holds no result", _FIX)
     return candidates[0]
 
 
 def widget(result: Result) -> Any:
     """Return the viewer of a result as a widget of Jupyter."""
-    header, numbers = shown(result)
+    header, numbers = viewer_data(result)
     try:
         import anywidget
         import traitlets

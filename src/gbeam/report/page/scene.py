@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gbeam.report.page.parts import Numbers, Ref, under
+from gbeam.report.page.parts import Numbers, Ref, variables_under
 from gbeam.report.words import number
 from gbeam.results.result import Floats
 from gbeam.results.solids import von_mises
@@ -37,7 +37,7 @@ def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) ->
     """
     motion_scenes = []
     for name, environment in motions.items():
-        v = under(f"motions/{name}/", variables)
+        v = variables_under(f"motions/{name}/", variables)
         if "hangs_on" in v:
             moving = _at_once(v) if v["place"].ndim == 2 else _on_hub(v)
             motion_scenes.append(motion(name, environment, moving, numbers))
@@ -53,9 +53,9 @@ def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: f
     return {"name": name, "environment": environment, "parts": parts, "time": time, "largest": largest}
 
 
-def _indices(time: Floats, some: Floats) -> Any:
+def _indices(time: Floats, chosen_times: Floats) -> Any:
     """Indices of `some` of the times in `time`."""
-    return np.searchsorted(time, some - 1e-12).clip(max=len(time) - 1)
+    return np.searchsorted(time, chosen_times - 1e-12).clip(max=len(time) - 1)
 
 
 def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tuple[dict[str, Any], Floats]:
@@ -79,7 +79,7 @@ def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict
     """Header of the loads around a specimen over `places` (p, 3): of the base and, if there is one, of the machine."""
     actual = v.get("load_actual")
     load = v.get(GROUND) if actual is None else actual
-    header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _largest(load)}
+    header = {} if load is None else {"load": numbers.add(load[index]), "largestLoad": _longest(load)}
     if actual is None:
         return header
     time, place, turn = v["time"], v.get("control_place"), v.get("turn")
@@ -128,7 +128,7 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     parts, corners, carrier = [], list[Floats](), dict[str, Any]()
     deflected = np.zeros((len(times), 1, 3))
     for k, body in enumerate(v["body"]):
-        inner = under(f"{body}_", v)
+        inner = variables_under(f"{body}_", v)
         root = points.index(f"{body}.root")
         attitude = v["attitude"][index, root]
         turn = Rotation.from_quat(np.roll(attitude, -1, axis=-1))
@@ -146,16 +146,15 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
         if body in beams:
             part["beam"] = _beam(inner, index, numbers)
             tip = inner["outline"][:, -1:]
-            deflected = tip if _largest(tip) > _largest(deflected) else deflected
+            deflected = tip if _longest(tip) > _longest(deflected) else deflected
             reach = inner.get("outline_place", reach)  # of a straight one its points say where it is
             carrier |= _carrier(inner, v, index, numbers)
         elif "surface_vertices" in inner:
-            surface = under("surface_", inner)
-            surface["sizes"] = np.stack(
-                [np.interp(times, surface["time"], each) for each in surface["sizes"].T], axis=1
-            )
+            surface = variables_under("surface_", inner)
+            sizes = [np.interp(times, surface["time"], size) for size in surface["sizes"].T]
+            surface["sizes"] = np.stack(sizes, axis=1)
             part["surface"], farthest = _surface(surface, inner.get("solid_von_mises"), numbers)
-            deflected = farthest if _largest(farthest) > _largest(deflected) else deflected
+            deflected = farthest if _longest(farthest) > _longest(deflected) else deflected
             reach = surface["vertices"].min(axis=0) + CORNERS * np.ptp(surface["vertices"], axis=0)
         elif "specimen_corner_place" in inner:
             bolts = inner.get("specimen_bolt_place", reach)
@@ -163,21 +162,21 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
             part |= {"box": _box(high - low, (low + high) / 2, np.eye(3)), "points": bolts.tolist()}
             reach = np.concatenate([low + CORNERS * (high - low), bolts])
         else:
-            others = [i for i, each in enumerate(points) if each.startswith(f"{body}.") and i != root]
+            others = [i for i, point in enumerate(points) if point.startswith(f"{body}.") and i != root]
             part["points"] = [turn[0].inv().apply(place[0, i] - origin[0]).tolist() for i in others]
             if "box" in v and np.isfinite(v["box"][k]).all():  # no variable where all are flexible
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
                 part["box"] = _box(size, centre, rotation)
                 reach = centre + (SIGNS * size / 2) @ rotation.T
-        corners += [origin[:, None] + turn.apply(each)[:, None] for each in reach]
+        corners += [origin[:, None] + turn.apply(place_on_body)[:, None] for place_on_body in reach]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
-    largest = max([_largest(deflected), *(_largest(v[f"{body}_outline"]) for body in beams)])
+    largest = max([_longest(deflected), *(_longest(v[f"{body}_outline"]) for body in beams)])
     header = _header(name, environment, parts, numbers.add(times), largest)
-    header["length"] = max((_length(under(f"{body}_", v)) for body in beams), default=2 * radius)
+    header["length"] = max((_length(variables_under(f"{body}_", v)) for body in beams), default=2 * radius)
     if len(parts) > 1 or corners or moved:  # more than one straight beam on its base
         header |= {"middle": numbers.add(middle), "radiusShown": radius}
-    at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(each[0] for each in corners)])
+    at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(corner[0] for corner in corners)])
     header |= carrier | _carried(v, index, at_start, numbers)
     if GROUND in v and not deflected.any():
         deflected = v[GROUND][index, None]
@@ -186,7 +185,7 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
 
 def _length(beam: Variables) -> float:
     """Length of a beam, of one on a line the largest distance from its root."""
-    return float(beam["point"][-1]) if "outline_place" not in beam else _largest(beam["outline_place"])
+    return float(beam["point"][-1]) if "outline_place" not in beam else _longest(beam["outline_place"])
 
 
 def _carrier(inner: Variables, v: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
@@ -239,15 +238,15 @@ def _on_hub(v: Variables) -> Variables:
     if not bodies or GROUND in v:
         return v
     (body,), times = bodies, len(v["time"])
-    still = {"hangs_on": ["ground"], "joint_kind": ["fixed"], "undeformed": np.zeros((1, 3))}
+    joint = {"hangs_on": ["ground"], "joint_kind": ["fixed"], "undeformed": np.zeros((1, 3))}
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (times, 1, 1))
     placed = {"point": [f"{body}.root"], "place": np.zeros((times, 1, 3)), "attitude": upright}
-    return {**v, "body": bodies, **still, **placed, GROUND: v[f"{body}_root_acceleration"]}
+    return {**v, "body": bodies, **joint, **placed, GROUND: v[f"{body}_root_acceleration"]}
 
 
 def _in_mode(surface: Mapping[str, Any], k: int) -> float:
     """Largest displacement of a surface in a mode, in the size of its shape."""
-    return _largest(np.abs(np.einsum("s,sva->va", _complex(surface, "sizes")[k], surface["shapes"])))
+    return _longest(np.abs(np.einsum("s,sva->va", _complex(surface, "sizes")[k], surface["shapes"])))
 
 
 def _complex(v: Mapping[str, Any], name: str) -> Any:
@@ -256,10 +255,10 @@ def _complex(v: Mapping[str, Any], name: str) -> Any:
 
 def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str, Any]:
     """Return every mode of a system as a motion of one period."""
-    v = {name: each for name, each in v.items() if name != GROUND}
-    v |= {key: each for body in v["body"] for key, each in _line(v, body).items()}
-    pairs = enumerate(((each["frequency"], each["direction"]) for each in facts["modes"]), 1)
-    labels = [f"{i}: {number(frequency)} Hz, {direction}" for i, (frequency, direction) in pairs]
+    v = {name: variable for name, variable in v.items() if name != GROUND}
+    for body in v["body"]:
+        v |= _line(v, body)
+    labels = [f"{i}: {number(mode['frequency'])} Hz, {mode['direction']}" for i, mode in enumerate(facts["modes"], 1)]
     motions = []
     beams = [body for body in v["body"] if f"{body}_outline" in v]
     roots = [list(v["point"]).index(f"{body}.root") for body in v["body"]]
@@ -273,17 +272,18 @@ def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str
         return _complex(v, name)[k]
 
     for k, label in enumerate(labels):
-        largest = [np.abs(of_mode(each, k)).max() for each in ("point_shape", *(f"{b}_outline_shape" for b in beams))]
-        largest += [_in_mode(each, k) for each in meshes.values()]
+        sizes = [np.abs(of_mode("point_shape", k)).max()]
+        sizes += [np.abs(of_mode(f"{body}_outline_shape", k)).max() for body in beams]
+        sizes += [_in_mode(mesh, k) for mesh in meshes.values()]
         twists = {body: of_mode(f"{body}_outline_twist", k) for body in beams if f"{body}_outline_twist_real" in v}
-        turn = max(np.abs(each).max() for each in (of_mode("point_turn", k)[roots], *twists.values()))
-        amplitude = _amplitude(2 * radius, float(max(largest)), float(turn))
-        attitudes = [Rotation.from_rotvec(amplitude * each) * rest for each in _swung(of_mode("point_turn", k))]
+        turn = max(np.abs(turns).max() for turns in (of_mode("point_turn", k)[roots], *twists.values()))
+        amplitude = _amplitude(2 * radius, float(max(sizes)), float(turn))
+        attitudes = [Rotation.from_rotvec(amplitude * turns) * rest for turns in _swung(of_mode("point_turn", k))]
         moving = {
             **v,
             "time": PHASES,
             "place": v["place"] + amplitude * _swung(of_mode("point_shape", k)),
-            "attitude": np.stack([np.roll(each.as_quat(), 1, axis=-1) for each in attitudes]),
+            "attitude": np.stack([np.roll(attitude.as_quat(), 1, axis=-1) for attitude in attitudes]),
         }
         for body in beams:
             moving[f"{body}_outline_time"] = PHASES
@@ -341,5 +341,5 @@ def _mode(label: str, motion: dict[str, Any]) -> dict[str, Any]:
     return motion | {"name": label, "environment": label, "relative": True, "period": PERIOD}
 
 
-def _largest(vectors: Floats) -> float:
+def _longest(vectors: Floats) -> float:
     return float(np.sqrt((vectors**2).sum(axis=-1).max()))
