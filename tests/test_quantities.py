@@ -20,7 +20,7 @@ import pytest
 import gbeam as gb
 from gbeam.arrays.tree import Value
 from gbeam.guards.arguments import typed
-from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kinds, below, kind_of_argument, only
+from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kinds, common_kind, element_kinds, kind_of_argument
 from gbeam.guards.units import unit_of
 from gbeam.mechanics.tree.joints import OF_COORDINATES
 from gbeam.results.errors import Errors
@@ -59,8 +59,8 @@ def kinds_in(value: Any, kinds: Kinds) -> set[str]:
     """Kinds of the numbers in a value."""
     if isinstance(value, (list, tuple, dict)):
         entries = value.items() if isinstance(value, dict) else enumerate(value)
-        return set().union(*(kinds_in(each, below(kinds, key)) for key, each in entries))
-    return {only(kinds)} if numbers(value) or value is None else set()
+        return set().union(*(kinds_in(each, element_kinds(kinds, key)) for key, each in entries))
+    return {common_kind(kinds)} if numbers(value) or value is None else set()
 
 
 def with_units(value: Any) -> dict[str, Any]:
@@ -174,9 +174,9 @@ def written(value: Any, kinds: Kinds, how: str) -> Any:
     """The value with its numbers in another unit than that of SI, exactly as large, as texts or as quantities."""
     if isinstance(value, (dict, list, tuple)):
         entries = value.items() if isinstance(value, dict) else enumerate(value)
-        changed = {key: written(each, below(kinds, key), how) for key, each in entries}
+        changed = {key: written(each, element_kinds(kinds, key), how) for key, each in entries}
         return changed if isinstance(value, dict) else type(value)(changed.values())
-    kind = only(kinds)
+    kind = common_kind(kinds)
     if not numbers(value) or kind in ("", PLAIN) or not np.isfinite(value):
         return value
     si = "mm" if kind == WRITTEN else KINDS[kind].unit

@@ -17,7 +17,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.guards import processes as module
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import read_confined
 
 from ..calling import Answer, gbeam, spent
 from ..scenarios import FLIGHT, SPECIMEN, model
@@ -81,7 +81,7 @@ def test_a_reader_that_waits_for_ever_is_ended_by_the_clock(
 ) -> None:
     monkeypatch.setattr(module, "_PATIENCE", 2)
     with pytest.raises(gb.InputError, match=r"is not read within 2 s"):
-        confined(_wait, tmp_path, refuse=lambda problem: gb.InputError("x", problem, "y"))
+        read_confined(_wait, tmp_path, refuse=lambda problem: gb.InputError("x", problem, "y"))
 
 
 @LINUX
@@ -158,7 +158,7 @@ def test_a_reader_ends_with_the_process_that_asked(tmp_path: Path) -> None:
 
 
 def test_answers_come_as_they_were_returned(tmp_path: Path) -> None:
-    answer = confined(_answer, tmp_path, 3, refuse=lambda problem: gb.InputError("x", problem, "y"))
+    answer = read_confined(_answer, tmp_path, 3, refuse=lambda problem: gb.InputError("x", problem, "y"))
     assert answer["text"] == "µ\ud800" and answer["nothing"] is None and answer["path"] == os.fspath(tmp_path)
     assert answer["texts"].tolist() == [["a", ""], ["b", "c"]] and answer["texts"].dtype == object
     for name, dtype in (("numbers", "<f8"), ("bytes", "|S2"), ("scalar", "<i4"), ("big", ">f4")):
@@ -173,18 +173,18 @@ def test_what_a_reader_says_is_said_again(tmp_path: Path) -> None:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         with pytest.raises(gb.InputError) as refused:
-            confined(_refuse, tmp_path, refuse=refuse)
+            read_confined(_refuse, tmp_path, refuse=refuse)
     assert [str(each.message) for each in said] == ["twice"]
     assert (refused.value.where, refused.value.problem, refused.value.fix) == ("here", "is wrong", "mend it")
     with pytest.raises(RuntimeError, match="ZeroDivisionError"):
-        confined(_fail, tmp_path, refuse=refuse)
+        read_confined(_fail, tmp_path, refuse=refuse)
 
 
 @LINUX
 def test_a_reader_that_cannot_start_is_no_fault_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_START", "raise SystemExit(1)")
     with pytest.raises(gb.ComputationError, match="is there no memory for it"):
-        confined(_answer, tmp_path, 3, refuse=lambda problem: gb.InputError("x", problem, "y"))
+        read_confined(_answer, tmp_path, 3, refuse=lambda problem: gb.InputError("x", problem, "y"))
 
 
 def _wait(path: str) -> None:

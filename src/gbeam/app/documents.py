@@ -16,7 +16,7 @@ from gbeam.app.files import known, regular
 from gbeam.app.form import file_keys, form, known_at, new_table, value_at
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
-from gbeam.guards.processes import remembered
+from gbeam.guards.processes import read_cached
 from gbeam.io.binary import is_binary
 from gbeam.io.models.registry import contents_of
 from gbeam.motion import Flight
@@ -235,7 +235,7 @@ def _columns(file: Path) -> tuple[list[tuple[str, str]], set[float]]:
     if is_binary(file):
         table = read_table(file)
         return [(column.name, column.unit) for column in table.columns[:MOST]], {each.rate for each in table.stated}
-    columns, rates = remembered(columns_of_text, file, MOST, refuse=refuse)
+    columns, rates = read_cached(columns_of_text, file, MOST, refuse=refuse)
     return [tuple(each) for each in columns], {*rates}
 
 
@@ -245,7 +245,7 @@ def _skin(file: Path) -> dict[str, Any]:
     def refuse(problem: str) -> InputError:
         return InputError("mesh", f"{file.name} {problem}", "mesh it more coarsely, or write it again")
 
-    read = remembered(skin, file, refuse=refuse)
+    read = read_cached(skin, file, refuse=refuse)
     return {
         "vertices": [float(f"{each:.6g}") for each in read["vertices"].flat],
         "triangles": read["triangles"].ravel().tolist(),

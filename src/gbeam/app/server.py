@@ -27,7 +27,7 @@ from gbeam.app.jobs import Jobs
 from gbeam.cli.process import end_on_signals
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
-from gbeam.guards.processes import alone, tightly
+from gbeam.guards.processes import hold_lock, upload_limits
 from gbeam.io.netcdf import csv_of, read_stored
 from gbeam.numerics.sparse import solver
 from gbeam.scenario.text.source import parse
@@ -221,7 +221,7 @@ class _Tight:
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Answer a request."""
-        with tightly() if scope["type"] == "http" else nullcontext():
+        with upload_limits() if scope["type"] == "http" else nullcontext():
             await self._app(scope, receive, send)
 
 
@@ -264,7 +264,9 @@ def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
             end_on_signals()
             signal.raise_signal(self.told)
 
-    with alone(files.ensured(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"):
+    with hold_lock(
+        files.ensured(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"
+    ):
         try:
             opened = listening(port)
         except OSError as error:

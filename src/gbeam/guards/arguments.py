@@ -30,9 +30,9 @@ def refuse_units(where: str, value: Any) -> None:
         raise InputError(where, f"is {shortened(str(value), 60)}", f"give numbers without a unit, in SI{_in_si(value)}")
     listed = value.tolist() if getattr(getattr(value, "dtype", None), "kind", "") == "O" else value
     if isinstance(listed, Mapping):
-        elements = {f"{where}[{key!r}]": each for key, each in listed.items()}
+        elements = {f"{where}[{key!r}]": entry for key, entry in listed.items()}
     elif isinstance(listed, (list, tuple, set)) and not _BARE.issuperset(map(type, listed)):
-        elements = {f"{where}[{i}]": each for i, each in enumerate(listed)}
+        elements = {f"{where}[{i}]": entry for i, entry in enumerate(listed)}
     else:
         return
     for place, element in elements.items():
@@ -80,8 +80,12 @@ def typed(function: F) -> F:
     """
     declared = parameters_of(function) if declares(function) else {}
     function.__doc__ = with_parameters(function.__doc__ or "", declared)
-    told = {name: each.quantity for name, each in declared.items() if each.words or each.quantity is not None}
-    kinds(**{name: "" if quantity is None else quantity.kind for name, quantity in told.items()})(function)
+    quantities = {
+        name: declaration.quantity
+        for name, declaration in declared.items()
+        if declaration.words or declaration.quantity is not None
+    }
+    kinds(**{name: "" if quantity is None else quantity.kind for name, quantity in quantities.items()})(function)
     if isinstance(function, type):
         function.__init__ = _typed(function.__init__, declared)  # type: ignore[misc]
         return typed_methods(function)
@@ -98,30 +102,33 @@ def typed_methods(cls: C) -> C:
             continue
         code = method.__code__
         names = code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount]
-        if not hasattr(method, "__wrapped__") and any(kind_of_argument(name, each, {}) for each in names):
+        if not hasattr(method, "__wrapped__") and any(kind_of_argument(name, argument, {}) for argument in names):
             setattr(cls, name, _typed(method, {}, method=True))
     return cls
 
 
 def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) -> F:
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    of = owner if method else ""
+    method_owner = owner if method else ""
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
-    every = signature(function).parameters.values()
-    names = [each.name for each in every if each.kind in kinds]
-    rest = [each.name for each in every if each.kind is Parameter.VAR_POSITIONAL]
+    parameters = signature(function).parameters.values()
+    names = [parameter.name for parameter in parameters if parameter.kind in kinds]
+    rest = [parameter.name for parameter in parameters if parameter.kind is Parameter.VAR_POSITIONAL]
 
-    def named(args: tuple[Any, ...]) -> list[tuple[str, Any]]:
-        return [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
+    def name_arguments(args: tuple[Any, ...]) -> list[tuple[str, Any]]:
+        pairs = list(zip(names, args, strict=False))
+        for name in rest:  # at most one
+            pairs += [(name, value) for value in args[len(names) :]]
+        return pairs
 
     generates = str(signature(function).return_annotation).startswith("Iterator")  # and shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
-        tests = _tests(function, texts, of)
+        tests = _tests(function, texts, method_owner)
         for name, value in pairs:
             refuse_units(name, value)
             if name in tests and not tests[name](value):
-                refused = _refused(name, value, _hints(function, of)[name], texts)
+                refused = _refused(name, value, _hints(function, method_owner)[name], texts)
                 refused.of_type = True
                 raise refused
 
@@ -129,7 +136,7 @@ def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) 
     def call(*args: Any, **keywords: Any) -> Any:
         if method and not keywords and all(map(_is_bare, args[1:])):
             return function(*args)
-        pairs = (*named(args), *keywords.items())
+        pairs = (*name_arguments(args), *keywords.items())
         if not generates and ("progress", True) in pairs:
             with Bar() as bar:
                 return call(**dict(pairs) | {"progress": bar})
@@ -137,7 +144,7 @@ def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) 
             read = functools.partial(_read, owner, dict(pairs))
             args = (*map(read, names, args), *args[len(names) :])
             keywords = {name: read(name, value) for name, value in keywords.items()}
-            pairs = (*named(args), *keywords.items())
+            pairs = (*name_arguments(args), *keywords.items())
         check(pairs, True)
         for name, value in pairs:
             if name in declared:
@@ -197,7 +204,7 @@ def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
 
 def _test(hint: Any, texts: bool) -> Test:
     """Return a test of values for a type hint; with `texts` it lets texts pass as numbers."""
-    tests = [_single(each, texts) for each in alternatives(hint)]
+    tests = [_single(alternative, texts) for alternative in alternatives(hint)]
     return tests[0] if len(tests) == 1 else lambda value: any(test(value) for test in tests)
 
 
@@ -229,7 +236,7 @@ def _single(kind: Any, texts: bool) -> Test:
         entries = {name: _test(hint, texts) for name, hint in get_type_hints(kind).items()}
         # Unknown names are refused by the function.
         return lambda value: (
-            isinstance(value, Mapping) and all(entries[key](each) for key, each in value.items() if key in entries)
+            isinstance(value, Mapping) and all(entries[key](member) for key, member in value.items() if key in entries)
         )
     if origin in _MAPPINGS:
         entry = _test(parts[1], texts)
@@ -258,7 +265,7 @@ def _is_number(value: Any, texts: bool) -> bool:
 def _are_numbers(value: Any, texts: bool) -> bool:
     listed = value.tolist() if _kind(value) == "O" else value
     if isinstance(listed, (list, tuple)):
-        return all(_are_numbers(each, texts) for each in listed)
+        return all(_are_numbers(entry, texts) for entry in listed)
     return _is_number(value, texts)
 
 
@@ -273,14 +280,14 @@ def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
     """Return a function that gives the index of the first element of a wrong type in a list, or None."""
     parts = get_args(kind)
     fixed = get_origin(kind) is tuple and Ellipsis not in parts
-    tests = [_test(each, texts) for each in parts if each is not Ellipsis]
+    tests = [_test(part, texts) for part in parts if part is not Ellipsis]
 
     def find(value: Any) -> int | None:
         if not tests or not isinstance(value, Collection) or (_kind(value) in _NUMERIC and parts[0] in _OF_NUMBERS):
             return None  # to look at another iterable would consume it
         if fixed and len(value) != len(parts):
             return len(parts)
-        return next((k for k, each in enumerate(value) if not tests[k if fixed else 0](each)), None)
+        return next((k for k, element in enumerate(value) if not tests[k if fixed else 0](element)), None)
 
     return find
 
@@ -300,17 +307,17 @@ def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
             part = parts[wrong] if origin is tuple and Ellipsis not in parts else parts[0]
             return _refused(f"{name}[{wrong}]", list(value)[wrong], part, texts)
     if isinstance(value, type):
-        shown = f"the class {value.__name__} itself"
+        value_words = f"the class {value.__name__} itself"
     else:
-        shown = shortened(repr(value), 60) if isinstance(value, _PLAIN) else f"of type {type(value).__name__}"
-    wanted = _described(hint)
-    in_si = " in SI" if isinstance(value, str) and BEGINNING.match(value) and "whole" not in wanted else ""
-    return InputError(name, f"is {shown}", f"give {wanted}{in_si}")
+        value_words = shortened(repr(value), 60) if isinstance(value, _PLAIN) else f"of type {type(value).__name__}"
+    expected = _described(hint)
+    in_si = " in SI" if isinstance(value, str) and BEGINNING.match(value) and "whole" not in expected else ""
+    return InputError(name, f"is {value_words}", f"give {expected}{in_si}")
 
 
 def _described(hint: Any) -> str:
-    kinds = [each for each in alternatives(hint) if each is not type(None)]
-    words = dict.fromkeys(_word(each) for each in kinds)
+    kinds = [alternative for alternative in alternatives(hint) if alternative is not type(None)]
+    words = dict.fromkeys(_word(kind) for kind in kinds)
     listed = any(word.endswith(" numbers") for word in words)
     return " or ".join(word for word in words if word != "numbers" or not listed)
 
@@ -340,5 +347,5 @@ def _word(kind: Any) -> str:
     if getattr(origin, "_is_protocol", False):  # such as Motion, whose docstring begins with the classes that fit
         line = str(origin.__doc__ or name).splitlines()[0].rstrip(".")
         return line[0].lower() + line[1:]
-    how = f" (from {_MAKERS[name]})" if name in _MAKERS else ""
-    return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}{how}"
+    maker = f" (from {_MAKERS[name]})" if name in _MAKERS else ""
+    return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}{maker}"

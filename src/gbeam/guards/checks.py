@@ -59,10 +59,10 @@ def array(where: str, value: Any) -> Any:
         raise InputError(where, f"is {shortened(repr(value))}", "give numbers in SI") from None
 
 
-def refuse_traced(where: str, value: Any, why: str) -> None:
+def refuse_traced(where: str, value: Any, reason: str) -> None:
     """Raise InputError, with the reason `why`, if JAX traces a number."""
     if is_traced(value):
-        raise InputError(where, f"is traced by JAX, and {why}", "give a number")
+        raise InputError(where, f"is traced by JAX, and {reason}", "give a number")
 
 
 def vector(where: str, value: Any) -> Any:
@@ -91,8 +91,8 @@ def choice(where: str, name: str, choices: Iterable[str]) -> None:
     """Raise InputError unless the name is one of the choices."""
     names = tuple(choices)
     if name not in names:
-        near = closest(str(name), names)
-        guess = f"did you mean {near!r}? " if near else ""
+        spelling = closest(str(name), names)
+        guess = f"did you mean {spelling!r}? " if spelling else ""
         raise InputError(where, f"is {name!r}", f"{guess}choose one of {', '.join(names)}")
 
 
@@ -142,10 +142,10 @@ def implausible(where: str, kind: str, value: Any) -> tuple[str, ...]:
     limits = RANGES[kind]
     if is_jax(value) or limits.low <= abs(value) <= limits.high:
         return ()
-    between = f"{_figures(limits.low)} to {_figures(limits.high)} {limits.unit}".rstrip()
+    range_words = f"{_figures(limits.low)} to {_figures(limits.high)} {limits.unit}".rstrip()
     slip = _slip(limits, float(value))
     advice = f"did you mean {slip}?" if slip else "is its unit right?"
-    return (f"{where} is {float(value):g} {limits.unit}".rstrip() + f", outside the plausible {between}; {advice}",)
+    return (f"{where} is {float(value):g} {limits.unit}".rstrip() + f", outside the plausible {range_words}; {advice}",)
 
 
 def possible(where: str, kind: str, value: Any) -> None:

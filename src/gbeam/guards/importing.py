@@ -14,13 +14,13 @@ HOME = os.path.abspath(os.path.join(__file__, *[os.pardir] * 3))  # where gbeam 
 
 def path_without(*folders: str) -> list[str]:
     """Return the path of this process without folders, of which gbeam's own stays, and without relative entries."""
-    return [
-        entry
-        for entry in sys.path
-        if isinstance(entry, str)
-        and os.path.isabs(entry)
-        and (_same(entry, HOME) or not any(_same(entry, each) for each in folders))
-    ]
+    path = []
+    for entry in sys.path:
+        if not isinstance(entry, str) or not os.path.isabs(entry):
+            continue
+        if _is_same_file(entry, HOME) or not any(_is_same_file(entry, folder) for folder in folders):
+            path.append(entry)
+    return path
 
 
 def path_of_children() -> list[str]:
@@ -36,8 +36,8 @@ def variables() -> dict[str, str]:
     return {"PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(path_of_children())}
 
 
-def _same(one: str, other: str) -> bool:
+def _is_same_file(entry: str, path: str) -> bool:
     try:
-        return os.path.samefile(one, other)
+        return os.path.samefile(entry, path)
     except OSError:  # one of them is not there
         return False

@@ -143,11 +143,11 @@ T = TypeVar("T", bound=Callable[..., Any])
 def kinds(**declared: Declared) -> Callable[[T], T]:
     """Declare kinds of arguments of a function or a class, by name, that are not those of every such name."""
 
-    def of(thing: T) -> T:
+    def declare(thing: T) -> T:
         _BY_OWNER.setdefault(thing.__name__, {}).update(declared)
         return thing
 
-    return of
+    return declare
 
 
 def kind_of_argument(owner: str, name: str, arguments: Mapping[str, Any]) -> Kinds:
@@ -156,16 +156,17 @@ def kind_of_argument(owner: str, name: str, arguments: Mapping[str, Any]) -> Kin
     return declared(arguments) if callable(declared) else declared
 
 
-def below(of: Kinds, key: Any) -> Kinds:
+def element_kinds(kinds: Kinds, key: Any) -> Kinds:
     """Return the kinds of the element at a key or index of an argument of these kinds."""
-    if isinstance(of, Mapping) and isinstance(key, str):
-        return of.get(key, of.get("*", ""))
-    return of[key] if isinstance(of, tuple) and key in range(len(of)) else only(of)
+    if isinstance(kinds, Mapping) and isinstance(key, str):
+        return kinds.get(key, kinds.get("*", ""))
+    return kinds[key] if isinstance(kinds, tuple) and key in range(len(kinds)) else common_kind(kinds)
 
 
-def only(of: Kinds) -> str:
+def common_kind(kinds: Kinds) -> str:
     """Return the kind that all elements have; empty if they differ."""
-    if isinstance(of, str):
-        return of
-    common = {only(element) for element in (of.values() if isinstance(of, Mapping) else of)}
+    if isinstance(kinds, str):
+        return kinds
+    elements = kinds.values() if isinstance(kinds, Mapping) else kinds
+    common = {common_kind(element) for element in elements}
     return common.pop() if len(common) == 1 else ""

@@ -58,10 +58,10 @@ UPLOADS_READ = 4  # at once
 MESHER_BYTES, MESHER_SECONDS = 2**33, 600  # of Gmsh, which meshes what it reads
 
 
-def refuse_more(where: str, what: str, count: float, most: int, each: float, fix: str) -> None:
+def refuse_more(where: str, what: str, count: float, most: int, size: float, fix: str) -> None:
     """Raise InputError if `count` is above `most`; its message has the memory, at `each` bytes, that it would take."""
     if not count <= most:
-        raise InputError(where, f"makes {count:.4g} {what}, which would take {in_bytes(count * each)}", fix)
+        raise InputError(where, f"makes {count:.4g} {what}, which would take {in_bytes(count * size)}", fix)
 
 
 def refuse_large_file(where: str, path: str | os.PathLike[str], most: int, fix: str) -> None:
@@ -104,10 +104,10 @@ def restrict(memory: int, seconds: int) -> None:
         return
     import resource
 
-    wanted = {resource.RLIMIT_CPU: (seconds, seconds + 5), resource.RLIMIT_CORE: (0, 0)}
+    limits = {resource.RLIMIT_CPU: (seconds, seconds + 5), resource.RLIMIT_CORE: (0, 0)}
     if sys.platform != "darwin":
-        wanted[resource.RLIMIT_AS] = (memory, memory)
-    for kind, pair in wanted.items():
+        limits[resource.RLIMIT_AS] = (memory, memory)
+    for kind, pair in limits.items():
         inherited = resource.getrlimit(kind)[1]
         soft, hard = (limit if inherited == resource.RLIM_INFINITY else min(limit, inherited) for limit in pair)
         resource.setrlimit(kind, (soft, hard))
@@ -148,11 +148,12 @@ def parse_json(text: str) -> Any:
         raise ValueError("nested too deeply") from None
     level = [value]
     for _ in range(NESTING):
-        level = [child for node in level if isinstance(node, (dict, list)) for child in _inside(node)]
+        nodes = [node for node in level if isinstance(node, (dict, list))]
+        level = [child for node in nodes for child in _children(node)]
         if not level:
             return value
     raise ValueError("nested too deeply")
 
 
-def _inside(node: dict[str, Any] | list[Any]) -> Any:
+def _children(node: dict[str, Any] | list[Any]) -> Any:
     return node.values() if isinstance(node, dict) else node

@@ -72,11 +72,11 @@ class _Packing:
         if isinstance(value, (np.ndarray, np.generic)):
             array = np.asarray(value)
             if array.dtype.kind not in _PLAIN:
-                return {"texts": [str(each) for each in array.flat], "shape": list(array.shape)}
+                return {"texts": [str(entry) for entry in array.flat], "shape": list(array.shape)}
             self.arrays.append(array)
             return {"array" if isinstance(value, np.ndarray) else "number": len(self.arrays) - 1}
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
-            fields = {each.name: self.form(getattr(value, each.name)) for each in dataclasses.fields(value)}
+            fields = {field.name: self.form(getattr(value, field.name)) for field in dataclasses.fields(value)}
             return {"record": [type(value).__module__, type(value).__qualname__], "fields": fields}
         raise TypeError(f"{type(value).__name__} is no data")
 
@@ -91,14 +91,14 @@ class _Unpacking:
     def value(self, form: Any) -> Any:
         """Return the value of a form in JSON."""
         if isinstance(form, list):
-            return [self.value(each) for each in form]
+            return [self.value(entry) for entry in form]
         if not isinstance(form, dict):
             return form
         match form:
             case {"tuple": values}:
-                return tuple(self.value(each) for each in values)
+                return tuple(self.value(entry) for entry in values)
             case {"mapping": values}:
-                return {key: self.value(each) for key, each in values.items()}
+                return {key: self.value(entry) for key, entry in values.items()}
             case {"array": number}:
                 return self._arrays[number]
             case {"number": number}:
@@ -114,12 +114,12 @@ class _Unpacking:
 
     def _record(self, module: str, name: str, fields: dict[str, Any]) -> Any:
         """Make a loaded dataclass of gbeam, of exactly its fields; what it checks was checked before it was written."""
-        known = getattr(sys.modules.get(module), name, None) if module.startswith("gbeam.") else None
-        if not isinstance(known, type) or not dataclasses.is_dataclass(known):
+        record_class = getattr(sys.modules.get(module), name, None) if module.startswith("gbeam.") else None
+        if not isinstance(record_class, type) or not dataclasses.is_dataclass(record_class):
             raise ValueError(f"{module}.{name} is no dataclass of gbeam")
-        if [each.name for each in dataclasses.fields(known)] != list(fields):
+        if [field.name for field in dataclasses.fields(record_class)] != list(fields):
             raise ValueError(f"{name} has other fields")
-        record = object.__new__(known)
+        record = object.__new__(record_class)
         for field, form in fields.items():
             object.__setattr__(record, field, self.value(form))
         return record

@@ -51,15 +51,15 @@ def parameters_of(declaring: Callable[..., Any]) -> dict[str, Parameter]:
     declaring = unwrap(declaring)
     hints = resolved_hints(_annotated(declaring))
     return {
-        name: _parameter(name, hints.get(name, Any), each.default)
-        for name, each in signature(declaring).parameters.items()
-        if each.kind is not Argument.VAR_KEYWORD and name not in ("self", "cls")
+        name: _parameter(name, hints.get(name, Any), argument.default)
+        for name, argument in signature(declaring).parameters.items()
+        if argument.kind is not Argument.VAR_KEYWORD and name not in ("self", "cls")
     }
 
 
 def declares(function: Callable[..., Any]) -> bool:
     """True if an annotation of a class or function says more than a type, which takes no evaluating to see."""
-    return any("Annotated[" in str(each) for each in _annotated(function).__annotations__.values())
+    return any("Annotated[" in str(annotation) for annotation in _annotated(function).__annotations__.values())
 
 
 def _annotated(declaring: Callable[..., Any]) -> Callable[..., Any]:
@@ -77,12 +77,12 @@ def _parameter(name: str, hint: Any, default: Any) -> Parameter:
 
 def resolved_hints(function: Callable[..., Any]) -> dict[str, Any]:
     """Types of the arguments of a function by name, with annotations; names that cannot be resolved are Any."""
-    unknown: dict[str, Any] = {}
+    unresolved: dict[str, Any] = {}
     while True:
         try:
-            return get_type_hints(function, localns=unknown, include_extras=True)
+            return get_type_hints(function, localns=unresolved, include_extras=True)
         except NameError as error:
-            unknown[str(error.name)] = Any
+            unresolved[str(error.name)] = Any
 
 
 def _annotations(hint: Any) -> Iterator[Any]:
@@ -103,16 +103,18 @@ def alternatives(hint: Any) -> tuple[Any, ...]:
         return alternatives(hint.__origin__)
     parts = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     of_arrays = set(get_args(ArrayLike)) & set(parts)
-    return (*(each for each in parts if each not in of_arrays), ArrayLike) if len(of_arrays) > 1 else parts
+    if len(of_arrays) < 2:
+        return parts
+    return (*(part for part in parts if part not in of_arrays), ArrayLike)
 
 
 def with_parameters(docstring: str, parameters: Mapping[str, Parameter]) -> str:
     """Return a docstring with a section of its parameters, before its other sections, if they have words."""
-    if not any(each.words for each in parameters.values()):
+    if not any(parameter.words for parameter in parameters.values()):
         return docstring
     text = cleandoc(docstring)
-    following = _FOLLOWING.search(text)
-    place = following.start() if following else len(text)
+    next_section = _FOLLOWING.search(text)
+    place = next_section.start() if next_section else len(text)
     section = SECTION + "\n".join(map(_entry, parameters.values()))
     return "\n\n".join(filter(None, (text[:place].rstrip(), section, text[place:])))
 
@@ -151,7 +153,8 @@ def type_words(hint: Any) -> str:
     marks = [*hint.__metadata__] if get_origin(hint) is Annotated else []
     for mark in marks:
         if isinstance(mark, Shape):
-            return f"({', '.join(map(str, mark.sizes))}{',' if len(mark.sizes) == 1 else ''}) of float"
+            sizes = ", ".join(map(str, mark.sizes))
+            return f"({sizes},) of float" if len(mark.sizes) == 1 else f"({sizes}) of float"
         if isinstance(mark, Rows):
             return f"(n, {mark.size}) of float"
         if isinstance(mark, OneOrSome):
@@ -163,7 +166,7 @@ def type_words(hint: Any) -> str:
         return "array_like"
     origin, parts = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
-        kinds = (each for each in alternatives(hint) if each is not type(None))
+        kinds = (alternative for alternative in alternatives(hint) if alternative is not type(None))
         return " or ".join(dict.fromkeys(map(type_words, kinds)))
     if origin is Literal:
         return f"{{{', '.join(map(repr, parts))}}}"

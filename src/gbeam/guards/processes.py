@@ -51,7 +51,7 @@ _TIGHT = ContextVar("tight", default=False)
 _AT_ONCE = BoundedSemaphore(UPLOADS_READ)
 
 
-def confined(
+def read_confined(
     reader: Callable[..., Any],
     path: str | os.PathLike[str],
     *arguments: Any,
@@ -84,14 +84,14 @@ def confined(
         except subprocess.TimeoutExpired:
             raise refuse(f"is not read within {_PATIENCE * seconds} s") from None
         if status == 1:  # Python's own
-            why = f"is there no memory for it, or no room in {tempfile.gettempdir()}?"
-            raise ComputationError("not read", f"the process that reads {path} ended: {why}")
+            reason = f"is there no memory for it, or no room in {tempfile.gettempdir()}?"
+            raise ComputationError("not read", f"the process that reads {path} ended: {reason}")
         if status == _OUT_OF_MEMORY:
             raise refuse(f"takes more than {in_bytes(memory)} of memory to read")
         if status == -getattr(signal, "SIGXCPU", 0):
             raise refuse(f"takes more than {seconds} s of processor time to read")
         if status:
-            name = next((known.name for known in signal.Signals if known == -status), f"status {status}")
+            name = next((kind.name for kind in signal.Signals if kind == -status), f"status {status}")
             raise refuse(f"is damaged: it ends the library that reads it ({name})")
         reply.seek(0)
         outcome, answer, messages = read_packed(reply)
@@ -107,27 +107,28 @@ def confined(
 _ELSEWHERE = "the caller"  # place of an error that the caller's `refuse` makes
 
 
-def remembered(
+def read_cached(
     reader: Callable[..., Any],
     path: str | os.PathLike[str],
     *arguments: Any,
     refuse: Callable[[str], InputError],
     **limits: int,
 ) -> Any:
-    """Return what :func:`confined` does, or did or refused of the same content before; `arguments` are hashable.
+    """Return what :func:`read_confined` does, or did or refused of the same content before; `arguments` are hashable.
 
     The cases of a sweep have one record or mesh, as have the edits of a scenario.
     """
-    if (content := file_digest(path)) is None:
-        return confined(reader, path, *arguments, refuse=refuse, **limits)
-    answer = _remembered(reader, os.fspath(path), arguments, content, tuple(limits.items()), _TIGHT.get())
+    content = file_digest(path)
+    if content is None:
+        return read_confined(reader, path, *arguments, refuse=refuse, **limits)
+    answer = _read_cached(reader, os.fspath(path), arguments, content, tuple(limits.items()), _TIGHT.get())
     if isinstance(answer, InputError):
         raise refuse(answer.problem) if answer.where == _ELSEWHERE else answer.with_traceback(None)
     return answer
 
 
 @lru_cache(maxsize=4)
-def _remembered(
+def _read_cached(
     reader: Callable[..., Any],
     path: str,
     arguments: tuple[Any, ...],
@@ -141,7 +142,7 @@ def _remembered(
         return InputError(_ELSEWHERE, problem, "")
 
     try:
-        return confined(reader, path, *arguments, refuse=refuse, **dict(limits))
+        return read_confined(reader, path, *arguments, refuse=refuse, **dict(limits))
     except InputError as error:
         return error
 
@@ -158,7 +159,7 @@ def file_digest(path: str | os.PathLike[str]) -> str | None:
 
 
 @contextmanager
-def tightly() -> Iterator[None]:
+def upload_limits() -> Iterator[None]:
     """Read files in this context, such as those that an app is sent, within the limits of uploads."""
     token = _TIGHT.set(True)
     try:
@@ -204,14 +205,14 @@ _BEYOND = 2**30  # offset of the byte that Windows locks, which then cannot be r
 
 
 @contextmanager
-def alone(file: Path, where: str, fix: str) -> Iterator[None]:
+def hold_lock(file: Path, where: str, fix: str) -> Iterator[None]:
     """Hold a lock file, with this process's name in it; InputError, with the holder's, if another process holds it."""
     try:
         handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError as error:
         raise InputError(where, f"{file} cannot be written ({error.strerror})", "name another folder") from None
     try:
-        if not _taken(handle):
+        if not _lock(handle):
             holder = os.read(handle, 200).decode(errors="replace").strip() or "another process"
             raise InputError(where, f"{file.parent} is in use by {holder}", fix)
         with suppress(OSError):  # a full disk: the lock holds
@@ -222,7 +223,7 @@ def alone(file: Path, where: str, fix: str) -> Iterator[None]:
         os.close(handle)
 
 
-def _taken(handle: int) -> bool:
+def _lock(handle: int) -> bool:
     """Lock a file until it is closed; return false if it is locked, true also if the file system has no locks."""
     try:
         if sys.platform == "win32":

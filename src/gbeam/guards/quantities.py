@@ -44,13 +44,13 @@ class Quantity:
         if is_jax(value) or (isinstance(value, str) and self.accepts(value)):
             return
         if isinstance(value, Mapping):
-            for key, each in value.items():
-                self.check(f"{where}.{key}", each)
+            for key, element in value.items():
+                self.check(f"{where}.{key}", element)
         elif isinstance(value, np.ndarray) and value.ndim and value.dtype.kind in "fiuc":
             self._check_array(where, value)
         elif isinstance(value, (list, tuple)) or (hasattr(value, "ndim") and value.ndim > 0):
-            for i, each in enumerate(value):
-                self.check(f"{where}[{i}]", each)
+            for i, element in enumerate(value):
+                self.check(f"{where}[{i}]", element)
         elif self.sign == "any":
             finite(where, value)
         else:
@@ -71,8 +71,12 @@ class Quantity:
             return
         if self.sign != "any":
             suspects |= (values < 0) | (values == 0 if self.sign == "positive" else False)
-        chosen = [np.argmax(suspects)] if suspects.any() else [np.argmin(size), np.argmax(size)] if size.size else []
-        for index in (np.unravel_index(each, values.shape) for each in chosen):
+        if suspects.any():
+            chosen = [np.argmax(suspects)]
+        else:
+            chosen = [np.argmin(size), np.argmax(size)] if size.size else []
+        for flat_index in chosen:
+            index = np.unravel_index(flat_index, values.shape)
             self.check(where + "".join(f"[{i}]" for i in index), float(values[index]))
 
     @property
@@ -94,18 +98,18 @@ class Quantity:
         """Return the value of a scenario in SI, or an accepted word as it is; UnitError, with advice, otherwise."""
         if isinstance(value, str) and self.accepts(value):
             return value
-        otherwise = "".join(f', or "{word}"' for word in self.words)
+        alternatives = "".join(f', or "{word}"' for word in self.words)
         try:
             number = quantity(value, self.kind)
         except UnitError as error:
-            raise UnitError(error.problem, error.hint + otherwise) from None
+            raise UnitError(error.problem, error.hint + alternatives) from None
         if number and self.kind not in _BY_RANGE and not SMALLEST <= abs(number) <= LARGEST:
             size = "large" if abs(number) > LARGEST else "small"
             raise UnitError(f"{{value}} is too {size} to compute with", f"give a size from {SMALLEST:g} to {LARGEST:g}")
         if number < 0 and self.sign != "any":
-            raise UnitError("{value} is negative", f"give {self._signed}{otherwise}")
+            raise UnitError("{value} is negative", f"give {self._signed}{alternatives}")
         if number == 0 and self.sign == "positive":
-            raise UnitError("{value} is zero", f"give {self._signed}{otherwise}")
+            raise UnitError("{value} is zero", f"give {self._signed}{alternatives}")
         return number
 
     @property

@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from gbeam.errors import InputError
-from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kind, Kinds, below, only
+from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kind, Kinds, common_kind, element_kinds
 from gbeam.guards.limits import QUANTITY
 from gbeam.printable import closest, shortened
 
@@ -84,34 +84,34 @@ def quantity(value: object, kind: str) -> float:
     # bool is an int to Python, a mistake to the reader of a scenario.
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         try:
-            shown = shortened(f"{value!r}")
+            value_words = shortened(f"{value!r}")
         except ValueError:  # too many digits to write
-            shown = "the number"
+            value_words = "the number"
         try:
             number = float(value)
         except OverflowError:
             number = math.inf
     elif isinstance(value, str):
-        shown = f'"{shortened(value)}"'
+        value_words = f'"{shortened(value)}"'
         if len(value) > QUANTITY:
-            raise UnitError(f"{shown} has {len(value)} characters", f"expected {such_as}")
+            raise UnitError(f"{value_words} has {len(value)} characters", f"expected {such_as}")
         match = NUMBER.fullmatch(value)
         if match is None:
-            raise UnitError(f"{shown} is not a number with a unit", f"expected {such_as}")
+            raise UnitError(f"{value_words} is not a number with a unit", f"expected {such_as}")
         number, unit = float(match[1]), match[2]
         if not unit:
-            raise UnitError(f"{shown} has no unit", _no_unit(match[1], expected))
+            raise UnitError(f"{value_words} has no unit", _no_unit(match[1], expected))
         try:
             if unit == "dB" and kind == "amplitude ratio":
                 number = math.inf if number > 6000 else 10.0 ** (number / 20)
             else:
                 number *= _factor(unit, kind)
         except UnitError as error:
-            raise UnitError(f"{shown} {error.problem}", error.hint) from None
+            raise UnitError(f"{value_words} {error.problem}", error.hint) from None
     else:
         raise UnitError(f"{spoken(value)} is not a number", f"expected {such_as}")
     if not math.isfinite(number):
-        raise UnitError(f"{shown} is not finite", f"expected {such_as}")
+        raise UnitError(f"{value_words} is not finite", f"expected {such_as}")
     return number
 
 
@@ -121,17 +121,18 @@ def in_si(where: str, value: Any, kinds: Kinds) -> Any:
     Raises InputError if one is of another kind; all else stays as it is.
     """
     if isinstance(value, dict):
-        return {key: in_si(f"{where}.{key}", each, below(kinds, key)) for key, each in value.items()}
+        return {key: in_si(f"{where}.{key}", element, element_kinds(kinds, key)) for key, element in value.items()}
     if isinstance(value, (list, tuple)):
-        parts = [in_si(f"{where}[{i}]", each, below(kinds, i)) for i, each in enumerate(value)]
+        parts = [in_si(f"{where}[{i}]", element, element_kinds(kinds, i)) for i, element in enumerate(value)]
         unchanged = all(part is element for part, element in zip(parts, value, strict=True))
         return value if unchanged else type(value)(parts)
-    kind = only(kinds)
+    kind = common_kind(kinds)
     if kind in ("", PLAIN):
         return value
     if getattr(getattr(value, "dtype", None), "kind", "") == "U":
         listed = value.tolist()
-        return value if (read := in_si(where, listed, kind)) is listed else read
+        numbers = in_si(where, listed, kind)
+        return value if numbers is listed else numbers
     try:
         if isinstance(value, str):
             return quantity(value, kind) if kind != WRITTEN and BEGINNING.match(value) else value
@@ -146,7 +147,7 @@ def _of_pint(value: Any, kind: str) -> Any:
     """Return a quantity of pint as a number in SI, or, for the kind WRITTEN, as text of a scenario."""
     unit, number = re.sub(r"\bg\b", "gram", f"{value.units:~P}"), value.magnitude
     if kind == WRITTEN:
-        texts = [f"{float(each)!r} {unit}".strip() for each in getattr(number, "flat", [number])]
+        texts = [f"{float(entry)!r} {unit}".strip() for entry in getattr(number, "flat", [number])]
         return texts if getattr(number, "ndim", 0) else texts[0]
     if not unit and not KINDS[kind].unit:
         return number
@@ -161,12 +162,12 @@ def argument(text: str, kind: str) -> float:
     return quantity(float(text) if match and not match[2] else text, kind)
 
 
-def read_quantity(where: str, text: str, kind: str, of: str = "") -> float:
+def read_quantity(where: str, text: str, kind: str, prefix: str = "") -> float:
     """Read a quantity of the command line in SI; the problem of an InputError at `where` begins with `of`."""
     try:
         return argument(text, kind)
     except UnitError as error:
-        raise InputError(where, f"{of}{error.problem}", error.hint or "write a number with its unit") from None
+        raise InputError(where, f"{prefix}{error.problem}", error.hint or "write a number with its unit") from None
 
 
 def unit_of(text: str, kind: str) -> tuple[str, float]:
@@ -218,8 +219,12 @@ def parsed_factor(unit: str, kind: str) -> float:
     except UndefinedUnitError as error:
         names = error.unit_names
         name = names if isinstance(names, str) else next(iter(names))
-        near = _meant(name, text, kind)
-        hint = f"did you mean {near!r}?" if near else f'expected {expected.phrase}, such as "{expected.example}"'
+        suggestion = _meant(name, text, kind)
+        hint = (
+            f"did you mean {suggestion!r}?"
+            if suggestion
+            else f'expected {expected.phrase}, such as "{expected.example}"'
+        )
         raise UnitError(f"has the unknown unit {name!r}", hint) from None
     except Exception:  # pint's parser lets tokenizer, syntax, type and value errors through
         raise unreadable from None
@@ -248,8 +253,8 @@ def _meant(name: str, unit: str, kind: str) -> str | None:
     for corrected in (re.sub("([2-4])$", r"^\1", name), re.sub("N(m+)$", r"N \1", name)):  # mm2, kNm
         if corrected != name and makes_the_kind(corrected):
             return corrected
-    fitting = [each for each in _SPELLINGS.split() if makes_the_kind(each)]
-    as_long = [each for each in fitting if len(each) == len(name) > 1 and mistyped(each) <= 1]
+    fitting = [spelling for spelling in _SPELLINGS.split() if makes_the_kind(spelling)]
+    as_long = [spelling for spelling in fitting if len(spelling) == len(name) > 1 and mistyped(spelling) <= 1]
     return min(as_long, key=mistyped, default=None) or closest(name, fitting)
 
 

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.errors import InputError
+from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.guards.limits import ELEMENTS, refuse_more
-from gbeam.guards.processes import remembered
-from gbeam.guards.whole import opened
+from gbeam.guards.processes import read_cached
 from gbeam.io.table import Column, Stated, Table, array_columns, states_rate
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
             array = _unpacked(array, {} if inside else item.attrs)
         return array.T if matlab else array
 
-    with opened(path) as file:
+    with open_hdf5(path) as file:
         add("", file)
         file.visititems(add)
     return Table(tuple(columns), stated=tuple(stated))
@@ -342,7 +342,7 @@ def read_binary(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Tabl
     def refuse(problem: str) -> InputError:
         return InputError("record.file", f"{path} {problem}", "export the record again, with fewer variables")
 
-    parts = remembered(parts_of, path, tuple(sorted(set(words))), refuse=refuse)
+    parts = read_cached(parts_of, path, tuple(sorted(set(words))), refuse=refuse)
     columns = tuple(_column(**column) for column in parts["columns"])
     return Table(columns, stated=tuple(Stated(*entry) for entry in parts["stated"]))
 

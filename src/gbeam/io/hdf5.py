@@ -13,8 +13,8 @@ import h5py
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.guards.limits import EMBEDDED
-from gbeam.guards.whole import opened
 from gbeam.io.kept import write_whole
 from gbeam.io.layout import Group, Variable
 from gbeam.printable import storable
@@ -52,7 +52,7 @@ def image(groups: Mapping[str, Group]) -> bytes:
 def contents(path: str) -> dict[str, Any]:
     """Return the variables of a file by path, and the undecoded attributes of its variables and groups."""
     try:
-        with opened(path) as file:
+        with open_hdf5(path) as file:
             return contents_of(file)
     except MemoryError:
         raise

@@ -22,7 +22,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import existing
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import read_confined
 from gbeam.io.hdf5 import (
     contents,
     contents_of,
@@ -262,7 +262,7 @@ def read_stored(path: str | os.PathLike[str]) -> Stored:
 
     if not existing(Path(path)) or not Path(path).is_file():
         raise refuse("is no file")
-    return _stored(**confined(contents, path, refuse=refuse))
+    return _stored(**read_confined(contents, path, refuse=refuse))
 
 
 def _stored(variables: dict[str, Any], attrs: dict[str, dict[str, Any]]) -> Stored:

@@ -144,7 +144,8 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     _acceptance(parts, scenario)
     if parts.errors:
         raise placed(scenario, parts.errors)
-    return {name: machine for name in scenario.motion if isinstance(machine := motions[name], Centrifuge)}
+    built = {name: motions[name] for name in scenario.motion}
+    return {name: machine for name, machine in built.items() if isinstance(machine, Centrifuge)}
 
 
 def build_specimen(scenario: schema.Environments) -> System | None:
@@ -197,25 +198,23 @@ def _response(
         parts.attempt("response", SCHEMES[table.integrator], **table.parameters)
     flights = {name: motion for name, motion in motions.items() if isinstance(motion, Flight)}
     records = {name: flight.record for name, flight in flights.items() if flight.record is not None}
-    covered = {name: extent for name in records if (extent := flights[name].acceleration.extent) is not None}
-    arms = {name: extent for name, motion in motions.items() if (extent := extent_of(motion)) is not None}
-    covered |= arms
-    start, duration, spans = max((first for first, _ in covered.values()), default=0.0), table.duration, Spans()
+    of_records = {name: flights[name].acceleration.extent for name in records}
+    of_arms = {name: extent_of(motion) for name, motion in motions.items()}
+    arms = {name: extent for name, extent in of_arms.items() if extent is not None}
+    extents = {name: extent for name, extent in of_records.items() if extent is not None} | arms
+    start, duration, spans = max((first for first, _ in extents.values()), default=0.0), table.duration, Spans()
     if duration is None:
-        if not covered:
+        if not extents:
             return None, spans
-        duration = min(last for _, last in covered.values()) - start
-        apart = [last for _, last in arms.values() if not math.isclose(last, start + duration, rel_tol=1e-9)]
-        if apart or any(
-            True for name, record in records.items() for _ in _not_all_of(name, record, start, start + duration)
-        ):
-            spans = covered | {
-                name: covered[each.tracks]
-                for name, each in scenario.motion.items()
-                if isinstance(each, schema.Centrifuge) and each.tracks in covered
-            }
+        duration = min(last for _, last in extents.values()) - start
+        other_ends = [last for _, last in arms.values() if not math.isclose(last, start + duration, rel_tol=1e-9)]
+        partly = [_not_all_of(name, record, start, start + duration) for name, record in records.items()]
+        if other_ends or any(next(errors, None) for errors in partly):
+            machines = {name: table for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)}
+            tracked = {name: machine.tracks for name, machine in machines.items() if machine.tracks in extents}
+            spans = extents | {name: extents[flight] for name, flight in tracked.items()}
             parts.errors += _without_time(motions, spans)
-            start, last = next(iter(covered.values()))
+            start, last = next(iter(extents.values()))
             duration = last - start
     end = start + duration
     if not spans:
@@ -255,7 +254,7 @@ def _without_time(motions: Iterable[str], spans: Spans) -> Iterator[InputError]:
     """Refuse motions without a time of their own beside records and arms that last differently."""
     for name in motions:
         if name not in spans:
-            listed = ", ".join(f"{other} {first:g} to {last:g} s" for other, (first, last) in spans.items())
+            listed = ", ".join(f"{motion} {first:g} to {last:g} s" for motion, (first, last) in spans.items())
             problem = f"has no time of its own, and those beside it last differently: {listed}"
             yield InputError(f"motion.{name}", problem, "put it into a scenario of its own")
 
@@ -265,15 +264,15 @@ def _not_all_of(name: str, record: RecordSummary, start: float, end: float) -> I
     first, last = record.span
     interval = (1 + 1e-6) / record.read.rate  # 1600 samples at 100 Hz are 16 s of flight
     flown = f"{last - first:.6g} s" if first == 0 else f"{last - first:.6g} s, from {first:.6g} to {last:.6g} s"
-    whole = f"the record of {name!r} lasts {flown}"
+    record_words = f"the record of {name!r} lasts {flown}"
     if end > last + interval:
-        most = last + 1 / record.read.rate - start
-        fix = f"give {most:g} s or less, or leave it out" if most > 0 else "leave it out: each has its own time then"
-        yield InputError("response.duration", f"reaches to {end:g} s, and {whole}", fix)
+        span = last + 1 / record.read.rate - start
+        fix = f"give {span:g} s or less, or leave it out" if span > 0 else "leave it out: each has its own time then"
+        yield InputError("response.duration", f"reaches to {end:g} s, and {record_words}", fix)
         return
-    asked = [f'from = "{start:g} s"'] if start > first + interval else []
-    asked += [f'to = "{end:g} s"'] if end < last - interval else []
-    if asked:
-        problem = f"is {end - start:g} s, and {whole}: the rest would be left out"
-        part = f"ask for a part on the record itself: {', '.join(asked)} in [motion.{name}.record]"
+    keys = [f'from = "{start:g} s"'] if start > first + interval else []
+    keys += [f'to = "{end:g} s"'] if end < last - interval else []
+    if keys:
+        problem = f"is {end - start:g} s, and {record_words}: the rest would be left out"
+        part = f"ask for a part on the record itself: {', '.join(keys)} in [motion.{name}.record]"
         yield InputError("response.duration", problem, f"leave it out, or {part}")

@@ -99,7 +99,7 @@ def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: A
     several = isinstance(up, tuple) and isinstance(up[0], str)
     upwards = up if several else (up,)
     inward = direction("load", load)
-    chosen = next((each for each in upwards if across(inward, direction("up", each))), None)
+    chosen = next((candidate for candidate in upwards if across(inward, direction("up", candidate))), None)
     if chosen is None:
         words = " and ".join(map(str, upwards))
         fix = 'give a direction across it, or several, such as up = ["+z", "+x"], of which one always is'
@@ -110,24 +110,25 @@ def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: A
 
 def _recordings(parts: Collector, scenario: schema.Environments) -> dict[str, Recording]:
     """Read the files of records, each once, by the name of their flight; without refused ones."""
-    tables = {name: each.record for name, each in scenario.motion.items() if each.kind == "flight"}
+    tables = {name: motion.record for name, motion in scenario.motion.items() if motion.kind == "flight"}
     recordings = dict[str, Recording]()
     for name, table in tables.items():
         if isinstance(table, Record):
-            written = arguments_of(parts, f"motion.{name}.record", table, PART)
-            recording = parts.attempt(f"motion.{name}", _recording, **written)
+            arguments = arguments_of(parts, f"motion.{name}.record", table, PART)
+            recording = parts.attempt(f"motion.{name}", _recording, **arguments)
             recordings |= {} if recording is None else {name: recording}
     return recordings
 
 
-def _recording(*, time: str | None = None, **written: Any) -> Recording:
+def _recording(*, time: str | None = None, **columns: Any) -> Recording:
     """Read the columns of a record from its file, by all keys of its table."""
-    rates, instrument, conditioning = (
-        {key: written.pop(key) for key in parameters_of(group) if key in written} for group in GROUPS
-    )
+    groups = []
+    for group in GROUPS:
+        groups.append({key: columns.pop(key) for key in parameters_of(group) if key in columns})
+    rates, instrument, conditioning = groups
     return Recording.read(
         time=time,
-        **written,
+        **columns,
         rates=Rates.together(**rates),
         instrument=Instrument(**instrument),
         conditioning=Conditioning(**conditioning),

@@ -13,7 +13,7 @@ from gbeam.guards.quantities import Quantity
 from gbeam.guards.units import spoken
 from gbeam.printable import advise
 from gbeam.scenario.schema import kind_of_scenario
-from gbeam.scenario.schema.fields import TAGS, Table, fields_of, inside, parts_of
+from gbeam.scenario.schema.fields import TAGS, Table, annotation_parts, fields_of, parts_of
 from gbeam.scenario.text.diagnostics import Diagnostic
 from gbeam.scenario.text.source import Mark, Source
 from gbeam.scenario.values import Path
@@ -49,7 +49,7 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
     if what == "scenario":
         return context["message"], context["hint"], context["mark"], path
     if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
-        parts = inside(field.annotation if field else None)
+        parts = annotation_parts(field.annotation if field else None)
         count = next((len(get_args(part)) for part in parts if get_origin(part) is tuple), 3)
         return (
             f"has {path[-1]} entries",
@@ -74,8 +74,8 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
     if what in ("too_short", "too_long"):
         limit = context.get("min_length", context.get("max_length"))
         count = context["actual_length"]
-        few = "at least" if what == "too_short" else "at most"
-        return f"has {count} {'entry' if count == 1 else 'entries'}", f"give {few} {limit}", "value", path
+        bound = "at least" if what == "too_short" else "at most"
+        return f"has {count} {'entry' if count == 1 else 'entries'}", f"give {bound} {limit}", "value", path
     if what == "greater_than_equal":
         size = f"below {context['ge']}" if context["ge"] else "negative"
         return f"{{value}} is {size}", f"give {context['ge']} or more", "value", path
@@ -84,8 +84,8 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
     if what in _NOT_A:
         return f"{spoken(value)} is not {_NOT_A[what][0]}", _NOT_A[what][1], "value", path
     # All other errors are of a value where a table belongs.
-    about = field.description if field else ""
-    return f"{spoken(value)} is not a table", f"give a table: {about}", "value", path
+    description = field.description if field else ""
+    return f"{spoken(value)} is not a table", f"give a table: {description}", "value", path
 
 
 def _path(loc: tuple[int | str, ...], source: Source) -> Path:
@@ -141,29 +141,30 @@ def _table(source: Source, path: Path) -> type[Table] | None:
         return kind_of_scenario(source.data)
     field = _field(source, path)
     raw = source.raw(path)
-    written = raw if isinstance(raw, dict) else {}
+    keys = raw if isinstance(raw, dict) else {}
     tables = list(_tables(field.annotation if field else None))
     tag_of = {tag: table for tag, table in _tagged(field.annotation if field else None)}
-    if (chosen := tag_of.get(str(_tag(field, written)))) is not None:
+    chosen = tag_of.get(str(_tag(field, keys)))
+    if chosen is not None:
         return chosen
     for table in tables:
         for tag in TAGS:
             if tag in table.model_fields:
                 names = list(_literals(table.model_fields[tag].annotation))
-                if written.get(tag, table.model_fields[tag].default) in names:
+                if keys.get(tag, table.model_fields[tag].default) in names:
                     return table
     return tables[0] if len(tables) == 1 else None
 
 
 def _tables(annotation: Any) -> Iterator[type[Table]]:
-    for part in inside(annotation):
+    for part in annotation_parts(annotation):
         if isinstance(part, type) and issubclass(part, Table):
             yield part
 
 
 def _tagged(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
     """Tables of a union by their tags."""
-    for part in inside(annotation):
+    for part in annotation_parts(annotation):
         if get_origin(part) is Annotated:
             table, *marks = get_args(part)
             if isinstance(table, type) and issubclass(table, Table):
@@ -171,7 +172,7 @@ def _tagged(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
 
 
 def _literals(annotation: Any) -> Iterator[Any]:
-    for part in inside(annotation):
+    for part in annotation_parts(annotation):
         if get_origin(part) is Literal:
             yield from get_args(part)
 
@@ -188,15 +189,17 @@ def _quantity(field: FieldInfo | None) -> Quantity | None:
 
 
 def _add(key: str, field: FieldInfo | None) -> str:
-    about = field.description if field else ""
+    description = field.description if field else ""
     quantity = _quantity(field) if field and get_origin(field.annotation) is not tuple else None
-    return f'add {key} = "{KINDS[quantity.kind].example}": {about}' if quantity else f"add {key}: {about}"
+    if quantity is None:
+        return f"add {key}: {description}"
+    return f'add {key} = "{KINDS[quantity.kind].example}": {description}'
 
 
 def _filled(source: Source, path: Path, text: str) -> str:
     """Replace ``{value}``, ``{beam.length}`` and the like by what is written in the file."""
 
-    def shown(match: re.Match[str]) -> str:
+    def replacement(match: re.Match[str]) -> str:
         place = path if match[1] == "value" else tuple(match[1].split("."))
         raw = source.raw(place)
         quantity = _quantity(_field(source, place))
@@ -204,4 +207,4 @@ def _filled(source: Source, path: Path, text: str) -> str:
             return spoken(raw)
         return raw if isinstance(raw, str) else f"{raw:g} {KINDS[quantity.kind].unit}".rstrip()
 
-    return _PLACEHOLDER.sub(shown, text)
+    return _PLACEHOLDER.sub(replacement, text)

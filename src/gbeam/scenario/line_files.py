@@ -58,8 +58,8 @@ def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
             raise InputError("", problem, _NAMED)
         length_unit = unit if kind == "length" else None
         if not (stated or length_unit):
-            also = ', or add length_unit = "mm"' if kind == "length" else ""
-            raise InputError("", f"does not say the unit of {name}", f"{_NAMED}{also}")
+            advice = ', or add length_unit = "mm"' if kind == "length" else ""
+            raise InputError("", f"does not say the unit of {name}", f"{_NAMED}{advice}")
         try:
             size = quantity(f"1 {stated or length_unit}", kind)
             if length_unit and size != quantity(f"1 {length_unit}", kind):

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator
 from copy import deepcopy
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -80,17 +79,19 @@ def _record(motion: str, file: str) -> RecordFile:
     from gbeam.results.provenance import RecordFile
 
     content = Path(file).read_bytes()
-    small = len(content) <= EMBEDDED
-    return RecordFile(motion, os.fspath(file), hashlib.sha256(content).hexdigest(), content if small else None)
+    embedded = len(content) <= EMBEDDED
+    return RecordFile(motion, os.fspath(file), hashlib.sha256(content).hexdigest(), content if embedded else None)
 
 
 def placed(scenario: Environments, errors: Iterable[InputError]) -> ScenarioError:
     """Return one ScenarioError of all errors, each at its place in the scenario's text."""
-    diagnostics = (
-        error.diagnostics if isinstance(error, ScenarioError) else [_diagnostic(scenario.source, error)]
-        for error in errors
-    )
-    return ScenarioError(chain.from_iterable(diagnostics))
+    diagnostics: list[Diagnostic] = []
+    for error in errors:
+        if isinstance(error, ScenarioError):
+            diagnostics += error.diagnostics
+        else:
+            diagnostics.append(_diagnostic(scenario.source, error))
+    return ScenarioError(diagnostics)
 
 
 def _diagnostic(source: Source | None, error: InputError) -> Diagnostic:
@@ -125,8 +126,8 @@ def loads(
 
 def change(source: Source, overrides: Iterable[str]) -> AnyScenario:
     """Validate a scenario that is parsed already, with further changes, such as those of a case of a sweep."""
-    data, done = override(source.data, source.name, overrides)
-    return _validated(kind_of_scenario(data), replace(source, data=data, overrides=source.overrides + done))
+    data, applied = override(source.data, source.name, overrides)
+    return _validated(kind_of_scenario(data), replace(source, data=data, overrides=source.overrides + applied))
 
 
 def load_environments(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Environments:
@@ -149,16 +150,16 @@ def _source(
     distributions: bool = False,
 ) -> Source:
     """Parsed text with its overrides; distributions have their centres, or are errors unless `distributions`."""
-    data, done = override(parse(name, text), name, overrides)
-    source = Source(name, text, Path(folder), data, done)
+    data, applied = override(parse(name, text), name, overrides)
+    source = Source(name, text, Path(folder), data, applied)
     distributed = list(find_distributions(data))
     if not distributed:
         return source
-    drawn: dict[str, Distribution] = {}
+    families: dict[str, Distribution] = {}
     problems: list[Diagnostic] = []
     for path, family, parameters in distributed:
         try:
-            drawn[path_text(path)] = distribution = from_table(family, parameters)
+            families[path_text(path)] = distribution = from_table(family, parameters)
         except InputError as error:
             problems.append(source.diagnostic(path, error.problem, error.fix))
             continue
@@ -173,8 +174,8 @@ def _source(
         node: Any = centred
         for step in path[:-1]:
             node = node[step]
-        node[path[-1]] = drawn[path_text(path)].centre
-    return replace(source, data=centred, distributions=drawn)
+        node[path[-1]] = families[path_text(path)].centre
+    return replace(source, data=centred, distributions=families)
 
 
 def _validated(kind: type[T], source: Source) -> T:
@@ -186,10 +187,10 @@ def _validated(kind: type[T], source: Source) -> T:
 
         details = error.errors(include_url=False, include_input=False)
         # pydantic counts only the entries before a wrong one: such a list is not too short.
-        above = {detail["loc"][:k] for detail in details for k in range(len(detail["loc"]))}
-        details = [detail for detail in details if detail["type"] != "too_short" or detail["loc"] not in above]
+        parents = {detail["loc"][:k] for detail in details for k in range(len(detail["loc"]))}
+        details = [detail for detail in details if detail["type"] != "too_short" or detail["loc"] not in parents]
         problems = [explain(source, detail) for detail in details[:PROBLEMS]]
         if len(details) > PROBLEMS:
-            more = f"has {len(details)} errors, of which {PROBLEMS} are listed"
-            problems.append(Diagnostic(source.name, "", more, "correct these first"))
+            remark = f"has {len(details)} errors, of which {PROBLEMS} are listed"
+            problems.append(Diagnostic(source.name, "", remark, "correct these first"))
         raise ScenarioError(problems) from None

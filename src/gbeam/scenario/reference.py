@@ -74,7 +74,7 @@ class _Page:
             inner = f"{path}.{key}" if path else key
             if "additionalProperties" in schema:  # tables by any name
                 schema, inner = schema["additionalProperties"], f"{inner}.NAME"
-            for name, listed in _named(schema):
+            for name, listed in _table_names(schema):
                 if self.tables[name].get("x-coordinates"):  # written in the row of its key, without a table of its own
                     self._visit(self.tables[name], inner)
                     continue
@@ -99,7 +99,7 @@ class _Page:
     def _keys(self, table: dict[str, Any], quantity: str = "") -> str:
         """Markdown table of the keys of a table; in that of a profile `quantity` is called the quantity."""
         alternatives = [table, *table.get("anyOf", ())]
-        required = {key for each in alternatives for key in each.get("required", ())}
+        required = {key for alternative in alternatives for key in alternative.get("required", ())}
         rows = ["| key | value | default | meaning |", "|---|---|---|---|"]
         for key, schema in table["properties"].items():
             value = self._value(schema.get("additionalProperties", schema), quantity)
@@ -108,14 +108,14 @@ class _Page:
             rows.append(" | ".join([f"| `{key}`", value, default, f"{words} |"]))
         return "\n".join(rows) + "\n"
 
-    def _value(self, schema: dict[str, Any], of: str) -> str:
+    def _value(self, schema: dict[str, Any], profile_quantity: str) -> str:
         """Possible values of a schema, in words; `of` is the quantity of the profile whose key it is, or empty."""
         if "x-quantity" in schema:
-            return self._quantity(schema, of)
+            return self._quantity(schema, profile_quantity)
         if "$ref" in schema:
             name = _target(schema)
             if self.tables[name].get("x-coordinates"):
-                return self._by_coordinate(name, of)
+                return self._by_coordinate(name, profile_quantity)
             quantity = name.partition(_OF)[2].replace("-", " ")
             if quantity:
                 return f"[profile](#profiles) of {quantity}"
@@ -123,36 +123,36 @@ class _Page:
             return f"[{tag_of(self.tables[name])[1] or 'table'}](#{anchor})"
         if "enum" in schema or "const" in schema:
             return ", ".join(f'`"{word}"`' for word in schema.get("enum", [schema.get("const")]))
-        choices = [each for each in schema.get("anyOf", schema.get("oneOf", [])) if each.get("type") != "null"]
+        choices = [choice for choice in schema.get("anyOf", schema.get("oneOf", [])) if choice.get("type") != "null"]
         if choices:
-            words = list(dict.fromkeys(self._value(each, of) for each in choices))
+            words = list(dict.fromkeys(self._value(choice, profile_quantity) for choice in choices))
             return f"{words[0]}; or a list" if words[1:] == [f"list of: {words[0]}"] else " or ".join(words)
         if "prefixItems" in schema:
-            return f"list of {len(schema['prefixItems'])}: {self._value(schema['prefixItems'][0], of)}"
+            return f"list of {len(schema['prefixItems'])}: {self._value(schema['prefixItems'][0], profile_quantity)}"
         if schema["type"] == "array":
-            return f"list of: {self._value(schema['items'], of)}"
-        least = f", {schema['minimum']} or more" if "minimum" in schema else ""
-        plain = {"string": "text", "boolean": "`true` or `false`", "integer": "whole number", "number": "number"}
-        return plain[schema["type"]] + least
+            return f"list of: {self._value(schema['items'], profile_quantity)}"
+        bound = f", {schema['minimum']} or more" if "minimum" in schema else ""
+        names = {"string": "text", "boolean": "`true` or `false`", "integer": "whole number", "number": "number"}
+        return names[schema["type"]] + bound
 
-    def _by_coordinate(self, name: str, of: str) -> str:
+    def _by_coordinate(self, name: str, profile_quantity: str) -> str:
         """Keys of a table by a joint's coordinates and their possible values; keys with the same ones together."""
         alike: dict[str, list[str]] = {}
         for key, schema in self.tables[name]["properties"].items():
-            alike.setdefault(self._value(schema, of), []).append(f"`{key}`")
+            alike.setdefault(self._value(schema, profile_quantity), []).append(f"`{key}`")
         return "; ".join(f"{', '.join(keys)}: {value}" for value, keys in alike.items())
 
-    def _quantity(self, schema: dict[str, Any], of: str) -> str:
+    def _quantity(self, schema: dict[str, Any], profile_quantity: str) -> str:
         """Name of a quantity with its unit, sign and the words accepted instead of it."""
         name, (number, _, *accepted) = schema["x-quantity"], schema["anyOf"]
         words = "".join(f", or {_accepted(text)}" for text in accepted)
-        if of and name == of:
+        if profile_quantity and name == profile_quantity:
             return f"the quantity{words}"
         if "exclusiveMinimum" in number:
             sign = ", positive"
         else:
             sign = ", 0 or more" if "minimum" in number else ""
-        if of and name == self._rate_of(of):
+        if profile_quantity and name == self._rate_of(profile_quantity):
             return f"its rate of change{sign}{words}"
         unit = f" in {KINDS[name].unit}" if KINDS[name].unit else ""
         return f"{name}{unit}{sign}{words}"
@@ -186,14 +186,14 @@ def tag_of(table: dict[str, Any]) -> tuple[str, str]:
     return next(((key, word) for key, word in words if word), ("", ""))
 
 
-def _named(schema: dict[str, Any], listed: bool = False) -> Iterator[tuple[str, bool]]:
+def _table_names(schema: dict[str, Any], listed: bool = False) -> Iterator[tuple[str, bool]]:
     """Names of the tables that a schema allows, each with True if in a list."""
     if "$ref" in schema:
         yield _target(schema), listed
-    for each in schema.get("anyOf", schema.get("oneOf", [])):
-        yield from _named(each, listed)
+    for part in schema.get("anyOf", schema.get("oneOf", [])):
+        yield from _table_names(part, listed)
     if "items" in schema:
-        yield from _named(schema["items"], True)
+        yield from _table_names(schema["items"], True)
 
 
 def _target(schema: dict[str, Any]) -> str:

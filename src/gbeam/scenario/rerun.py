@@ -80,10 +80,10 @@ def rerun(path: str | os.PathLike[str], *, progress: Progress = None) -> Reprodu
     """
     from gbeam.io.netcdf import read_stored
 
-    before = read_stored(path)
-    if not is_run(before):
+    result = read_stored(path)
+    if not is_run(result):
         raise InputError(str(path), "holds no responses but another answer", "`gbeam rerun` runs its verb again")
-    return run_again(path, before, progress)
+    return run_again(path, result, progress)
 
 
 def facts_of(stored: Stored) -> dict[str, Any]:
@@ -112,26 +112,26 @@ def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
     return origin
 
 
-def run_again(path: str | os.PathLike[str], before: Stored, progress: Progress = None) -> Reproduction:
+def run_again(path: str | os.PathLike[str], result: Stored, progress: Progress = None) -> Reproduction:
     """Compute the responses of a file again, and compare them with the file."""
     from gbeam.analysis.environments import study
     from gbeam.io.netcdf import stored
 
-    origin = origin_of(path, before)
+    origin = origin_of(path, result)
     with TemporaryDirectory(prefix="gbeam-") as folder:
         changes = [*origin.overrides, *record_changes(origin, Path(folder))]
         scenario = loads(origin.scenario, str(path), changes, folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
-        after = stored(answers)
-    then, now = computed(before), computed(after)
-    holds_a_study = any(name.startswith("motions/") for name in before.variables)
+        result_now = stored(answers)
+    values_before, now = computed(result), computed(result_now)
+    holds_a_study = any(name.startswith("motions/") for name in result.variables)
     if not holds_a_study:
-        (motion, *others) = facts_of(before).get("motions") or answers.responses
+        (motion, *others) = facts_of(result).get("motions") or answers.responses
         if others:
             fix = "give the result.nc of all its motions"
             raise InputError(str(path), "holds one response, and does not say of which motion", fix)
-        now = _of_one_motion(now, motion, then)
-    return reproduction(os.fspath(path), then, now, origin, units_in(before))
+        now = _of_one_motion(now, motion, values_before)
+    return reproduction(os.fspath(path), values_before, now, origin, units_in(result))
 
 
 def _of_one_motion(study: Mapping[str, Any], motion: str, names: Collection[str]) -> dict[str, Any]:
@@ -152,7 +152,7 @@ def units_in(stored: Stored) -> Callable[[str], str]:
 
 def reproduction(
     file: str,
-    then: Mapping[str, Any],
+    values_before: Mapping[str, Any],
     now: Mapping[str, Any],
     origin: Provenance,
     unit_of: Callable[[str], str],
@@ -163,18 +163,26 @@ def reproduction(
     """
     assert origin.environment is not None
     changed = origin.environment.changes(current_environment())
-    names = [*then, *(name for name in now if name not in then)]
-    scales = _scales(then, [name for name in then if name in now], unit_of) if changed else {}
+    names = [*values_before, *(name for name in now if name not in values_before)]
+    scales = _scales(values_before, [name for name in values_before if name in now], unit_of) if changed else {}
 
     def scale_of(name: str) -> float:
         """Size against which rounding of a variable is measured; zero in the same environment."""
         is_share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
         return 1.0 if is_share else scales.get(unit_of(name), 0.0)
 
-    compared = [_difference(name, then.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names]
+    compared = [
+        _difference(name, values_before.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names
+    ]
     unequal = [difference for difference in compared if difference is not None]
-    differences = sorted((each for each in unequal if each.size), key=lambda difference: -difference.size)
-    moved = [each for each in differences if changed and _by_rounding(each, then.get(each.name), now.get(each.name))]
+    differences = sorted(
+        (difference for difference in unequal if difference.size), key=lambda difference: -difference.size
+    )
+    moved = [
+        difference
+        for difference in differences
+        if changed and _by_rounding(difference, values_before.get(difference.name), now.get(difference.name))
+    ]
     return Reproduction(
         file=file,
         compared=len(names),
@@ -184,13 +192,13 @@ def reproduction(
     )
 
 
-def _by_rounding(difference: Difference, then: Any, now: Any) -> bool:
+def _by_rounding(difference: Difference, before: Any, now: Any) -> bool:
     """True of times of peaks, of which equal ones change places, and of texts that differ in their numbers alone.
 
     These numbers are compared as variables themselves.
     """
-    if isinstance(then, str) and isinstance(now, str):
-        return _NUMBER.sub("", then) == _NUMBER.sub("", now)
+    if isinstance(before, str) and isinstance(now, str):
+        return _NUMBER.sub("", before) == _NUMBER.sub("", now)
     return _WHEN.search(difference.name) is not None and math.isfinite(difference.size)
 
 
@@ -229,13 +237,15 @@ def record_changes(origin: Provenance, folder: Path) -> Iterator[str]:
         yield f"{record.path}={file}"
 
 
-def computed(of: Stored) -> dict[str, Any]:
+def computed(result: Stored) -> dict[str, Any]:
     """Variables by name and attributes by ``PLACE@NAME``, without those about the computation and the facts."""
     left_out = ("scenario", FACTS)  # the facts repeat the other variables
-    values = {name: each for name, each in of.variables.items() if name not in left_out and not name.startswith(RECORD)}
-    for place, attrs in of.attrs.items():
-        if place not in of.variables:  # attributes of variables only describe them
-            values |= {f"{place}@{name}": each for name, each in attrs.items() if place or name not in _ABOUT}
+    values = {
+        name: value for name, value in result.variables.items() if name not in left_out and not name.startswith(RECORD)
+    }
+    for place, attrs in result.attrs.items():
+        if place not in result.variables:  # attributes of variables only describe them
+            values |= {f"{place}@{name}": value for name, value in attrs.items() if place or name not in _ABOUT}
     return values
 
 
@@ -249,33 +259,43 @@ def _scales(values: Mapping[str, Any], names: Sequence[str], unit_of: Callable[[
             size = float(np.max(np.abs(value), initial=0.0, where=np.isfinite(value)))
             scales[unit_of(name)] = max(scales.get(unit_of(name), 0.0), size)
     time = scales.get("s") or 1.0
-    rates = {unit: match for unit in scales if (match := _RATE.fullmatch(unit))}
-    least = {unit: scales.get(match[1], 0.0) / time ** int(match[2] or match[3] or 1) for unit, match in rates.items()}
-    return {unit: max(size, least.get(unit, 0.0), SMALLEST / ROUNDING) for unit, size in scales.items()}
+    bounds = {}
+    for unit in scales:
+        rate = _RATE.fullmatch(unit)
+        if rate:
+            bounds[unit] = scales.get(rate[1], 0.0) / time ** int(rate[2] or rate[3] or 1)
+    return {unit: max(size, bounds.get(unit, 0.0), SMALLEST / ROUNDING) for unit, size in scales.items()}
 
 
 @np.errstate(all="ignore")  # a damaged file may hold any number
-def _difference(name: str, then: Any, now: Any, unit: str, scale: float) -> Difference | None:
+def _difference(name: str, before: Any, now: Any, unit: str, scale: float) -> Difference | None:
     """Difference of a value then and now; of size zero if it is within rounding at the scale of its unit."""
-    if then is None or now is None:
+    if before is None or now is None:
         return Difference(name, math.inf, "is not there any more" if now is None else "is lacking in the file")
-    old, new = np.asarray(then), np.asarray(now)
-    if old.shape != new.shape:
-        return Difference(name, math.inf, f"had the shape {old.shape}, has {new.shape}")
-    if old.dtype.kind != "f" or new.dtype.kind != "f":
-        return None if np.array_equal(old, new) else Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
-    if np.array_equal(old, new, equal_nan=True):
+    values_before, values_now = np.asarray(before), np.asarray(now)
+    if values_before.shape != values_now.shape:
+        return Difference(name, math.inf, f"had the shape {values_before.shape}, has {values_now.shape}")
+    if values_before.dtype.kind != "f" or values_now.dtype.kind != "f":
+        return (
+            None
+            if np.array_equal(values_before, values_now)
+            else Difference(name, math.inf, f"was {_shorten(before)}, is {_shorten(now)}")
+        )
+    if np.array_equal(values_before, values_now, equal_nan=True):
         return None
-    finite = np.isfinite(old) & np.isfinite(new)
-    if not np.array_equal(old[~finite], new[~finite], equal_nan=True):
-        return Difference(name, math.inf, f"was {_short(then)}, is {_short(now)}")
-    old, new = old[finite], new[finite]
-    largest, most = float(np.abs(old).max(initial=0.0)), float(np.abs(old - new).max())
-    size = 0.0 if most <= ROUNDING * scale else most / max(largest, float(np.finfo(float).tiny))
+    finite = np.isfinite(values_before) & np.isfinite(values_now)
+    if not np.array_equal(values_before[~finite], values_now[~finite], equal_nan=True):
+        return Difference(name, math.inf, f"was {_shorten(before)}, is {_shorten(now)}")
+    values_before, values_now = values_before[finite], values_now[finite]
+    largest, largest_change = (
+        float(np.abs(values_before).max(initial=0.0)),
+        float(np.abs(values_before - values_now).max()),
+    )
+    size = 0.0 if largest_change <= ROUNDING * scale else largest_change / max(largest, float(np.finfo(float).tiny))
     words = f"differs by up to {size:.2g} of its largest value, {largest:.4g}"
     return Difference(name, size, f"{words} {unit}" if unit not in ("", "1") else words)
 
 
-def _short(value: Any) -> str:
+def _shorten(value: Any) -> str:
     text = str(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

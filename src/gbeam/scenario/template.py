@@ -247,9 +247,9 @@ def _distribution_schema() -> dict[str, Any]:
         | {"description": ", ".join(family.arguments)}
         for name, family in FAMILIES.items()
     }
-    about = {"title": "Distribution", "description": "what gbeam sweep draws from; other verbs need one value"}
+    head = {"title": "Distribution", "description": "what gbeam sweep draws from; other verbs need one value"}
     one = {"type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": False}
-    return {**about, **one, "properties": families}
+    return {**head, **one, "properties": families}
 
 
 def json_schema(*, distributions: bool = True) -> str:
@@ -259,7 +259,7 @@ def json_schema(*, distributions: bool = True) -> str:
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
     kinds: tuple[type[Environments], ...] = (Scenario, SystemScenario, SpecimenScenario)
-    _, schema = models_json_schema([(each, "validation") for each in kinds], title="Scenario")
+    _, schema = models_json_schema([(kind, "validation") for kind in kinds], title="Scenario")
     tables = [schema["$defs"].pop(kind.__name__) for kind in kinds]
     schema |= {"type": "object", "additionalProperties": False, "description": "A scenario, in SI or with units."}
     schema["anyOf"] = [{"required": table["required"]} for table in tables]

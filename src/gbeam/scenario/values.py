@@ -125,7 +125,7 @@ class Distribution:
     def centre(self) -> str | float:
         """Mean, median, midpoint or most likely value, as a scenario writes it."""
         value = FAMILIES[self.family].centre(*self.arguments)
-        return written(value, self.unit) if self.unit else value
+        return with_unit(value, self.unit) if self.unit else value
 
     def quantile(self, probability: Any) -> Any:
         """Quantiles (n,) at probabilities (n,)."""
@@ -145,7 +145,7 @@ def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
     words = ", ".join(part.strip() for part in parts)
     if len(parts) != len(law.arguments):
         raise InputError(
-            "", f"has {len(parts)} values in {family}({words})", f"give {len(law.arguments)}: {_named(law)}"
+            "", f"has {len(parts)} values in {family}({words})", f"give {len(law.arguments)}: {_argument_words(law)}"
         )
     if family == "lognormal":
         (median,), unit = quantities(parts[:1])
@@ -178,7 +178,7 @@ def from_table(name: str, numbers: Any) -> Distribution:
     """Read a distribution from a table ``{ name = numbers }``, of any types."""
     family = FAMILIES.get(name)
     if family is not None and not _are_numbers(numbers):
-        raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_named(family)}] }}")
+        raise InputError("", f"has no list of numbers in {name}", f"write {{ {name} = [{_argument_words(family)}] }}")
     return read_distribution(name, [number if isinstance(number, str) else repr(number) for number in numbers])
 
 
@@ -204,11 +204,11 @@ def quantities(parts: Sequence[str]) -> tuple[list[float], str]:
     return values, named[0] if named else ""
 
 
-def written(value: float, unit: str) -> str:
+def with_unit(value: float, unit: str) -> str:
     """Write a value for a scenario, with its unit; whole numbers without a decimal point."""
     number = str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     return f"{number} {unit}" if unit else number
 
 
-def _named(family: Family) -> str:
+def _argument_words(family: Family) -> str:
     return ", ".join(family.arguments)

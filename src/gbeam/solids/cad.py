@@ -11,7 +11,7 @@ from typing import Any
 from gbeam.errors import InputError
 from gbeam.guards.checks import positive
 from gbeam.guards.limits import BINARY_BYTES, MESHER_BYTES, MESHER_SECONDS, refuse_large_file
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import read_confined
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.progress import PATIENCE, Bar
 from gbeam.solids.files import FileMesh, parts_of, read_mesh
@@ -59,7 +59,7 @@ def meshed(path: Path, size: float) -> FileMesh:
     with tempfile.TemporaryDirectory() as folder, Bar(f"meshing {path.name}", patience=PATIENCE):
         out = os.path.join(folder, "solid.msh")
         limits = {"memory": MESHER_BYTES, "seconds": MESHER_SECONDS}
-        return FileMesh.of(confined(_mesh_into, path, size, out, refuse=refuse, **limits))
+        return FileMesh.of(read_confined(_mesh_into, path, size, out, refuse=refuse, **limits))
 
 
 def _mesh_into(path: str, size: float, out: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.guards.whole import opened
+from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.solids.shape_functions import DIMENSIONS, EXODUS_ORDER, KINDS, SHAPES
 from gbeam.solids.stress import corners_of, on_face
 from gbeam.solids.texts import Cells, TextMesh
@@ -78,7 +78,7 @@ def _classic(path: Path) -> dict[str, _Variable]:
 
 def _of_hdf5(path: Path) -> dict[str, _Variable]:
     """Variables of a file of netCDF 4."""
-    with opened(path) as file:
+    with open_hdf5(path) as file:
         chosen = {name: data for name, data in file.items() if _READ.fullmatch(name)}
         return {name: _Variable(data[()], _text(data.attrs.get("elem_type", b""))) for name, data in chosen.items()}
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
+from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.guards.limits import BINARY_BYTES, READER_BYTES, READER_SECONDS, in_bytes, refuse_large_file
-from gbeam.guards.processes import remembered
-from gbeam.guards.whole import opened
+from gbeam.guards.processes import read_cached
 from gbeam.numerics.sparse import refuse_cost
 from gbeam.printable import shortened
 from gbeam.solids.cards import Cards, carrying, read_cards
@@ -95,7 +95,7 @@ def read_mesh(source: str | os.PathLike[str] | Any, *, cards: bool = False) -> A
     limits = dict[str, int]()
     if ending_of(path) in TEXTS:
         limits = {"memory": READER_BYTES + TEXT_TIMES * size, "seconds": READER_SECONDS + size // TEXT_RATE}
-    return FileMesh.of(remembered(parts_of, path, cards, refuse=refuse, **limits))
+    return FileMesh.of(read_cached(parts_of, path, cards, refuse=refuse, **limits))
 
 
 def _refuse_unread(path: str) -> None:
@@ -169,7 +169,7 @@ def _read(path: Path) -> Any:
     if ending in _XML:
         _refuse_in_parts(path)
     if ending in _HDF5:
-        with opened(path):  # which refuses a file with links to others
+        with open_hdf5(path):  # which refuses a file with links to others
             pass
     mesh = meshio.read(path)
     return _with_masks(_of_med(mesh) if ending == ".med" else mesh)

@@ -17,7 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import refuse_more
 from gbeam.guards.units import NUMBER
 from gbeam.results.cases import SAMPLE, Parameter
-from gbeam.scenario.values import Distribution, parse_path, quantities, read_distribution, written
+from gbeam.scenario.values import Distribution, parse_path, quantities, read_distribution, with_unit
 
 SAMPLERS = ("sobol", "latin", "random", "saltelli")
 DEFAULT_SAMPLES = 64
@@ -154,7 +154,7 @@ class Variation:
         if not np.isfinite(values).all():
             fix = "give a smaller spread"
             raise InputError(f"{OPTION} {self.path}", f"{self.distribution} draws values beyond every number", fix)
-        texts = tuple(written(float(value), self.unit) for value in values)
+        texts = tuple(with_unit(float(value), self.unit) for value in values)
         return replace(self, texts=texts, values=values)
 
     def parameter(self, unit: str) -> Parameter:
@@ -223,7 +223,7 @@ def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
     values = np.geomspace(low, high, count) if logarithmic else np.linspace(low, high, count)
     # Twelve digits, so that 0.1 + 0.2 is written as 0.3.
     values = np.array([float(f"{value:.12g}") for value in values])
-    return Variation(path, tuple(written(float(value), unit) for value in values), values, unit)
+    return Variation(path, tuple(with_unit(float(value), unit) for value in values), values, unit)
 
 
 def _list(path: str, text: str) -> Variation:
@@ -237,7 +237,7 @@ def _list(path: str, text: str) -> Variation:
     if all(NUMBER.fullmatch(part) for part in parts):
         with _of(path):
             values, unit = quantities(parts)
-        return Variation(path, tuple(written(value, unit) for value in values), np.array(values), unit)
+        return Variation(path, tuple(with_unit(value, unit) for value in values), np.array(values), unit)
     return Variation(path, tuple(parts), np.array(parts, dtype=object))
 
 

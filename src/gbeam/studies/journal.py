@@ -21,7 +21,7 @@ from typing import Any
 
 import gbeam
 from gbeam.errors import ComputationError, InputError
-from gbeam.guards.processes import alone
+from gbeam.guards.processes import hold_lock
 from gbeam.studies.cases import Cases
 from gbeam.studies.evaluate import Inquiry, Row
 
@@ -81,7 +81,7 @@ class Journal:
                 self.folder.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise InputError("--out", f"{self.folder} cannot be made ({error.strerror})", _ANOTHER) from None
-            held.enter_context(alone(self.folder / LOCK, "--out", f"wait for its end, or {_ANOTHER}"))
+            held.enter_context(hold_lock(self.folder / LOCK, "--out", f"wait for its end, or {_ANOTHER}"))
             with self._written():
                 self._begin(resume)
                 self._out = held.enter_context(open(self._file, "ab", buffering=0))

@@ -18,7 +18,7 @@ import numpy as np
 from gbeam.analysis.case import BEAM, Case
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError, placing_within
-from gbeam.guards.kinds import KINDS, Kinds, below, kind_of_argument, only
+from gbeam.guards.kinds import KINDS, Kinds, common_kind, element_kinds, kind_of_argument
 from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
@@ -220,7 +220,7 @@ class CaseTemplate:
         kinds = _KINDS
         for step in parse_path(path) or ():
             node, kinds = _below(node, kinds).get(step, (None, ""))
-        return KINDS[kind].unit if (kind := only(kinds)) else ""
+        return KINDS[kind].unit if (kind := common_kind(kinds)) else ""
 
 
 def _joined(system: System, parts: dict[str, Any]) -> System:
@@ -247,9 +247,9 @@ def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
     those of the node.
     """
     if isinstance(node, (tuple, list)) or np.ndim(node):
-        return {k: (child, only(kinds)) for k, child in enumerate(node)}
+        return {k: (child, common_kind(kinds)) for k, child in enumerate(node)}
     if isinstance(node, Mapping):
-        return {name: (child, below(kinds, name)) for name, child in node.items()}
+        return {name: (child, element_kinds(kinds, name)) for name, child in node.items()}
     owner = getattr(node, "owner", type(node).__name__)
     arguments = arguments_of(node) or {}
     return {name: (child, kind_of_argument(owner, name, arguments) or kinds) for name, child in arguments.items()}
@@ -258,7 +258,7 @@ def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
 def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
     """The node with the values of `wanted`, a tree of texts in SI or with a unit, in place of its own values."""
     if isinstance(wanted, str):
-        return _read(node, only(kinds), wanted, path)
+        return _read(node, common_kind(kinds), wanted, path)
     children = _below(node, kinds)
     for step in wanted:
         if step not in children:
@@ -297,7 +297,7 @@ def _numbers(node: Any, kinds: Kinds, path: Path) -> Iterator[tuple[Path, float,
     if isinstance(node, (bool, str, int)) or np.size(node) > _LONGEST:
         return
     if isinstance(node, float) or (hasattr(node, "dtype") and np.ndim(node) == 0):
-        yield path, float(node), only(kinds) or "ratio"
+        yield path, float(node), common_kind(kinds) or "ratio"
         return
     for step, (child, its_kinds) in _below(node, kinds).items():
         yield from _numbers(child, its_kinds, (*path, step))

@@ -14,9 +14,9 @@ from typing import Any, TypedDict
 import numpy as np
 
 from gbeam.errors import InputError
+from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.guards.limits import BINARY_BYTES, read_json, refuse_large_file
-from gbeam.guards.processes import confined
-from gbeam.guards.whole import opened
+from gbeam.guards.processes import read_confined
 from gbeam.printable import shortened
 
 Matrices = dict[str, Any]
@@ -129,7 +129,7 @@ def _of_hdf5(path: str) -> dict[str, Any]:
         elif node.dtype.kind in "fiu" and "MATLAB_empty" not in node.attrs:
             arrays[name] = node[()].T
 
-    with opened(path) as file:
+    with open_hdf5(path) as file:
         for key, child in file.items():
             if not key.startswith("#"):
                 add(key, child)
@@ -155,7 +155,7 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
         arrays = read_json(Path(path), FIX)
     else:
         refuse_large_file("file", path, BINARY_BYTES, "reduce the law before it is saved")
-        arrays = confined(_numbers, os.fspath(path), refuse=refuse)
+        arrays = read_confined(_numbers, os.fspath(path), refuse=refuse)
     named = {key.lower(): value for key, value in arrays.items()}
     lacking = ", ".join(name.upper() for name in NAMES if name not in named)
     if lacking:

@@ -14,7 +14,7 @@ import numpy as np
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import BINARY_BYTES, refuse_large_file
-from gbeam.guards.processes import confined
+from gbeam.guards.processes import read_confined
 from gbeam.io.models.arrays import Contents
 from gbeam.printable import shortened
 
@@ -216,7 +216,7 @@ def contents_of(path: str | os.PathLike[str]) -> Contents:
     def refuse(problem: str) -> InputError:
         return InputError("path", f"{os.fspath(path)} {problem}", "export it again")
 
-    contents: Contents = confined(_reading, os.fspath(path), refuse=refuse)
+    contents: Contents = read_confined(_reading, os.fspath(path), refuse=refuse)
     return contents
 
 

@@ -36,11 +36,11 @@ class Preset:
         """Directions of the load by name; empty where the scenario has to give them."""
         return self.arm.get("directions", {})
 
-    def words(self, name: str, taken: Iterable[str]) -> str:
+    def words(self, name: str, keys: Iterable[str]) -> str:
         """Words for results on the standard, the clauses of the keys that are `taken` from the preset, at second hand
         where they are, and where the standard has those that a scenario gives.
         """
-        sources = {key: clause.partition(":")[0] for key, clause in self.source.items() if key in taken}
+        sources = {key: clause.partition(":")[0] for key, clause in self.source.items() if key in keys}
         parts = [f"{self.standard}, {self.title[:1].lower()}{self.title[1:]} (preset {name})"]
         taken_from = ", ".join(f"{key} by {clause}" for key, clause in sources.items())
         unread = ", ".join(f"{key} ({clause})" for key, clause in self.asked.items())

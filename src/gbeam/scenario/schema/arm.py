@@ -43,11 +43,13 @@ _AlongOrVector = Annotated[
 def _one_words_or_vector(value: Any) -> str:
     if not isinstance(value, (list, tuple)):
         return "one"
-    return "words" if value and all(isinstance(each, str) for each in value) else "list"
+    return "words" if value and all(isinstance(word, str) for word in value) else "list"
 
 
 def _one_vector_or_table(value: Any) -> str:
-    return "one" if isinstance(value, str) else "list" if isinstance(value, (list, tuple)) else "table"
+    if isinstance(value, str):
+        return "one"
+    return "list" if isinstance(value, (list, tuple)) else "table"
 
 
 _Up = Annotated[
@@ -86,9 +88,10 @@ class _Held(_Direction):  # type: ignore[misc, valid-type]
         return self
 
     @property
-    def held(self) -> dict[str, Any]:
+    def written_keys(self) -> dict[str, Any]:
         """Keys that are written, by name."""
-        return {key: value for key in _Direction.model_fields if (value := getattr(self, key)) is not None}
+        values = {key: getattr(self, key) for key in _Direction.model_fields}
+        return {key: value for key, value in values.items() if value is not None}
 
 
 class TestDirection(_Held):
@@ -132,10 +135,10 @@ class Arm(_Held):
     @property
     def motions(self) -> dict[str, dict[str, Any]]:
         """Keys of the motion of every direction, by its name; of one direction the name is empty."""
-        common = self.held
+        common = self.written_keys
         if not self.directions:
             return {"": common | {"load": self.load}}
-        return {name: _merged(common, each) for name, each in self.directions.items()}
+        return {name: _merged(common, direction) for name, direction in self.directions.items()}
 
     @property
     def standard(self) -> str:
@@ -150,12 +153,12 @@ class Arm(_Held):
             return read(value)
         preset = preset_of(value["preset"])
         left_out = {key: part for key, part in preset.arm.items() if key not in value}
-        written = value.get("directions")
+        directions = value.get("directions")
         if "load" in value:
             left_out.pop("directions", None)
-        elif isinstance(written, dict):
-            left_out["directions"] = {name: _with_load(each, preset.directions.get(name)) for name, each in
-                                      written.items()}  # fmt: skip
+        elif isinstance(directions, dict):
+            left_out["directions"] = {name: _with_load(direction, preset.directions.get(name)) for name, direction in
+                                      directions.items()}  # fmt: skip
         arm = read(value | left_out)
         arm._taken = tuple(key for key, part in left_out.items() if value.get(key) != part)
         return arm
@@ -168,23 +171,23 @@ class Arm(_Held):
     def _problems(self) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Errors of an arm without directions or loads, or without keys that every direction needs."""
         if self.load is None and not self.directions:
-            advice = self._asked("directions")
+            advice = self._request("directions")
             yield ((), wrong("directions are missing", advice, mark="key")) if advice else _UNDIRECTED
         unloaded = [name for name, keys in self.motions.items() if name and keys["load"] is None]
         if unloaded:
-            hint = self._asked("directions") or 'add load = "+x" to each'
+            hint = self._request("directions") or 'add load = "+x" to each'
             yield ("directions",), wrong(f"load is missing in the directions {', '.join(unloaded)}", hint, mark="key")
         if self.load is not None and self.directions:
             yield ("load",), wrong("is given beside directions", "keep load or directions, not both", mark="key")
         for key, example in _NEEDED.items():
-            either = (key, *_OR.get(key, ()))
-            lacking = [name for name, keys in self.motions.items() if not {*either} & keys.keys()]
+            alternatives = (key, *_OR.get(key, ()))
+            lacking = [name for name, keys in self.motions.items() if not {*alternatives} & keys.keys()]
             if lacking:
                 directions = f" in the directions {', '.join(lacking)}" if len(lacking) < len(self.motions) else ""
-                hint = self._asked(key) or f"add {key} = {example}"
-                yield (), wrong(f"{' or '.join(either)} is missing{directions}", hint, mark="key")
+                hint = self._request(key) or f"add {key} = {example}"
+                yield (), wrong(f"{' or '.join(alternatives)} is missing{directions}", hint, mark="key")
 
-    def _asked(self, key: str) -> str:
+    def _request(self, key: str) -> str:
         """Words that ask for a key that the preset's standard fixes; empty where it does not."""
         advice = "" if self.preset is None else preset_of(self.preset).advice(key)
         return f"give {key} by {advice}" if advice else ""
@@ -206,7 +209,7 @@ def _merged(common: dict[str, Any], direction: Any) -> dict[str, Any]:
     """Keys of an arm with those that one of its directions has of its own."""
     if not isinstance(direction, TestDirection):
         return common | {"load": direction}
-    changed = direction.held
-    other = {"onset": "ramp", "ramp": "onset"}
-    kept = {key: value for key, value in common.items() if other.get(key) not in changed}
-    return kept | changed | {"load": direction.load}
+    changed = direction.written_keys
+    alternatives = {"onset": "ramp", "ramp": "onset"}
+    common_keys = {key: value for key, value in common.items() if alternatives.get(key) not in changed}
+    return common_keys | changed | {"load": direction.load}

@@ -83,7 +83,7 @@ def _by_matrices(*, file: str | tuple[str, ...] | None = None, **arguments: Any)
     return _Section.of_matrices(**arguments)
 
 
-def _drawn(**drawing: Any) -> Callable[[_Material], _Section]:
+def _outlined(**drawing: Any) -> Callable[[_Material], _Section]:
     """A section of one material by its outline, whose matrices sectionproperties computes: `gbeam[sections]`."""
     return lambda material: _Section.drawn(material=material, **drawing)
 
@@ -116,7 +116,7 @@ ByMatrices = table_of(
     optional={"stiffness", "mass", "length_unit", "mass_unit"},
     changed={"file": (_Files | None, Field(default=None, description=_FILE))},
 )
-Drawn = table_of(_drawn, _Section.drawn, name="Drawn", tag=("shape", "drawn"), without={"material"})
+Drawn = table_of(_outlined, _Section.drawn, name="Drawn", tag=("shape", "drawn"), without={"material"})
 _SECTIONS = {
     "rectangle": Rectangle,
     "circle": Circle,

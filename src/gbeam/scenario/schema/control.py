@@ -32,14 +32,14 @@ def _matrices(
 ) -> Any:
     """A law with states of its own: x' = A x + B e, efforts = C x + D e, by rows or from a file."""
     matrices = {"a": a, "b": b, "c": c, "d": d}
-    written = [name for name, matrix in matrices.items() if matrix is not None]
+    names = [name for name, matrix in matrices.items() if matrix is not None]
     if file is not None:
-        if written:
-            raise InputError(written[0], "is given beside file", "give the matrices or their file")
+        if names:
+            raise InputError(names[0], "is given beside file", "give the matrices or their file")
         stored = read_state_space(file)
         return stored if stored.dt else (stored.a, stored.b, stored.c, stored.d)
-    if len(written) < len(matrices):
-        lacking = next(name for name in matrices if name not in written)
+    if len(names) < len(matrices):
+        lacking = next(name for name in matrices if name not in names)
         raise InputError("", f"{lacking} is missing", 'give a, b, c and d, or file = "controller.mat"')
     return tuple(np.array(matrix, dtype=float, ndmin=2) for matrix in matrices.values())
 

@@ -77,9 +77,9 @@ def table_of(
         default = tag[1] if known else ...
         tagged[tag[0]] = (Literal[tag[1]], Field(default=default, description=f"name of the {tag[0]}"))
     title = name or make.__name__
-    for each in declaring or (make,):
-        factories = _factories(each)
-        for key, parameter in _parameters(unwrap(each)).items():
+    for source in declaring or (make,):
+        factories = _factories(source)
+        for key, parameter in _parameters(unwrap(source)).items():
             if key in without:
                 continue
             if key in optional:
@@ -88,13 +88,13 @@ def table_of(
             written = (types or {}).get(key) or value_type(parameter.hint, own_title, of)
             fields[key] = _field(parameter, written, factories.get(key))
     of_file = dict(changed or {})
-    fields = tagged | {key: each for key, each in of_file.items() if key not in fields} | fields | of_file
+    fields = tagged | {key: declaration for key, declaration in of_file.items() if key not in fields} | fields | of_file
     module = sys.modules[sys._getframe(1).f_globals["__name__"]]
     about = about or (getdoc(make) or "").partition("\n\n")[0].partition("  #")[0].removeprefix("Return ")
     doc = about[:1].upper() + about[1:]
     table = create_model(title, __base__=base, __module__=module.__name__, __doc__=doc, **fields)
-    named = vars(module).setdefault(title, table)  # by which it is pickled
-    assert named is table, f"{module.__name__} has another {title}"
+    registered = vars(module).setdefault(title, table)  # by which it is pickled
+    assert registered is table, f"{module.__name__} has another {title}"
     _MAKERS[table] = _Maker(make, "" if tag is None else tag[0])
     return table
 
@@ -115,16 +115,16 @@ def chosen(key: str, tables: Mapping[str, Any], tag_of: Callable[[Any], Any] | N
     """Return the type of a value that is one of several tables: by a key, or by what a function says of the value."""
     if tag_of is None:
         return Annotated[reduce(or_, tables.values()), Discriminator(key)]
-    either = (Annotated[table, Tag(tag)] for tag, table in tables.items())
-    return Annotated[reduce(or_, either), Discriminator(tag_of)]
+    types = (Annotated[table, Tag(tag)] for tag, table in tables.items())
+    return Annotated[reduce(or_, types), Discriminator(tag_of)]
 
 
 def object_of(parts: Collector, where: str, value: Any) -> Any:
     """Return the object of a table, or of a list or mapping of them; None if one is refused, with why in `parts`."""
     if isinstance(value, (list, tuple)):
-        return tuple(object_of(parts, f"{where}[{i}]", each) for i, each in enumerate(value))
+        return tuple(object_of(parts, f"{where}[{i}]", entry) for i, entry in enumerate(value))
     if isinstance(value, Mapping):
-        return {key: object_of(parts, f"{where}.{key}", each) for key, each in value.items()}
+        return {key: object_of(parts, f"{where}.{key}", entry) for key, entry in value.items()}
     if not isinstance(value, BaseModel):
         return value
     maker = _MAKERS[type(value)]
@@ -136,8 +136,8 @@ def object_of(parts: Collector, where: str, value: Any) -> Any:
 def arguments_of(parts: Collector, where: str, table: BaseModel, without: Collection[str] = ()) -> dict[str, Any]:
     """Objects of the values that are written in a table, by their keys as names of parameters."""
     keys = zip(fields_of(type(table)), type(table).model_fields, strict=True)
-    taken = [(key, name) for key, name in keys if name in table.model_fields_set and name not in without]
-    written = [(key, name, getattr(table, name)) for key, name in taken]
+    names = [(key, name) for key, name in keys if name in table.model_fields_set and name not in without]
+    written = [(key, name, getattr(table, name)) for key, name in names]
     return {name: object_of(parts, f"{where}.{key}", value) for key, name, value in written if value is not None}
 
 
@@ -146,7 +146,7 @@ def _factories(make: Make) -> dict[str, Callable[[], Any]]:
     if not dataclasses.is_dataclass(make):
         return {}
     fields = dataclasses.fields(make)
-    return {each.name: each.default_factory for each in fields if each.default_factory is not dataclasses.MISSING}
+    return {field.name: field.default_factory for field in fields if field.default_factory is not dataclasses.MISSING}
 
 
 def _field(parameter: Parameter, written: Any, factory: Callable[[], Any] | None) -> tuple[Any, Any]:
@@ -185,13 +185,13 @@ def value_type(hint: Any, title: str, of: str = "", quantity: Quantity | None = 
     if origin is Annotated:
         return _annotated(hint.__origin__, hint.__metadata__, title, of, quantity)
     if hint is not ArrayLike and origin in (Union, types.UnionType):
-        return _alternatives([each for each in parts if each is not type(None)], title, of, quantity)
+        return _alternatives([part for part in parts if part is not type(None)], title, of, quantity)
     if hint in _TYPES:
         return _TYPES[hint]
     if origin is Literal:
         return hint
     if origin is tuple and Ellipsis not in parts:
-        return tuple.__class_getitem__(tuple(value_type(each, title, of, quantity) for each in parts))
+        return tuple.__class_getitem__(tuple(value_type(part, title, of, quantity) for part in parts))
     if origin in _LISTS:
         return _list_of(value_type(parts[0], title, of, quantity))
     if origin in (Mapping, dict):
@@ -220,7 +220,10 @@ def _annotated(hint: Any, metadata: tuple[Any, ...], title: str, of: str, quanti
     if quantity is not None and str in get_args(hint):  # texts that the quantity keeps, such as times of day
         return Annotated[hint, quantity]
     others = (mark for mark in metadata if not isinstance(mark, _OURS))
-    return reduce(lambda each, mark: Annotated[each, mark], others, value_type(hint, title, of, quantity))
+    annotated = value_type(hint, title, of, quantity)
+    for mark in others:
+        annotated = Annotated[annotated, mark]
+    return annotated
 
 
 def _number(quantity: Quantity | None) -> Any:
@@ -232,20 +235,23 @@ def _alternatives(parts: Sequence[Any], title: str, of: str, quantity: Quantity 
     """Type of a value that has one of several types: of a number or a profile, a profile of its quantity."""
     if Profile in parts and quantity is not None:
         return OVER_TIME[quantity.kind]
-    listed = any(get_origin(each) in _LISTS for each in parts)  # and so are arrays of NumPy, in a file
+    listed = any(get_origin(part) in _LISTS for part in parts)  # and so are arrays of NumPy, in a file
     kinds = dict.fromkeys(
-        value_type(each, title, of, quantity) for each in parts if not (listed and get_origin(each) is ndarray)
+        value_type(part, title, of, quantity) for part in parts if not (listed and get_origin(part) is ndarray)
     )
     if len(kinds) == 2 and listed:
-        one, some = sorted(kinds, key=_is_list)
+        one, list_type = sorted(kinds, key=_is_list)
         if not _is_list(one):  # by tags, or a value that is neither would be refused twice
-            return Annotated[Annotated[one, Tag("one")] | Annotated[some, Tag("list")], ONE_OR_LIST]
+            return Annotated[Annotated[one, Tag("one")] | Annotated[list_type, Tag("list")], ONE_OR_LIST]
     return reduce(or_, kinds)
 
 
 def _array(number: Any, sizes: tuple[int, ...]) -> Any:
     """Type of an array of these sizes, as lists in lists."""
-    return reduce(lambda each, size: tuple.__class_getitem__((each,) * size), reversed(sizes), number)
+    array = number
+    for size in reversed(sizes):
+        array = tuple.__class_getitem__((array,) * size)
+    return array
 
 
 def _list_of(entry: Any) -> Any:
@@ -255,30 +261,34 @@ def _list_of(entry: Any) -> Any:
 
 def _one_or_some(one: Any, depth: int) -> Any:
     """Type of one value, a number or lists so many deep, or of a list of such values."""
-    some: Any = Annotated[tuple.__class_getitem__((one, ...)), Field(min_length=1, max_length=ENTRIES)]
+    list_type: Any = Annotated[tuple.__class_getitem__((one, ...)), Field(min_length=1, max_length=ENTRIES)]
 
     def tag(value: Any) -> str:
         for _ in range(depth):
             value = value[0] if isinstance(value, (list, tuple)) and value else None
         return "list" if isinstance(value, (list, tuple)) else "one"
 
-    return Annotated[Annotated[one, Tag("one")] | Annotated[some, Tag("list")], Discriminator(tag)]
+    return Annotated[Annotated[one, Tag("one")] | Annotated[list_type, Tag("list")], Discriminator(tag)]
 
 
 def _by_components(title: str, words: Components, hint: Any, quantity: Quantity) -> Any:
     """Table of the components of a vector; those of a profile, and of a mapping by axes, may be left out."""
     varies, by_axis = Profile in get_args(hint), get_origin(hint) in (Mapping, dict)
-    written = OVER_TIME[quantity.kind] if varies else Annotated[float, quantity]
-    left_out = varies or by_axis
-    fields: dict[str, Any] = {
-        axis: (written | None if left_out else written, Field(default=None if left_out else ..., description=about))
-        for axis, about in (("x", words.x), ("y", words.y), ("z", words.z))
-        if about
-    }
+    component: Any = OVER_TIME[quantity.kind] if varies else Annotated[float, quantity]
+    default: Any = ...
+    if varies or by_axis:
+        component, default = component | None, None
+    fields: dict[str, Any] = {}
+    for axis, description in (("x", words.x), ("y", words.y), ("z", words.z)):
+        if description:
+            fields[axis] = (component, Field(default=default, description=description))
     base = Vector if varies else Table
     table = create_model(title, __base__=base, __module__=__name__, __doc__=words.about, **fields)
     globals()[title] = table  # by which it is pickled
-    _MAKERS[table] = _Maker(vector if varies else dict if by_axis else _triple, "")
+    make: Make = vector
+    if not varies:
+        make = dict if by_axis else _triple
+    _MAKERS[table] = _Maker(make, "")
     return table
 
 

@@ -41,9 +41,9 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
-def optional(words: str, **more: Any) -> Any:
+def optional(words: str, **options: Any) -> Any:
     """Declare a key that may be left out, and is None then."""
-    return Field(default=None, description=words, **more)
+    return Field(default=None, description=words, **options)
 
 
 def listed(words: str) -> Any:
@@ -74,13 +74,13 @@ def motion_name(name: str) -> str:
     return name
 
 
-def _named(name: str) -> str:
+def _check_name(name: str) -> str:
     if not name.isidentifier() or not name.isascii() or len(name) > NAME or name == GROUND:
         raise wrong(f"{shortened(repr(name))} is not a name", "give letters, digits and underscores", mark="key")
     return name
 
 
-Name = Annotated[str, AfterValidator(_named)]
+Name = Annotated[str, AfterValidator(_check_name)]
 Direction = tuple[Ratio, Ratio, Ratio]
 
 
@@ -94,10 +94,10 @@ def existing_file(file: str, info: ValidationInfo) -> str:
         neighbours = sorted(p.name for p in folder.iterdir() if p.is_file())
     except (OSError, ValueError):
         neighbours = []
-    near = closest(path.name, neighbours)
+    suggestion = closest(path.name, neighbours)
     hint = f"it is looked for in {folder}"
-    if near:
-        hint = f"did you mean {str(pathlib.Path(file).with_name(near))!r}?"
+    if suggestion:
+        hint = f"did you mean {str(pathlib.Path(file).with_name(suggestion))!r}?"
     raise wrong("there is no file {value}", hint)
 
 
@@ -123,7 +123,7 @@ class Vector(Table):
     """Components x, y and z, at least one of them given."""
 
     @model_validator(mode="after")
-    def _any(self) -> Vector:
+    def _refuse_empty(self) -> Vector:
         if all(getattr(self, axis) is None for axis in "xyz"):
             refuse([((), wrong("has no component", "give one or more of x, y and z"))])
         return self
@@ -145,14 +145,14 @@ def _kind_in(parts: Iterable[Any]) -> str:
 
 def parts_of(field: FieldInfo | None) -> tuple[Any, ...]:
     """Metadata of a field and the parts of its annotation at any depth; empty for None."""
-    return () if field is None else (*field.metadata, *inside(field.annotation))
+    return () if field is None else (*field.metadata, *annotation_parts(field.annotation))
 
 
-def inside(annotation: Any) -> Iterator[Any]:
+def annotation_parts(annotation: Any) -> Iterator[Any]:
     """Parts of an annotation at any depth, itself first."""
     yield annotation
     for part in get_args(annotation):
-        yield from inside(part)
+        yield from annotation_parts(part)
 
 
 Step = Annotated[float | Literal["auto"], Quantity("time", "positive", words=("auto",))]

@@ -78,7 +78,8 @@ def _joint(name: str, kind: Kind) -> Any:
     fields = _placed(name, kind)
     for key, (type_of, words) in _ABOUT.items():
         coordinates = kind.names_in(key)
-        by_coordinate = {each: _optional(type_of(kind_of_value(key, each)), words) for each in coordinates}
+        kinds = {coordinate: kind_of_value(key, coordinate) for coordinate in coordinates}
+        by_coordinate = {coordinate: _optional(type_of(kinds[coordinate]), words) for coordinate in coordinates}
         if len(coordinates) == 1:
             fields[key] = by_coordinate[coordinates[0]]
         elif coordinates:

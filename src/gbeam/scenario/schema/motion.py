@@ -111,7 +111,7 @@ class _Imitation(Table):
     accept: Accept | None = optional("how well it must reproduce the flight: { tip, peaks }")
 
     @property
-    def along(self) -> float:
+    def control_point_x(self) -> float:
         """The control point along x, m."""
         place: Any = self.control_point  # type: ignore[attr-defined]
         return float(place[0] if isinstance(place, tuple) else place)

@@ -71,4 +71,4 @@ def _over_time(kind: str) -> Any:
     return chosen("profile", {"one": Annotated[float, Quantity(kind)], **tables}, _tag)
 
 
-OVER_TIME |= {kind: _over_time(kind) for kind, each in KINDS.items() if each.rate}
+OVER_TIME |= {kind: _over_time(kind) for kind, quantity_kind in KINDS.items() if quantity_kind.rate}

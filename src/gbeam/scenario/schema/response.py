@@ -43,8 +43,8 @@ class _Integration(Table):
     def parameters(self) -> dict[Parameter, float]:
         """Parameters of the integrator that are written."""
         table: Any = self
-        named = {name: getattr(self, name) for name in PARAMETERS[table.integrator]}
-        return {name: value for name, value in named.items() if value is not None}
+        values = {name: getattr(self, name) for name in PARAMETERS[table.integrator]}
+        return {name: value for name, value in values.items() if value is not None}
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -66,8 +66,9 @@ class Sweep(Table):
 def _printable(title: str) -> str:
     if len(title) > TITLE:
         raise wrong(f"has {len(title)} characters", f"give {TITLE} or fewer")
-    if bad := unprintable(title):
-        raise wrong(f"holds {bad}, which cannot be printed", "leave it out")
+    character = unprintable(title)
+    if character:
+        raise wrong(f"holds {character}, which cannot be printed", "leave it out")
     return title
 
 
@@ -103,17 +104,20 @@ class Environments(Titled):
         are `varied`.
         """
         levels = [
-            level_words(name, each.scale)
-            for name, each in self.motion.items()
-            if isinstance(each, Flight) and each.scale != 1 and f"motion.{name}.scale" not in varied
+            level_words(name, motion.scale)
+            for name, motion in self.motion.items()
+            if isinstance(motion, Flight) and motion.scale != 1 and f"motion.{name}.scale" not in varied
         ]
         return "; ".join(filter(None, [self.title, *levels]))
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all motions in their order: of an arm in several directions NAME-DIRECTION of each."""
-        several = ((name, table.motions if isinstance(table, Arm) else ("",)) for name, table in self.motion.items())
-        return tuple("-".join(filter(None, (name, part))) for name, parts in several for part in parts)
+        names = []
+        for name, table in self.motion.items():
+            directions = table.motions if isinstance(table, Arm) else ("",)
+            names += ["-".join(filter(None, (name, direction))) for direction in directions]
+        return tuple(names)
 
     @property
     def source(self) -> Source | None:
@@ -142,8 +146,8 @@ class Environments(Titled):
             if isinstance(motion, Flight) and isinstance(motion.record, PartOfRecord):
                 yield from self._part(name, motion.record)
         for name in self.motion:
-            twice = [other for other in self.names if other == name]
-            if len(twice) > 1:
+            homonyms = [candidate for candidate in self.names if candidate == name]
+            if len(homonyms) > 1:
                 yield ("motion", name), wrong("has the name of a direction of an arm", "give it another", mark="key")
         recorded = any(isinstance(motion, Flight) and motion.record for motion in self.motion.values())
         machines = any(isinstance(motion, Centrifuge) for motion in self.motion.values())  # which plan for these times
@@ -155,12 +159,12 @@ class Environments(Titled):
 
     def _part(self, name: str, part: Any) -> Iterator[tuple[Loc, PydanticCustomError]]:
         """Errors of a record that is part of another flight's."""
-        flights = {key: each for key, each in self.motion.items() if isinstance(each, Flight)}
-        whole = [key for key, each in flights.items() if isinstance(each.record, Record)]
+        flights = {key: flight for key, flight in self.motion.items() if isinstance(flight, Flight)}
+        recorded = [key for key, flight in flights.items() if isinstance(flight.record, Record)]
         where = ("motion", name, "record")
-        if part.of not in whole:
+        if part.of not in recorded:
             message = "names a flight without a record of its own" if part.of in flights else "names no flight"
-            hint = advise(part.of, whole) if whole else "give the record itself: file, time, x, y, z and unit"
+            hint = advise(part.of, recorded) if recorded else "give the record itself: file, time, x, y, z and unit"
             yield (*where, "of"), wrong(f"{{value}} {message}", hint)
             return
         if part.section is not None and flights[part.of].record.sections is None:
@@ -186,7 +190,7 @@ class Scenario(Environments, _Structure):
         """Motions that do not agree with the beam or its model."""
         for name, motion in self.motion.items():
             length = math.inf if self.beam.length is None else self.beam.length
-            if isinstance(motion, Centrifuge) and motion.along > length * (1 + 1e-12):
+            if isinstance(motion, Centrifuge) and motion.control_point_x > length * (1 + 1e-12):
                 hint = "give 0 to {beam.length} from the root"
                 yield ("motion", name, "control_point"), wrong("{value} is beyond the tip", hint)
             if isinstance(motion, Hub):

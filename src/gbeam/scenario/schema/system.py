@@ -43,7 +43,7 @@ else:
     from gbeam.scenario.schema.control import Controller
     from gbeam.scenario.schema.joints import JointTable
 
-    Body = chosen("kind", {name: each.table for name, each in BODIES.items()}, _kind)
+    Body = chosen("kind", {name: body_kind.table for name, body_kind in BODIES.items()}, _kind)
     Force = table_of(_point_force, system.PointForce, name="PointForce")
     Surroundings = table_of(system.System, name="Surroundings", without={"bodies", "joints", "forces", "controllers"})
 
@@ -84,9 +84,9 @@ class SystemScenario(Environments, Tree):
 
     @model_validator(mode="before")
     @classmethod
-    def _alone(cls, data: Any) -> Any:
-        both = [name for name in _BESIDE if isinstance(data, dict) and name in data and "bodies" in data]
-        refuse([((name,), wrong("is given beside bodies", _BESIDE[name], mark="key")) for name in both])
+    def _refuse_mixed_tables(cls, data: Any) -> Any:
+        names = [name for name in _BESIDE if isinstance(data, dict) and name in data and "bodies" in data]
+        refuse([((name,), wrong("is given beside bodies", _BESIDE[name], mark="key")) for name in names])
         return data
 
     def about_structure(self) -> Iterator[tuple[Loc, PydanticCustomError]]:

@@ -37,10 +37,10 @@ class Diagnostic:
         if self.source_line is not None and self.column is not None:
             number = f"{self.line}"
             margin += " " * len(number)
-            line, before = self._excerpt(self.source_line, self.column - 1)
+            line, offset = self._excerpt(self.source_line, self.column - 1)
             # Tabs stay, so that the caret stands under its column however wide they are shown.
-            indent = "".join(c if c == "\t" else " " for c in printable(line[:before]))
-            marked = printable(line[before : before + max((self.end or 0) - self.column, 1)])
+            indent = "".join(c if c == "\t" else " " for c in printable(line[:offset]))
+            marked = printable(line[offset : offset + max((self.end or 0) - self.column, 1)])
             lines += [f"    {number} | {printable(line)}", f"{margin} | {indent}{'^' * max(len(marked), 1)}"]
             margin += " "
         if self.hint:

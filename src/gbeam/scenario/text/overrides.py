@@ -32,8 +32,8 @@ _HALF = re.compile("[\ud800-\udfff]")
 def excess(text: str) -> tuple[Span, str, str] | None:
     """Place, problem and fix where a text exceeds the limits of size, nesting or numbers; None if it keeps them."""
     if len(text) > SCENARIO_BYTES:
-        most = in_bytes(SCENARIO_BYTES)
-        return Span(1, 1, 2), f"has {in_bytes(len(text))}, and {most} are read at most", "give long tables as a record"
+        limit = in_bytes(SCENARIO_BYTES)
+        return Span(1, 1, 2), f"has {in_bytes(len(text))}, and {limit} are read at most", "give long tables as a record"
     depth = 0
     for token in _TOKEN.finditer(text):
         kind = token.lastgroup
@@ -61,12 +61,12 @@ def crowded(data: dict[str, Any]) -> tuple[Path, str] | None:
     nodes: list[tuple[Path, Any]] = [((), data)]
     for path, node in nodes:  # which grows
         steps = [*node.items()] if isinstance(node, dict) else [*enumerate(node)]
-        inside = [((*path, key), each) for key, each in steps if isinstance(each, (dict, list))]
-        counts = {"keys": len(steps) if isinstance(node, dict) else 0, "tables or lists": len(inside)}
+        children = [((*path, key), child) for key, child in steps if isinstance(child, (dict, list))]
+        counts = {"keys": len(steps) if isinstance(node, dict) else 0, "tables or lists": len(children)}
         for noun, count in counts.items():
             if count > KEYS:
                 return path, f"has {count} {noun}, and nothing has more than {KEYS}"
-        nodes += inside
+        nodes += children
     return None
 
 
@@ -92,19 +92,19 @@ class _Refused(ValueError):
 def override(data: dict[str, Any], name: str, texts: Iterable[str]) -> tuple[dict[str, Any], tuple[Override, ...]]:
     """Return a copy of `data` after the overrides `texts`, and these as read; ScenarioError lists refused ones."""
     changed = deepcopy(data)
-    done: list[Override] = []
+    applied: list[Override] = []
     refused: list[Diagnostic] = []
     for text in texts:
         try:
             change = _read(text)
             _write(changed, change)
-            done.append(change)
+            applied.append(change)
         except _Refused as error:
             message, hint = error.args
             refused.append(Diagnostic(name, "", message, hint, override=text))
     if refused:
         raise ScenarioError(refused)
-    return changed, tuple(done)
+    return changed, tuple(applied)
 
 
 def _read(text: str) -> Override:
@@ -136,15 +136,15 @@ def _write(data: dict[str, Any], change: Override) -> None:
     """Set a value in `data`, with missing tables around it; a list's missing entry is refused."""
     node: Any = data
     for i, step in enumerate(change.path):
-        above = path_text(change.path[:i])
+        parent = path_text(change.path[:i])
         if isinstance(step, int):
             if not isinstance(node, list):
-                raise _Refused(f"{above} is not a list", "leave the index out")
+                raise _Refused(f"{parent} is not a list", "leave the index out")
             if step >= len(node):
                 count = f"{len(node)} {'entry' if len(node) == 1 else 'entries'}"
-                raise _Refused(f"{above} has {count}", "the first is [0]; set the whole list to add to it")
+                raise _Refused(f"{parent} has {count}", "the first is [0]; set the whole list to add to it")
         elif not isinstance(node, dict):
-            raise _Refused(f"{above} is {'a list' if isinstance(node, list) else 'not a table'}", "check the key")
+            raise _Refused(f"{parent} is {'a list' if isinstance(node, list) else 'not a table'}", "check the key")
         if i == len(change.path) - 1:
             node[step] = change.value
         elif isinstance(step, str):

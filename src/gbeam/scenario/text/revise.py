@@ -35,16 +35,16 @@ def edited(source: Source, table: Path, changes: Mapping[str, str | float | list
 
 def with_quantities(source: Source, changes: Mapping[str, tuple[float, str]]) -> str:
     """Return the text with other values (SI, and kind) of quantities by path, each in the unit it was written in."""
-    text, before = source.text, parse(source.name, source.text)
+    text, data = source.text, parse(source.name, source.text)
     for path_words, (value, kind) in changes.items():
         *table, key = parse_path(path_words) or ("",)
         if not isinstance(key, str):
             raise InputError(source.name, f"has {path_words} in a list", f"write it yourself: {value:.8g}")
-        old = replace(source, text=text, data=before, overrides=()).raw((*table, key))
-        unit, size = unit_of(old, kind) if isinstance(old, str) else ("", 1.0)
+        value_before = replace(source, text=text, data=data, overrides=()).raw((*table, key))
+        unit, size = unit_of(value_before, kind) if isinstance(value_before, str) else ("", 1.0)
         number = f"{value / size:.8g}"
-        written: str | float = f"{number} {unit}" if unit else float(number)
-        text = edited(replace(source, text=text, overrides=()), tuple(table), {key: written})
+        text_value: str | float = f"{number} {unit}" if unit else float(number)
+        text = edited(replace(source, text=text, overrides=()), tuple(table), {key: text_value})
     return text
 
 
@@ -57,7 +57,7 @@ def with_entry(text: str, path: Path, value: Any) -> str:
     try:
         _put(expected, path, value)
     except (LookupError, TypeError, AttributeError):
-        raise _beyond(path) from None
+        raise _refusal(path) from None
     # A new table is tried under a header first; where dotted keys open its parent, it can only stand on one line.
     changes = (partial(_put, path=path, value=value, style=style) for style in (_block, _line))
     return _checked(text, [expected], path, *changes)
@@ -83,7 +83,8 @@ def without_entry(text: str, path: Path) -> str:
 def toml(value: Any) -> str:
     """Return a value as TOML on one line."""
     if isinstance(value, dict):
-        return f"{{ {', '.join(f'{_key(key)} = {toml(each)}' for key, each in value.items())} }}" if value else "{}"
+        pairs = ", ".join(f"{_key(key)} = {toml(entry)}" for key, entry in value.items())
+        return f"{{ {pairs} }}" if pairs else "{}"
     if isinstance(value, list):
         return f"[{', '.join(map(toml, value))}]"
     return json.dumps(value, ensure_ascii=False)  # TOML reads strings of JSON
@@ -100,10 +101,10 @@ def _checked(text: str, accepted: Sequence[Any], path: Path, *changes: Callable[
             changed = _changed(text, change)
             if parse("", changed) in accepted:
                 return changed
-    raise _beyond(path)
+    raise _refusal(path)
 
 
-def _beyond(path: Path) -> InputError:
+def _refusal(path: Path) -> InputError:
     return InputError(path_text(path), "is written in a way that cannot be changed here", "change the text")
 
 
@@ -126,11 +127,11 @@ def _changed(text: str, change: Callable[[Any], None]) -> str:
                 body[i] = (None, Whitespace(""))
         gap = []
     change(document)
-    remaining = {id(item) for *_, item in _items(document)}
+    items = {id(item) for *_, item in _items(document)}
     lead = ""  # comments before removed tables go to the next one
-    for table, above in leads[:-1]:
-        lead += above if id(table) in remaining or "#" in above else ""
-        if id(table) in remaining:
+    for table, comments in leads[:-1]:
+        lead += comments if id(table) in items or "#" in comments else ""
+        if id(table) in items:
             table.trivia.indent, lead = lead + table.trivia.indent, ""
     changed = tomlkit.dumps(document) + lead + leads[-1][1]
     changed = changed if text.endswith("\n") else changed.removesuffix("\n")
@@ -196,8 +197,8 @@ def _block(parent: Any, value: Any) -> Any:
         return _line(parent, value)
     table = tomlkit.table()
     table.trivia.indent = "\n"
-    for key, each in value.items():
-        table.add(key, _line(table, each))
+    for key, entry in value.items():
+        table.add(key, _line(table, entry))
     return table
 
 

@@ -42,8 +42,8 @@ def locate(text: str) -> dict[Path, Place]:
     """Map every path of a text that has been parsed, such as ``("beam", "masses", 0, "at")``, to its place."""
     reader = _Reader(text)
     if is_json(text):
-        whole = reader.value(())
-        reader.places[()] = Place(whole, whole)
+        span = reader.value(())
+        reader.places[()] = Place(span, span)
     else:
         reader.tables()
     return reader.places
@@ -63,7 +63,7 @@ class _Reader:
         """Read a document of TOML."""
         path: Path = ()
         counts: dict[Path, int] = {}
-        while self.next():
+        while self.peek():
             if not self.skip("["):
                 self.pair(path)
                 continue
@@ -95,14 +95,14 @@ class _Reader:
         """Read a key, and return its name, or its names if it is dotted, with their places."""
         names: list[tuple[str, Span]] = []
         while not names or self.skip("."):
-            self.next()
+            self.peek()
             start, key = self.at, self.take(_KEY)
             names.append((self.unquoted(key) if key[0] in "\"'" else key, self.span(start)))
         return names
 
     def value(self, path: Path) -> Span:
         """Read a value, with the entries inside it, and return its place."""
-        self.next()
+        self.peek()
         start, index = self.at, 0
         if self.skip("{"):
             while not self.skip("}"):
@@ -118,14 +118,14 @@ class _Reader:
             self.take(_VALUE)
         return self.span(start)
 
-    def next(self) -> str:
+    def peek(self) -> str:
         """Pass spaces and comments, and return the next character, or "" at the end."""
         self.take(_SPACE)
         return self.text[self.at : self.at + 1]
 
     def skip(self, character: str) -> bool:
         """Pass a character if it comes next; return true if it did."""
-        comes = self.next() == character
+        comes = self.peek() == character
         self.at += comes
         return comes
 
@@ -210,8 +210,12 @@ def read_text(path: File) -> str:
     except FileNotFoundError:
         folder = path.parent
         neighbours = sorted(p.name for p in folder.glob("*") if p.suffix in (".toml", ".json"))
-        near = closest(path.name, neighbours)
-        hint = f"did you mean {str(path.with_name(near))!r}?" if near else "`gbeam new` writes one to start from"
+        suggestion = closest(path.name, neighbours)
+        hint = (
+            f"did you mean {str(path.with_name(suggestion))!r}?"
+            if suggestion
+            else "`gbeam new` writes one to start from"
+        )
         problem = "there is no such file"
     except UnicodeDecodeError as error:
         if b"\0" not in data:

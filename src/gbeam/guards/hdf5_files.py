@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def opened(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
+def open_hdf5(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
     """Open a file of HDF5; ValueError if a link, or the numbers of a data set, lead into another file."""
     import h5py  # 0.2 s to import
 
@@ -24,9 +24,9 @@ def opened(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
         elif isinstance(node, h5py.Dataset):
             others = [(name, part[0]) for part in node.external or ()]
             others += [(name, part.file_name) for part in (node.virtual_sources() if node.is_virtual else ())]
-        for key, other in others:
-            if other != ".":  # this one
-                raise ValueError(f"{key} lies in another file, {other}: copy it into this one")
+        for key, file_name in others:
+            if file_name != ".":  # this one
+                raise ValueError(f"{key} lies in another file, {file_name}: copy it into this one")
 
     with h5py.File(path) as file:
         refuse_elsewhere("", file)

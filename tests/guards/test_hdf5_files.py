@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.whole import opened
+from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.io.hdf5 import contents
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
@@ -60,7 +60,10 @@ def write(path: Path, way: Callable[[h5py.File, Path], None], other: Path) -> Pa
 @pytest.mark.parametrize("way", WAYS)
 def test_what_lies_elsewhere_is_refused(tmp_path: Path, other: Path, way: Callable[[h5py.File, Path], None]) -> None:
     path = write(tmp_path / "r.h5", way, other)
-    with pytest.raises(ValueError, match=r"az lies in another file, .*other\.h5: copy it into this one"), opened(path):
+    with (
+        pytest.raises(ValueError, match=r"az lies in another file, .*other\.h5: copy it into this one"),
+        open_hdf5(path),
+    ):
         pass
     with pytest.raises(gb.InputError, match=r"r\.h5 cannot be read \((a/b/)?az lies in another file"):
         gb.read_record(path, time="t", x="0", y="0", z="az", unit="g")
@@ -82,6 +85,6 @@ def test_links_within_a_file_are_followed(tmp_path: Path) -> None:
         layout = h5py.VirtualLayout(SECRET.shape, "f8")
         layout[:] = h5py.VirtualSource(".", "data/az", SECRET.shape)
         file.create_virtual_dataset("copied", layout)
-    with opened(tmp_path / "r.h5") as file:
+    with open_hdf5(tmp_path / "r.h5") as file:
         for name in ("soft", "hard", "copied"):
             np.testing.assert_array_equal(file[name], SECRET)
