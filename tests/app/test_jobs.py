@@ -337,10 +337,10 @@ def test_all_of_a_run_is_for_its_owner_only(tmp_path: Path, monkeypatch: pytest.
 
 def test_runs_of_one_title_are_told_apart(tmp_path: Path) -> None:
     jobs = Jobs(tmp_path)
-    assert jobs.last("fast") == ""
+    assert jobs.last_text("fast") == ""
     jobs.submit(FAST, "fast", [])
     jobs.submit(WRONG, "another", [], changes="length")
-    assert jobs.last("fast") == FAST and [each["changes"] for each in jobs.list()] == ["length", ""]
+    assert jobs.last_text("fast") == FAST and [each["changes"] for each in jobs.list()] == ["length", ""]
     after = FAST.replace("300 mm", "310 mm").replace("damping_ratio = 0.01\n", "")
     assert changes(FAST, FAST) == "as before"
     assert changes(FAST, after) == "beam.length = 310 mm, no beam.damping_ratio"

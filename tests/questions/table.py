@@ -175,10 +175,10 @@ def _sweep(scenario: Scenario) -> Any:
 
 
 def _value(template: Path, path: str) -> float:
-    from gbeam.studies.parameters import named
+    from gbeam.studies.parameters import select_values
     from gbeam.studies.template import template_of
 
-    (parameter,) = named(template_of(template), [path], "--with")
+    (parameter,) = select_values(template_of(template), [path], "--with")
     return parameter.value
 
 

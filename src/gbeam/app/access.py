@@ -80,23 +80,23 @@ class Door:
         if int(headers.get("content-length") or 0) > LARGEST:
             return 413, "too large", []
         query = parse_qs(scope["query_string"].decode("latin-1"))
-        if scope["path"] == "/" and scope["method"] == "GET" and _same(query.get("token", [""])[0], self._token):
+        if scope["path"] == "/" and scope["method"] == "GET" and _match(query.get("token", [""])[0], self._token):
             cookie = f"{self._cookie}={self._session}; HttpOnly; SameSite=Strict; Path=/"
             # To the same place without the token, which is then in no history; the page removes the keys from there.
             place = f"/#{self._key}.{self._reader}"
             return 303, "", [(b"location", place.encode()), (b"set-cookie", cookie.encode())]
-        pairs = (each.strip().partition("=") for each in headers.get("cookie", "").split(";"))
+        pairs = (entry.strip().partition("=") for entry in headers.get("cookie", "").split(";"))
         session = next((value for name, _, value in pairs if name == self._cookie), "")
-        if not _same(session, self._session):
+        if not _match(session, self._session):
             return 401, UNKNOWN, []
         reads = scope["method"] in _SAFE and scope["path"].startswith(_FILES)
-        known = scope["path"] in _PAGE or _same(headers.get(KEY, ""), self._key)
-        if not known and not (reads and _same(query.get("key", [""])[0], self._reader)):
+        authorised = scope["path"] in _PAGE or _match(headers.get(KEY, ""), self._key)
+        if not authorised and not (reads and _match(query.get("key", [""])[0], self._reader)):
             return 401, UNKNOWN, []
         return None
 
 
-def _same(answer: str, secret: str) -> bool:
+def _match(answer: str, secret: str) -> bool:
     return secrets.compare_digest(answer.encode(), secret.encode())
 
 
@@ -159,13 +159,13 @@ class Connections:
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Answer a request; its connection is not idle until then."""
-        other = tuple(scope.get("client") or ())
-        self._busy(other)
+        peer = tuple(scope.get("client") or ())
+        self._busy(peer)
         try:
             await self._app(scope, receive, send)
         finally:
-            if other in self._open:
-                self._wait(other)
+            if peer in self._open:
+                self._wait(peer)
 
     @cached_property
     def protocol(self) -> type[asyncio.Protocol]:
@@ -178,42 +178,42 @@ class Connections:
             """HTTP protocol of one connection."""
 
             def connection_made(self, transport: Any) -> None:
-                self.other = transport.get_extra_info("peername") or transport
-                connections.opened(self.other, transport)
+                self.peer = transport.get_extra_info("peername") or transport
+                connections.add(self.peer, transport)
                 super().connection_made(transport)
 
             def connection_lost(self, error: Exception | None) -> None:
-                connections.closed(self.other)
+                connections.remove(self.peer)
                 super().connection_lost(error)
 
         return Watched
 
-    def opened(self, other: Any, transport: asyncio.Transport) -> None:
+    def add(self, peer: Any, transport: asyncio.Transport) -> None:
         """Count a new connection; with too many, close the longest idle one, or the new one if none is idle."""
         if len(self._open) >= self._most:
             if not self._idle:
                 transport.abort()
                 return
             self._close(next(iter(self._idle)))
-        self._open[other] = transport
-        self._wait(other)
+        self._open[peer] = transport
+        self._wait(peer)
 
-    def closed(self, other: Any) -> None:
+    def remove(self, peer: Any) -> None:
         """Forget a connection."""
-        self._busy(other)
-        self._open.pop(other, None)
+        self._busy(peer)
+        self._open.pop(peer, None)
 
-    def _wait(self, other: Any) -> None:
-        self._idle[other] = asyncio.get_running_loop().call_later(PATIENCE, self._close, other)
+    def _wait(self, peer: Any) -> None:
+        self._idle[peer] = asyncio.get_running_loop().call_later(PATIENCE, self._close, peer)
 
-    def _busy(self, other: Any) -> None:
-        timer = self._idle.pop(other, None)
+    def _busy(self, peer: Any) -> None:
+        timer = self._idle.pop(peer, None)
         if timer is not None:
             timer.cancel()
 
-    def _close(self, other: Any) -> None:
-        transport = self._open[other]
-        self.closed(other)
+    def _close(self, peer: Any) -> None:
+        transport = self._open[peer]
+        self.remove(peer)
         transport.abort()
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import tomlkit
 
-from gbeam.app.files import known, regular
+from gbeam.app.files import check_kind, regular
 from gbeam.app.form import file_keys, form, known_at, new_table, value_at
 from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import GbeamError, InputError
@@ -50,7 +50,7 @@ class Unfit(GbeamError):
 
     def __init__(self, problems: list[dict[str, Any]]) -> None:
         self.problems = problems
-        super().__init__("; ".join(str(each["message"]) for each in problems))
+        super().__init__("; ".join(str(problem["message"]) for problem in problems))
 
 
 def described(text: str, folder: Path, *, distributions: bool = True) -> dict[str, Any]:
@@ -104,12 +104,12 @@ def with_record(text: str, motion: str, record: dict[str, str]) -> str:
         raise InputError(f"motion.{motion}"[:100], "is no flight of the scenario", "add a motion of kind flight")
     if written_at(data, (*place, "acceleration")) is not None:
         text = without_entry(text, (*place, "acceleration"))
-    before = written_at(data, (*place, "record"))
-    same = isinstance(before, dict) and before.get("file") == record.get("file")
-    kept = {key: value for key, value in before.items() if key not in COLUMNS} if same else {}
+    record_before = written_at(data, (*place, "record"))
+    same_file = isinstance(record_before, dict) and record_before.get("file") == record.get("file")
+    other_keys = {key: value for key, value in record_before.items() if key not in COLUMNS} if same_file else {}
     if written_at(data, _DURATION) is not None:
         text = without_entry(text, _DURATION)
-    return with_entry(text, (*place, "record"), record | kept)
+    return with_entry(text, (*place, "record"), record | other_keys)
 
 
 def with_mesh(text: str, body: str, mesh: Mapping[str, Any]) -> str:
@@ -119,17 +119,17 @@ def with_mesh(text: str, body: str, mesh: Mapping[str, Any]) -> str:
     from gbeam.scenario.schema.system import SystemScenario  # takes time to import
 
     place, data = ("bodies", body), parse(NAME, text)
-    before = written_at(data, place)
-    if isinstance(before, dict) and "mesh" in before:
+    body_before = written_at(data, place)
+    if isinstance(body_before, dict) and "mesh" in body_before:
         for key, value in mesh.items():
             text = with_entry(text, (*place, key), value)
         return text
     if issubclass(kind_of_scenario(data), SystemScenario):
         return with_entry(text, place, mesh)
-    kept = {key: data[key] for key in ("motion", "response") if key in data}
-    if isinstance(kept.get("response"), dict):
-        kept["response"].pop("stations", None)  # of a beam
-    return tomlkit.dumps({"title": body, "bodies": {body: mesh}} | kept)
+    tables = {key: data[key] for key in ("motion", "response") if key in data}
+    if isinstance(tables.get("response"), dict):
+        tables["response"].pop("stations", None)  # of a beam
+    return tomlkit.dumps({"title": body, "bodies": {body: mesh}} | tables)
 
 
 def _place(path: str) -> Place:
@@ -147,16 +147,20 @@ def _leaves(scenario: dict[str, Any]) -> Iterator[tuple[Place, Any]]:
 def changes(before: str, after: str) -> str:
     """Return the changes from one scenario to another in a line; empty if one of them cannot be parsed."""
     try:
-        then, now = ({path_text(path): value for path, value in _leaves(parse(NAME, text))} for text in (before, after))
+        values_before, values_now = _values(before), _values(after)
     except GbeamError:
         return ""
-    lines = [f"{path} = {_shown(value)}" for path, value in now.items() if then.get(path) != value]
-    lines += [f"no {path}" for path in then if path not in now]
-    more = f", and {len(lines) - CHANGES} more" if len(lines) > CHANGES else ""
-    return ", ".join(lines[:CHANGES]) + more if lines else "as before"
+    lines = [f"{path} = {_shorten(value)}" for path, value in values_now.items() if values_before.get(path) != value]
+    lines += [f"no {path}" for path in values_before if path not in values_now]
+    remark = f", and {len(lines) - CHANGES} more" if len(lines) > CHANGES else ""
+    return ", ".join(lines[:CHANGES]) + remark if lines else "as before"
 
 
-def _shown(value: Any) -> str:
+def _values(text: str) -> dict[str, Any]:
+    return {path_text(path): value for path, value in _leaves(parse(NAME, text))}
+
+
+def _shorten(value: Any) -> str:
     text = value if isinstance(value, str) else toml(value)
     return text if len(text) <= _LONG else f"{text[:_LONG]}…"
 
@@ -170,7 +174,7 @@ def records(data: Any, folder: Path) -> list[Path]:
             if not isinstance(name, str):
                 continue  # numbers in place of a file; anything else the schema refuses
             try:
-                files.append(regular(folder, known(name)))
+                files.append(regular(folder, check_kind(name)))
             except InputError as error:
                 raise InputError(path_text(path), f"{name[:100]!r} {error.problem}", error.fix) from None
     return files
@@ -188,8 +192,8 @@ def problems(error: GbeamError) -> list[dict[str, Any]]:
 
 
 def _problem(wrong: Diagnostic) -> dict[str, Any]:
-    missing = _MISSING.fullmatch(wrong.message)
-    field = f"{wrong.path}.{missing[1]}".removeprefix(".") if missing else wrong.path
+    match = _MISSING.fullmatch(wrong.message)
+    field = f"{wrong.path}.{match[1]}".removeprefix(".") if match else wrong.path
     return {"path": wrong.path, "field": field, "message": wrong.message, "hint": wrong.hint, "line": wrong.line}
 
 
@@ -234,9 +238,9 @@ def _columns(file: Path) -> tuple[list[tuple[str, str]], set[float]]:
 
     if is_binary(file):
         table = read_table(file)
-        return [(column.name, column.unit) for column in table.columns[:MOST]], {each.rate for each in table.stated}
+        return [(column.name, column.unit) for column in table.columns[:MOST]], {rate.rate for rate in table.stated}
     columns, rates = read_cached(columns_of_text, file, MOST, refuse=refuse)
-    return [tuple(each) for each in columns], {*rates}
+    return [tuple(column) for column in columns], {*rates}
 
 
 def _skin(file: Path) -> dict[str, Any]:
@@ -247,9 +251,9 @@ def _skin(file: Path) -> dict[str, Any]:
 
     read = read_cached(skin, file, refuse=refuse)
     return {
-        "vertices": [float(f"{each:.6g}") for each in read["vertices"].flat],
+        "vertices": [float(f"{coordinate:.6g}") for coordinate in read["vertices"].flat],
         "triangles": read["triangles"].ravel().tolist(),
-        "groups": [each | {"vertices": each["vertices"].tolist()} for each in read["groups"]],
+        "groups": [group | {"vertices": group["vertices"].tolist()} for group in read["groups"]],
     }
 
 
@@ -271,10 +275,10 @@ def load_curves(text: str, folder: Path) -> dict[str, Any]:
         first, last = spans.get(name, (-np.inf, np.inf))
         flown = (time >= first) & (time <= last)
         in_g = np.asarray(flight.over(first, last).base(time).a_WO_B) / STANDARD_GRAVITY
-        return [
-            [float(value) if inside else None for value, inside in zip(component, flown, strict=True)]
-            for component in in_g.T
-        ]
+        components = []
+        for component in in_g.T.tolist():
+            components.append([value if is_flown else None for value, is_flown in zip(component, flown, strict=True)])
+        return components
 
     return {"time": time.tolist(), "flights": {name: load(name, flight) for name, flight in flights.items()}}
 
@@ -299,29 +303,31 @@ def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
             candidates[key].append((name, stated))
     all_rates = all(key in candidates for key in "pqr")  # rates are suggested only together
     return {
-        **_together(candidates, ("time",), "time_unit"),
-        **_together(candidates, "xyz", "unit"),
-        **(_together(candidates, "pqr", "rate_unit") if all_rates else {}),
+        **_matching_columns(candidates, ("time",), "time_unit"),
+        **_matching_columns(candidates, "xyz", "unit"),
+        **(_matching_columns(candidates, "pqr", "rate_unit") if all_rates else {}),
     }
 
 
-def _together(columns: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], unit: str) -> dict[str, str]:
+def _matching_columns(columns: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], unit: str) -> dict[str, str]:
     """Column of each key, and their common unit at the key `unit`; empty if a key has several, or units differ."""
     candidates = {key: columns[key] for key in keys if key in columns}
-    units = {stated for named in candidates.values() for _, stated in named}
-    if any(len(named) > 1 for named in candidates.values()) or len(units) > 1:
+    if any(len(matches) > 1 for matches in candidates.values()):
+        return {}
+    units = {stated for ((_, stated),) in candidates.values()}
+    if len(units) > 1:
         return {}
     stated = "".join(units)
-    return {key: named[0][0] for key, named in candidates.items()} | ({unit: stated} if stated else {})
+    return {key: column for key, ((column, _),) in candidates.items()} | ({unit: stated} if stated else {})
 
 
 def _meanings(name: str, unit: str) -> Iterable[tuple[str, str]]:
     """Key of a record that a column may be, and its unit as a scenario spells it; empty if name or unit do not fit."""
-    plain, _ = bracketed(name) or (name, "")
-    for words, written in (*_readings(plain, unit), *_readings(re.split(r"[./]", plain)[-1], unit)):
+    stem, _ = bracketed(name) or (name, "")
+    for words, unit_text in (*_readings(stem, unit), *_readings(re.split(r"[./]", stem)[-1], unit)):
         for quantity, pattern in (("time", _TIME), ("acceleration", _LOAD), ("rate", _RATE)):
             match = pattern.fullmatch(words)
-            spelling = spelled(written, quantity) if written else ""
+            spelling = spelled(unit_text, quantity) if unit_text else ""
             if match is None or spelling is None or (spelling and spelling not in UNITS[quantity]):
                 continue
             groups = match.groupdict()
@@ -336,13 +342,13 @@ def _meanings(name: str, unit: str) -> Iterable[tuple[str, str]]:
 
 def _readings(name: str, unit: str) -> Iterable[tuple[str, str]]:
     """Possible readings of a name: its letters, lower case, and its unit, which may be its last words, as in n_z_g."""
-    words = [each.lower() for each in _WORDS.findall(name)]
+    words = [word.lower() for word in _WORDS.findall(name)]
     if unit:
         yield "".join(words), unit
         return
     for count in range(min(_LONGEST, len(words) - 1), 0, -1):
         tail = words[-count:]
-        written = "/".join(tail[:2]) + "^".join(["", *tail[2:]])  # m s 2: m/s^2
-        if any(spelled(written, quantity) is not None for quantity in UNITS):
-            yield "".join(words[:-count]), written
+        unit_text = "/".join(tail[:2]) + "^".join(["", *tail[2:]])  # m s 2: m/s^2
+        if any(spelled(unit_text, quantity) is not None for quantity in UNITS):
+            yield "".join(words[:-count]), unit_text
     yield "".join(words), ""

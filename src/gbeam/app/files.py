@@ -27,7 +27,7 @@ from gbeam.solids.foreign import MESHES
 from gbeam.structure.matrices import PROGRAMS
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._()-]{0,99}")
-_SECTIONS = (each.ending.lower() for each in PROGRAMS.values())
+_SECTIONS = (program.ending.lower() for program in PROGRAMS.values())
 READ = tuple(sorted({*TEXTS, *RECORDS, *MODELS, *MESHES, *STATE_SPACES, *_SECTIONS}))  # endings of files in scenarios
 _NEW = ".new-"  # begins the names of folders with what is not kept yet
 LARGEST = TEXT_BYTES  # of one file
@@ -45,7 +45,7 @@ def checked(name: str) -> str:
     return name
 
 
-def known(name: str) -> str:
+def check_kind(name: str) -> str:
     """Return a plain name of a kind of file that scenarios name; raise InputError for any other."""
     ending = Path(checked(name)).suffix
     if ending.lower() not in READ:
@@ -82,15 +82,15 @@ def store(folder: Path, name: str, content: bytes, read: Callable[[Path], T]) ->
     """Write a file of a known kind into a folder once `read` has read it; return its answer. InputError if it refuses,
     or the file is too large or one too many.
     """
-    known(name)
+    check_kind(name)
     if len(content) > LARGEST:
         raise InputError(
             name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record, or mesh more coarsely"
         )
     if len(names(ensured(folder))) >= MANY:
         raise InputError(name, f"is one too many: {MANY} files are kept", f"delete some in {folder}")
-    with TemporaryDirectory(prefix=_NEW, dir=folder) as new:
-        file = Path(new) / name
+    with TemporaryDirectory(prefix=_NEW, dir=folder) as hidden:
+        file = Path(hidden) / name
         write(file, content)
         try:
             answer = read(file)
@@ -109,7 +109,7 @@ def tidied(folder: Path) -> None:
 def names(folder: Path) -> list[str]:
     """Return the names of the regular files of a folder; empty if it does not exist."""
     try:
-        return sorted(each.name for each in folder.iterdir() if _NAME.fullmatch(each.name) and _is_regular(each))
+        return sorted(entry.name for entry in folder.iterdir() if _NAME.fullmatch(entry.name) and _is_regular(entry))
     except (FileNotFoundError, NotADirectoryError):
         return []
 
@@ -138,7 +138,7 @@ def example(name: str, records: Path) -> str:
         return template(_TEMPLATES[name])
     if name != _FLOWN:
         raise InputError("example", f"is {name[:100]!r}", f"choose of {', '.join(EXAMPLES)}")
-    record = _kept(_shipped(_RECORD).read_bytes(), records)
+    record = _store_record(_shipped(_RECORD).read_bytes(), records)
     return with_entry(_shipped(_SCENARIO).read_text(encoding="utf-8"), ("motion", "flight", "record", "file"), record)
 
 
@@ -149,7 +149,7 @@ def _shipped(name: str) -> Traversable:
     return packed if packed.is_file() else next(tree.rglob(name))
 
 
-def _kept(content: bytes, records: Path) -> str:
+def _store_record(content: bytes, records: Path) -> str:
     """Store a record, under another name if its own is taken; return the name."""
     for name in (_RECORD, f"example {_RECORD}"):
         try:

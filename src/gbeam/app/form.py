@@ -27,39 +27,40 @@ def form(data: Any) -> list[Node]:
     - ``table``: the entries `inside`, and the `choice` among the `options` where it is one of several tables;
     - ``list`` and ``named`` (tables by names that the user gives): tables `inside`, and the `options` of a new one.
     """
-    written = data if isinstance(data, dict) else {}
-    return _inside(_top(written), written, ())
+    tables = data if isinstance(data, dict) else {}
+    return _entries(_top(tables), tables, ())
 
 
 def known_at(path: Path, data: Any) -> bool:
     """True if the schema has a key at a path whose value may be something else than tables."""
     schema = _schema_at(path, data)
     tables = _tables(schema)
-    return any(each not in tables and not _names_tables(each) for each in _alternatives(schema)) and bool(schema)
+    others = [alternative for alternative in _alternatives(schema) if alternative not in tables]
+    return bool(schema) and not all(map(_names_tables, others))
 
 
 def value_at(path: Path, data: Any, text: str) -> Any:
     """Read a value typed into a field as `--set` does; as text if the schema allows only text."""
-    kinds = {each.get("type", "string") for each in _alternatives(_schema_at(path, data))}
+    kinds = {alternative.get("type", "string") for alternative in _alternatives(_schema_at(path, data))}
     return text if kinds == {"string"} else value_of(text)
 
 
 def new_table(path: Path, data: Any, choice: str) -> dict[str, Any]:
     """Return a table of a kind, with the values of the table at its place whose keys both kinds have."""
-    table = {tag_of(each)[1]: each for each in reversed(_tables(_schema_at(path, data)))}[choice]
-    before = written_at(data, path)
-    kept = before if isinstance(before, dict) else {}
+    tables = _tables(_schema_at(path, data))
+    table = {tag_of(table)[1]: table for table in reversed(tables)}[choice]
+    value_before = written_at(data, path)
+    values = value_before if isinstance(value_before, dict) else {}
     key = tag_of(table)[0]
-    return ({key: choice} if key else {}) | {
-        name: value for name, value in kept.items() if name in table["properties"] and name != key
-    }
+    common = {name: value for name, value in values.items() if name in table["properties"] and name != key}
+    return {key: choice} | common if key else common
 
 
 @cache
 def file_keys() -> frozenset[str]:
     """Keys of the schema that name files."""
-    tables = (each.get("properties", {}) for each in _schema()["$defs"].values())
-    return frozenset(key for table in tables for key, each in table.items() if "'file-path'" in repr(each))
+    tables = (definition.get("properties", {}) for definition in _schema()["$defs"].values())
+    return frozenset(key for table in tables for key, schema in table.items() if "'file-path'" in repr(schema))
 
 
 @cache
@@ -72,14 +73,14 @@ def _top(data: dict[str, Any]) -> Node:
     """Schema of the whole scenario, with the keys of its kind: of a beam, a specimen or a system."""
     schema = _schema()
     keys = kind_of_scenario(data).model_fields.keys()
-    required = (each["required"] for each in schema["anyOf"])
+    required = (alternative["required"] for alternative in schema["anyOf"])
     return schema | {
-        "properties": {key: each for key, each in schema["properties"].items() if key in keys},
-        "required": next(each for each in required if keys >= set(each)),
+        "properties": {key: entry for key, entry in schema["properties"].items() if key in keys},
+        "required": next(names for names in required if keys >= set(names)),
     }
 
 
-def _inside(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
+def _entries(table: Node, data: dict[str, Any], path: Path) -> list[Node]:
     """Entries of a table: those of the schema, then keys of the text that it does not have."""
     tag = tag_of(table)[0]
     required = table.get("required", ())
@@ -99,12 +100,12 @@ def _entry(schema: Node, parent: Any, path: Path, *, required: bool) -> Node:
     node["help"] = schema.get("description", "")
     alternatives = [*_alternatives(schema)]
     listed = [kind["items"] for kind in alternatives if "items" in kind and _tables(kind["items"])]
-    named = [kind["additionalProperties"] for kind in alternatives if _names_tables(kind)]
+    by_name = [kind["additionalProperties"] for kind in alternatives if _names_tables(kind)]
     tables = _tables(schema)
-    if named:  # tables by names that the user gives
-        inside = raw if isinstance(raw, dict) else {}
-        entries = [_entry(named[0], inside, (*path, name), required=False) for name in inside]
-        return node | {"kind": "named", "options": _words(named[0]), "inside": entries}
+    if by_name:  # tables by names that the user gives
+        children = raw if isinstance(raw, dict) else {}
+        entries = [_entry(by_name[0], children, (*path, name), required=False) for name in children]
+        return node | {"kind": "named", "options": _words(by_name[0]), "inside": entries}
     if listed and (raw is None or isinstance(raw, list)):
         count = len(raw or ())
         entries = [_entry(listed[0], raw, (*path, i), required=False) for i in range(min(count, LISTED))]
@@ -116,23 +117,23 @@ def _entry(schema: Node, parent: Any, path: Path, *, required: bool) -> Node:
 
 def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
     table = _table_of(tables, raw)
-    inside = [] if table is None or not isinstance(raw, dict) else _inside(table, raw, path)
+    entries = [] if table is None or not isinstance(raw, dict) else _entries(table, raw, path)
     choice = "" if table is None or not isinstance(raw, dict) else tag_of(table)[1]
-    about = "" if table is None or len(tables) == 1 else table.get("description", "")
-    return {"kind": "table", "options": _words(schema), "choice": choice, "about": about, "inside": inside}
+    description = "" if table is None or len(tables) == 1 else table.get("description", "")
+    return {"kind": "table", "options": _words(schema), "choice": choice, "about": description, "inside": entries}
 
 
 def _value(schema: Node, alternatives: list[Node], raw: Any) -> Node:
     """Fields of an entry that is a value: see `form`. Text is shown as it is, anything else as TOML."""
-    written, default = _as_text(raw), schema.get("default")
+    text, default = _as_text(raw), schema.get("default")
     literals = [[*_literals(kind)] for kind in alternatives]
     only_literals = bool(literals) and all(literals)
     examples = [example for kind in alternatives for example in kind.get("examples", ())]
     units = [quantity["x-unit"] for quantity in _quantities(schema)]
     return {
         "kind": "value",
-        "value": written if len(written) <= LONGEST else "",
-        "long": len(written) > LONGEST,
+        "value": text if len(text) <= LONGEST else "",
+        "long": len(text) > LONGEST,
         "default": "" if default in ([], {}) else _as_text(default),
         "example": examples[0] if examples else "",
         "unit": units[0] if units else "",
@@ -156,31 +157,30 @@ def _literals(schema: Node) -> Iterator[str]:
 def _quantities(schema: Node) -> Iterator[Node]:
     if "x-quantity" in schema:
         yield schema
-    for each in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("prefixItems", ())):
-        yield from _quantities(each)
+    for alternative in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("prefixItems", ())):
+        yield from _quantities(alternative)
     if "items" in schema:
         yield from _quantities(schema["items"])
 
 
 def _words(schema: Node) -> list[str]:
     """Words of the kinds of table that a schema allows; "" for tables that only their keys tell apart."""
-    return [*dict.fromkeys(tag_of(each)[1] for each in _tables(schema))]
+    return [*dict.fromkeys(tag_of(table)[1] for table in _tables(schema))]
 
 
 def _tables(schema: Node) -> list[Node]:
-    return [each for each in _alternatives(schema) if "properties" in each]
+    return [alternative for alternative in _alternatives(schema) if "properties" in alternative]
 
 
 def _table_of(tables: list[Node], raw: Any) -> Node | None:
     """Schema of the table that is written, by the word of its kind and its keys; None if no kind has that word."""
-    written = raw if isinstance(raw, dict) else {}
-    tags = [tag_of(each) for each in tables]
-    fitting = [
-        table
-        for table, (key, word) in zip(tables, tags, strict=True)
-        if len(tables) == 1 or not key or written.get(key, table["properties"][key].get("default")) == word
-    ]
-    return max(fitting, key=lambda table: len(table["properties"].keys() & written.keys()), default=None)
+    keys = raw if isinstance(raw, dict) else {}
+    fitting = []
+    for table in tables:
+        key, word = tag_of(table)
+        if len(tables) == 1 or not key or keys.get(key, table["properties"][key].get("default")) == word:
+            fitting.append(table)
+    return max(fitting, key=lambda table: len(table["properties"].keys() & keys.keys()), default=None)
 
 
 def _names_tables(schema: Node) -> bool:
@@ -195,8 +195,8 @@ def _alternatives(schema: Node) -> Iterator[Node]:
     elif "$ref" in schema:
         yield from _alternatives(_schema()["$defs"][schema["$ref"].rpartition("/")[2]])
     elif "anyOf" in schema or "oneOf" in schema:
-        for each in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):
-            yield from _alternatives(each)
+        for alternative in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):
+            yield from _alternatives(alternative)
     elif schema.get("type") != "null":
         yield schema
 
@@ -209,12 +209,12 @@ def _schema_at(path: Path, data: Any) -> Node:
         table = _table_of(tables, raw) if tables else None
         alternatives = [*_alternatives(schema)]
         if isinstance(step, int):
-            schema = next((each["items"] for each in alternatives if "items" in each), {})
+            schema = next((alternative["items"] for alternative in alternatives if "items" in alternative), {})
         elif table is not None:
             schema = table["properties"].get(step, {})
         else:
-            named = next((each for each in alternatives if "additionalProperties" in each), {})
-            inner = named.get("additionalProperties")
+            mapping = next((alternative for alternative in alternatives if "additionalProperties" in alternative), {})
+            inner = mapping.get("additionalProperties")
             schema = inner if isinstance(inner, dict) else {}
         raw = written_at(raw, (step,))
     return schema

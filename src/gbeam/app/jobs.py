@@ -100,31 +100,31 @@ class Jobs:
         now = datetime.now()  # first in the id, as runs are computed in the order of their ids
         number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
         facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
-        new = ensured(self.folder / f".new-{number}")
+        hidden = ensured(self.folder / f".new-{number}")
         try:
-            inputs = ensured(new / INPUT)
+            inputs = ensured(hidden / INPUT)
             for record in records:
                 write(inputs / record.name, record.read_bytes())
             scenario = text.encode("utf-8")
             write(inputs / _SCENARIO, scenario)
             if "--write" in arguments:
-                write(ensured(new / _BEFORE) / _SCENARIO, scenario)
-            write(new / _STATE, json.dumps({"state": "queued", **facts}).encode())
+                write(ensured(hidden / _BEFORE) / _SCENARIO, scenario)
+            write(hidden / _STATE, json.dumps({"state": "queued", **facts}).encode())
             with self._lock:
                 jobs = self.list()
-                same = next((job["id"] for job in jobs if case and job["case"] == case), None)
-                if same is not None:
-                    return str(same)
+                existing = next((job["id"] for job in jobs if case and job["case"] == case), None)
+                if existing is not None:
+                    return str(existing)
                 if sum(job["state"] == "queued" for job in jobs) >= QUEUED:
                     raise InputError("runs", f"wait already, {QUEUED} of them", "cancel some")
-                new.rename(self.folder / number)
+                hidden.rename(self.folder / number)
         finally:
-            shutil.rmtree(new, ignore_errors=True)  # unless it was renamed
+            shutil.rmtree(hidden, ignore_errors=True)  # unless it was renamed
         if self._loop is not None:
             self._loop.call_soon_threadsafe(self._more.set)
         return number
 
-    def last(self, title: str) -> str:
+    def last_text(self, title: str) -> str:
         """Return the text of the scenario of the last run of a title; empty without one."""
         numbers = (job["id"] for job in self.list() if job["title"] == title and _SCENARIO in job["files"])
         number = next(numbers, None)
@@ -146,7 +146,7 @@ class Jobs:
         if not self.folder.is_dir():
             return []
         jobs = []
-        for number in sorted((each.name for each in self.folder.iterdir() if ID.fullmatch(each.name)), reverse=True):
+        for number in sorted((entry.name for entry in self.folder.iterdir() if ID.fullmatch(entry.name)), reverse=True):
             with suppress(InputError, FileNotFoundError):  # deleted in the meantime
                 jobs.append(self.state(number))
         return jobs
@@ -325,7 +325,7 @@ def _command(state: Mapping[str, Any]) -> list[str]:
     return [sys.executable, "-P", "-c", LIMITED, str(MEMORY), str(SECONDS), *arguments]
 
 
-def _state(place: Path, otherwise: str) -> str:
+def _state(place: Path, default: str) -> str:
     """State of a run by its answer, such as done or not accepted; `otherwise` if the answer does not say it."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
@@ -333,32 +333,32 @@ def _state(place: Path, otherwise: str) -> str:
     except OSError as error:
         if error.errno in SHORT:
             raise
-        return otherwise
+        return default
     except (ValueError, LookupError, TypeError, AttributeError):  # no JSON, or another form
-        return otherwise
+        return default
     return "done" if state in GOOD else state
 
 
 def _files(place: Path) -> dict[str, Path]:
     """Files of a run by the names under which they are downloaded; every verb's report is report.html."""
     files = {}
-    for name, inside in DOWNLOADS:
-        file = place / inside
+    for name, path in DOWNLOADS:
+        file = place / path
         if file.is_file() and file.stat().st_size:
             files[name] = file
-    before = place / _BEFORE / _SCENARIO
-    if before.is_file() and _SCENARIO in files:  # a verb may have changed the scenario
+    original = place / _BEFORE / _SCENARIO
+    if original.is_file() and _SCENARIO in files:  # a verb may have changed the scenario
         changed = files[_SCENARIO]
-        files[_SCENARIO] = before
-        if before.read_bytes() != changed.read_bytes():
+        files[_SCENARIO] = original
+        if original.read_bytes() != changed.read_bytes():
             files["placed.toml"] = changed
-    out = place / "out"
-    written = {name: out / name for name in names(out)}
-    reports = [file for name, file in written.items() if name.endswith(".html")]
+    results = place / "out"
+    outputs = {name: results / name for name in names(results)}
+    reports = [file for name, file in outputs.items() if name.endswith(".html")]
     if reports:
         files["report.html"] = reports[0]
     kinds = KINDS if reports else (*KINDS, ".png")  # a report has the figures
-    return files | {name: file for name, file in written.items() if name.endswith(kinds)}
+    return files | {name: file for name, file in outputs.items() if name.endswith(kinds)}
 
 
 def _end(process: asyncio.subprocess.Process) -> None:

@@ -37,14 +37,14 @@ _BINARY = {".nc": "application/octet-stream", ".mat": "application/octet-stream"
 REFUSALS = "x-gbeam-refusal"  # header of a request that accepts a refusal with status 200, and of each refusal
 
 
-def _whole(text: str) -> str:
+def _check_text(text: str) -> str:
     """Refuse a lone surrogate, half a character, which JSON can escape but no file can hold."""
-    if any("\ud800" <= each <= "\udfff" for each in text):
+    if any("\ud800" <= character <= "\udfff" for character in text):
         raise ValueError("half a character")
     return text
 
 
-Word = Annotated[str, AfterValidator(_whole)]
+Word = Annotated[str, AfterValidator(_check_text)]
 Text = Annotated[Word, Body(embed=True, max_length=SCENARIO_BYTES)]
 Line = Annotated[Word, Field(max_length=1000)]
 Short = Annotated[Word, Body(embed=True, max_length=1000)]
@@ -56,7 +56,7 @@ def create_app(folder: Path) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        asyncio.get_running_loop().set_exception_handler(_once(jobs.complain))
+        asyncio.get_running_loop().set_exception_handler(_exception_handler(jobs.complain))
         files.tidied(records)
         jobs.start()
         yield
@@ -85,7 +85,9 @@ def create_app(folder: Path) -> FastAPI:
     @app.exception_handler(RequestValidationError)
     async def misread(_: Request, error: RequestValidationError) -> JSONResponse:
         # FastAPI would repeat the input, which may be text that no answer can hold.
-        problems = [{"loc": each["loc"], "msg": each["msg"], "type": each["type"]} for each in error.errors()]
+        problems = [
+            {"loc": problem["loc"], "msg": problem["msg"], "type": problem["type"]} for problem in error.errors()
+        ]
         return JSONResponse({"detail": problems}, 422)
 
     app.add_api_route("/", _asset("index.html", "gbeam.app"), include_in_schema=False)
@@ -148,14 +150,14 @@ def create_app(folder: Path) -> FastAPI:
     @app.put("/api/records/{name}", openapi_extra={"requestBody": {"content": {"application/octet-stream": {}}}})
     async def upload(name: str, request: Request) -> dict[str, Any]:
         """Keep a record or a mesh; what its columns are, or its skin."""
-        files.known(name)
+        files.check_kind(name)
         content = await request.body()
         return await run_in_threadpool(files.store, records, name, content, head)
 
     @app.get("/api/records/{name}")
     def described_record(name: str) -> dict[str, Any]:
         """Columns of a record that is kept, or the skin of a mesh."""
-        return head(files.regular(records, files.known(name)))
+        return head(files.regular(records, files.check_kind(name)))
 
     @app.get("/api/runs")
     def runs() -> list[dict[str, Any]]:
@@ -181,10 +183,10 @@ def create_app(folder: Path) -> FastAPI:
         data = parse(documents.NAME, text)
         arguments = verbs.arguments(verb, options, data)
         title = str(data.get("title", ""))[:200]
-        named = [files.regular(records, files.known(name)) for name in verbs.records(verb, options)]
-        inputs = [*documents.records(data, records), *named]
-        before = jobs.last(title)
-        changes = documents.changes(before, text) if before else ""
+        files_named = [files.regular(records, files.check_kind(name)) for name in verbs.records(verb, options)]
+        inputs = [*documents.records(data, records), *files_named]
+        last_text = jobs.last_text(title)
+        changes = documents.changes(last_text, text) if last_text else ""
         return {"id": jobs.submit(text, title, inputs, verb, arguments, case, changes)}
 
     @app.delete("/api/runs/{number}")
@@ -233,7 +235,7 @@ def _asset(name: str, package: str) -> Callable[[], Response]:
     return asset
 
 
-def _once(complain: Callable[[str], None]) -> Callable[[asyncio.AbstractEventLoop, dict[str, Any]], None]:
+def _exception_handler(complain: Callable[[str], None]) -> Callable[[asyncio.AbstractEventLoop, dict[str, Any]], None]:
     """Return a handler of the event loop's exceptions that complains once, not at every connection, of lacking
     descriptors, disk or memory.
     """

@@ -54,17 +54,18 @@ class Verb:
 @cache
 def verbs() -> dict[str, Verb]:
     """Return the verbs that compute something of a scenario, as the command line has them."""
-    return {
-        name: Verb(about, _options(arguments))
-        for name, about in program.verbs().items()
-        if (arguments := program.arguments(name))[0].name == "SCENARIO" and name != "check"  # the page does that
-    }
+    verbs = {}
+    for name, description in program.verbs().items():
+        arguments = program.arguments(name)
+        if arguments[0].name == "SCENARIO" and name != "check":  # the page does that
+            verbs[name] = Verb(description, _options(arguments))
+    return verbs
 
 
 def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
     """Options of a verb by its arguments, without those that the page has itself."""
-    named = {argument.names[0].removeprefix("--"): argument for argument in arguments}
-    return tuple(_option(name, argument) for name, argument in named.items() if name not in _OF_THE_PAGE)
+    by_name = {argument.names[0].removeprefix("--"): argument for argument in arguments}
+    return tuple(_option(name, argument) for name, argument in by_name.items() if name not in _OF_THE_PAGE)
 
 
 def _option(name: str, argument: Argument) -> Option:
@@ -89,8 +90,8 @@ def _option(name: str, argument: Argument) -> Option:
     else:
         example = "" if default is None else str(default)
     choices = argument.get_choices() or ()
-    most = 2 if _REPEATED.search(words) else 1
-    return Option(name, words, example=example, choices=choices, many=most, of=suggestions)
+    count = 2 if _REPEATED.search(words) else 1
+    return Option(name, words, example=example, choices=choices, many=count, of=suggestions)
 
 
 def offered() -> dict[str, Any]:
@@ -134,24 +135,25 @@ def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> lis
     if verb == "sweep":
         table = data.get("sweep")
         over = table.get("over") if isinstance(table, dict) else None
-        inside = over if isinstance(over, dict) else {}
-        for path in inside:
+        ranges = over if isinstance(over, dict) else {}
+        for path in ranges:
             _refuse_file(path, data)
-        if not inside and "over" not in counts and not any(find_distributions(data)):
+        if not ranges and "over" not in counts and not any(find_distributions(data)):
             raise InputError("over", "is missing", "say what varies over which values")
     return line
 
 
 def records(verb: str, options: Sequence[str]) -> list[str]:
     """Return the names of files among a verb's options."""
-    named = {option.name for option in verbs()[verb].options if option.of == "record"}
-    return [value for name, _, value in (each.partition("=") for each in options) if name in named]
+    file_options = {option.name for option in verbs()[verb].options if option.of == "record"}
+    pairs = (text.partition("=") for text in options)
+    return [value for name, _, value in pairs if name in file_options]
 
 
 def _refuse_file(path: str, data: Mapping[str, Any]) -> None:
     """Raise InputError unless a path leads to a value of the scenario that names no file."""
     place = parse_path(path)
     key = next((step for step in reversed(place or ()) if isinstance(step, str)), "file")
-    written = None if place is None or key in file_keys() else written_at(data, place)
-    if written is None or isinstance(written, (dict, list)):
+    value = None if place is None or key in file_keys() else written_at(data, place)
+    if value is None or isinstance(value, (dict, list)):
         raise InputError(path[:100] or "over", "cannot be varied", "choose a number or a word of the scenario")

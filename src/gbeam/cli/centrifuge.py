@@ -81,21 +81,24 @@ def plan(
     def commands(hidden: Path) -> None:
         from gbeam.io.commands import write_commands
 
-        for each in plans:
-            asked = tables[each.name].commands
-            time = interval or (asked.sample if asked else SAMPLE)
-            write_commands(each, analysis.axis_commands(machines[each.name], time), hidden)
+        for machine_plan in plans:
+            table = tables[machine_plan.name].commands
+            time = interval or (table.sample if table else SAMPLE)
+            write_commands(machine_plan, analysis.axis_commands(machines[machine_plan.name], time), hidden)
 
     deliver(
         plans, "plan", folder, output, origin=origin, title=environments.heading(), suffix="",
         more=commands,
     )  # fmt: skip
-    broken = [each for each in plans if each.outcome != "done"]
-    for each in broken:
-        complain(f"motion.{each.name} {each.outcome}: {each.message}" + (" (allowed)" if ignore_limits else ""))
-    refused = [each for each in plans if each.refusal]
-    for each in refused:
-        complain(f"motion.{each.name} {each.decision}: {each.refusal}")
+    broken = [machine_plan for machine_plan in plans if machine_plan.outcome != "done"]
+    for machine_plan in broken:
+        complain(
+            f"motion.{machine_plan.name} {machine_plan.outcome}: {machine_plan.message}"
+            + (" (allowed)" if ignore_limits else "")
+        )
+    refused = [machine_plan for machine_plan in plans if machine_plan.refusal]
+    for machine_plan in refused:
+        complain(f"motion.{machine_plan.name} {machine_plan.decision}: {machine_plan.refusal}")
     return FAILED if refused or (broken and not ignore_limits) else 0
 
 
@@ -183,10 +186,10 @@ def place(
             along=along,
             progress=watch,
         )
-    written = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
+    file = _apply(loaded, scenario, name, placement.changes) if write_back and placement.changes else None
     deliver(
         placement, "place", folder, output, origin=loaded.case.provenance,
-        facts={"written": written}, listed=False,
+        facts={"written": file}, listed=False,
     )  # fmt: skip
     if placement.outcome != "done":
         complain(f"{placement.outcome}: motion.{name}: {placement.message}")

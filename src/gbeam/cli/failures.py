@@ -45,10 +45,10 @@ def ended(*answers: Result) -> int:
     """Print on stderr why answers are not known, and return the exit status."""
     from gbeam.results.result import Decided
 
-    unknown = [answer for answer in answers if isinstance(answer, Decided) and answer.outcome != "done"]
-    for answer in unknown:
+    failed = [answer for answer in answers if isinstance(answer, Decided) and answer.outcome != "done"]
+    for answer in failed:
         complain(answer.message)
-    return FAILED if unknown else 0
+    return FAILED if failed else 0
 
 
 def report_syntax(message: str, as_json: bool) -> int:
@@ -80,8 +80,8 @@ def _limited() -> bool:
 
 def report_memory(error: Exception, as_json: bool) -> int:
     """Print that the memory did not suffice; return the exit status."""
-    why = f" ({error})" if str(error) else ""
-    return report(ComputationError("out of memory", f"the computation needs more than there is{why}"), as_json)
+    reason = f" ({error})" if str(error) else ""
+    return report(ComputationError("out of memory", f"the computation needs more than there is{reason}"), as_json)
 
 
 def report_defect(error: Exception, arguments: Sequence[str], as_json: bool) -> int:
@@ -98,21 +98,21 @@ def report_defect(error: Exception, arguments: Sequence[str], as_json: bool) -> 
     tracker = links.get("Issues", "the project's issue tracker")
     program = f"gbeam {gbeam}, Python {platform.python_version()}, {platform.platform()}"
     text = "".join([f"{program}\n{shlex.join(['gbeam', *arguments])}\n\n", *format_exception(error)])
-    file = _kept(text)
-    first = printable(f"{type(error).__name__}: {error}".split("\n")[0])
-    complain(f"defect: {first}")
-    where = "the traceback above" if file is None else f"{file}, which has the traceback,"
+    file = _save_traceback(text)
+    message = printable(f"{type(error).__name__}: {error}".split("\n")[0])
+    complain(f"defect: {message}")
+    place = "the traceback above" if file is None else f"{file}, which has the traceback,"
     lines = [
         f"This is a mistake in {program}, not in your input.",
-        f"Please report {where} and the scenario to {tracker}.",
+        f"Please report {place} and the scenario to {tracker}.",
     ]
     print(*(f"    {line}" for line in lines), sep="\n", file=sys.stderr)
     if as_json:
-        _print({"outcome": "defect", "message": first, "traceback": file, "motions": {}})
+        _print({"outcome": "defect", "message": message, "traceback": file, "motions": {}})
     return DEFECT
 
 
-def _kept(text: str) -> str | None:
+def _save_traceback(text: str) -> str | None:
     """Write a traceback into a new temporary file and return its name. Else print it on stderr and return None."""
     from tempfile import NamedTemporaryFile
 

@@ -15,7 +15,7 @@ from gbeam.cli.options import (
     ScenarioFile,
     SmoothVerb,
     Verb,
-    asked,
+    changed_options,
     names,
     number,
     option,
@@ -105,7 +105,7 @@ def sweep(
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
-            options=asked(options),
+            options=changed_options(options),
             overrides=output.overrides,
             samples=samples,
             sampler=sampler,
@@ -128,9 +128,9 @@ def sweep(
         answer, "sweep", folder, output, page="report", also=[folder / "sweep.zarr"],
         more=lambda hidden: answer.save(hidden / "sweep.nc") if netcdf else None,
     )  # fmt: skip
-    if answer.failures:
-        complain(f"{answer.failures} of {answer.outcome.size} cases are not done")
-    return FAILED if answer.failures else 0
+    if answer.failure_count:
+        complain(f"{answer.failure_count} of {answer.outcome.size} cases are not done")
+    return FAILED if answer.failure_count else 0
 
 
 @with_options(*differentiable())
@@ -179,7 +179,7 @@ def sensitivity(
             verb=verb,
             motion=motion,
             at=time,
-            options=asked(options),
+            options=changed_options(options),
             overrides=output.overrides,
             progress=watch,
         )

@@ -151,9 +151,9 @@ def with_options(*verbs: str) -> Callable[[_Function], _Function]:
     return declare
 
 
-def asked(options: Any) -> Any:
+def changed_options(options: Any) -> Any:
     """Options by name whose values in a record of options differ from the defaults."""
-    pairs = {each.name: (getattr(options, each.name), each.default) for each in fields(options)}
+    pairs = {field.name: (getattr(options, field.name), field.default) for field in fields(options)}
     return {name.rstrip("_"): value for name, (value, default) in pairs.items() if value != default}
 
 
@@ -188,7 +188,10 @@ class Input:
 
     def answer(self, question: Question, motion: str | None, at: str | None, options: Any, needs: Needs) -> Any:
         """Answer of a question with the options of the command line, while a watch shows its progress."""
-        time, chosen_options = None if at is None else number("--at", at, "time"), question.chosen(asked(options))
+        time, chosen_options = (
+            None if at is None else number("--at", at, "time"),
+            question.chosen(changed_options(options)),
+        )
         places = {entry.argument.rstrip("_"): entry.flag for entry in question.options.values()}
         with Watch() as watch, self.placing(**places):
             if "progress" in signature(question.answer).parameters:
@@ -248,7 +251,8 @@ def numbers(option: str, text: str, kind: str) -> list[float]:
 
 def names(texts: Sequence[str]) -> list[str]:
     """Return the names in all values of an option, separated by commas in each."""
-    return [name.strip() for text in texts for name in text.split(",") if name.strip()]
+    parts = ",".join(texts).split(",")
+    return [name.strip() for name in parts if name.strip()]
 
 
 def search_bounds(texts: Sequence[str]) -> dict[str, tuple[str, str]]:

@@ -130,14 +130,14 @@ def list_figures(verb: str, json: bool) -> int:
 
     figures = choices(verb)
     units = {path: "" if figure.unit == "unit" else figure.unit for path, figure in figures.items()}
-    named = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
-    longest, width = max(map(len, named.values())), terminal_width()
+    headings = {path: f"{path} [{unit}]" if unit else path for path, unit in units.items()}
+    longest, width = max(map(len, headings.values())), terminal_width()
     lines = []
     for path, figure in figures.items():
         if 0 < width < longest + 40:
-            lines += [named[path], *wrap(figure.words, width - 2, initial_indent="  ", subsequent_indent="  ")]
+            lines += [headings[path], *wrap(figure.words, width - 2, initial_indent="  ", subsequent_indent="  ")]
         else:
-            lines.append(f"{named[path]:<{longest}}  {figure.words}")
+            lines.append(f"{headings[path]:<{longest}}  {figure.words}")
     note = "* is a name, such as a motion's or an axis, [i] a place in a list, [0] the first. A path's end is enough."
     facts = {path: {"unit": units[path], "words": figure.words} for path, figure in figures.items()}
     show("\n".join([*lines, *wrap(note, width or len(note))]), facts, json)
@@ -147,8 +147,8 @@ def list_figures(verb: str, json: bool) -> int:
 def list_files(folder: Path | None, files: Sequence[Path]) -> None:
     """Print the names of the files written; a plot's two formats as one."""
     if folder is not None and files:
-        kept = [file for file in files if file.suffix != ".svg"]
-        names = [f"{file.stem}.png/.svg" if file.suffix == ".png" else file.name for file in kept]
+        listed = [file for file in files if file.suffix != ".svg"]
+        names = [f"{file.stem}.png/.svg" if file.suffix == ".png" else file.name for file in listed]
         count = "1 file" if len(files) == 1 else f"{len(files)} files"
         show_lines([("", ""), (f"{count} in {folder}: {', '.join(names)}", "")])
 

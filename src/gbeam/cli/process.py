@@ -135,7 +135,7 @@ def prepare() -> bool:
 
     If one is closed (``gbeam ... >&-``), the next file that is opened would get its number, and be printed into.
     """
-    present = sys.stdout is not None
+    has_stdout = sys.stdout is not None
     if sys.stdin is None or sys.stdout is None or sys.stderr is None:
         while os.open(os.devnull, os.O_RDWR) < 2:
             pass
@@ -149,7 +149,7 @@ def prepare() -> bool:
             raw = getattr(stream.buffer, "raw", stream.buffer)  # unbuffered it is the buffer; a console has another
             if _own and stream is getattr(sys, f"__{name}__") and isinstance(raw, io.FileIO):
                 setattr(sys, name, _lasting(stream))
-    return present
+    return has_stdout
 
 
 class _Lasting(io.FileIO):

@@ -52,7 +52,7 @@ def run(tokens: list[str]) -> int:
     note(tokens)
     try:
         status = _app(tokens[0] if tokens else "")(
-            _named(tokens), exit_on_error=False, print_error=False, result_action="return_value"
+            _name_stdin(tokens), exit_on_error=False, print_error=False, result_action="return_value"
         )
     except CycloptsError as error:
         return report_syntax(str(error), as_json)
@@ -75,14 +75,14 @@ def parsed(tokens: list[str]) -> tuple[Callable[..., object], BoundArguments]:
     """Function that a command line calls, and its arguments. ValueError if it calls none."""
     try:
         verb, bound, _ = _app(tokens[0] if tokens else "").parse_args(
-            _named(tokens), exit_on_error=False, print_error=False
+            _name_stdin(tokens), exit_on_error=False, print_error=False
         )
     except CycloptsError as error:
         raise ValueError(str(error)) from None
     return verb, bound
 
 
-def _named(tokens: list[str]) -> list[str]:
+def _name_stdin(tokens: list[str]) -> list[str]:
     """Arguments with a name for standard input, ``-``, which the parser would take for an option."""
     return ["<stdin>" if token == "-" else token for token in tokens]
 
@@ -90,7 +90,7 @@ def _named(tokens: list[str]) -> list[str]:
 def verbs() -> dict[str, str]:
     """Return every verb with its line in `gbeam --help`."""
     questions = {name: question.about for name, question in QUESTIONS.items()}
-    return questions | {verb: about or questions[verb] for verb, (_, about) in _FILES.items()}
+    return questions | {verb: line or questions[verb] for verb, (_, line) in _FILES.items()}
 
 
 def function(verb: str) -> Callable[..., object]:

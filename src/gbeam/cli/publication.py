@@ -50,16 +50,16 @@ def publish(folder: Path, make: Callable[[Path], object]) -> list[Path]:
     try:
         _published(refuge, make)
     except OSError as error:
-        where = f"nor to {refuge}: {error.strerror or error}"
+        rest = f"nor to {refuge}: {error.strerror or error}"
     else:
-        where = f"and are in {refuge} instead"
-    raise ComputationError("not written", f"the files could not be written to {problem}, {where}")
+        rest = f"and are in {refuge} instead"
+    raise ComputationError("not written", f"the files could not be written to {problem}, {rest}")
 
 
 def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
     """Make files in a hidden folder, then move them into the folder at once, and return their paths."""
-    new = not folder.exists()
-    parent = folder.absolute().parent if new else folder
+    is_new = not folder.exists()
+    parent = folder.absolute().parent if is_new else folder
     parent.mkdir(parents=True, exist_ok=True)
     _remove_dead(parent)
     with _hidden_in(parent) as hidden:
@@ -67,7 +67,7 @@ def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
         names = sorted(file.name for file in hidden.iterdir())
         _synchronise(hidden)
         with deferred(), _alone_in(parent):
-            if not (new and _moved_whole(hidden, folder)):
+            if not (is_new and _moved_whole(hidden, folder)):
                 for name in names:
                     os.replace(hidden / name, folder / name)
                 _remove_plots_before(folder, set(names))

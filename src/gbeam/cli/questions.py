@@ -17,7 +17,7 @@ from gbeam.cli.options import (
     MotionName,
     Output,
     ScenarioFile,
-    asked,
+    changed_options,
     number,
     numbers,
     option,
@@ -38,9 +38,9 @@ _STATUS = "Exit status: 0 done, 1 there is no answer or stability is not known, 
 
 def __getattr__(name: str) -> Callable[..., int]:
     """Make the function of a question's verb when it is imported by its name."""
-    for each in QUESTIONS.values():
-        if each.name.replace("-", "_") == name:
-            return verb_of(each)
+    for question in QUESTIONS.values():
+        if question.name.replace("-", "_") == name:
+            return verb_of(question)
     raise AttributeError(name)
 
 
@@ -101,7 +101,9 @@ def campbell(
     from gbeam.guards.units import unit_of
 
     # Words and diagram show speeds in the unit of --to or --from.
-    unit, size = unit_of(asked(options).get("to") or asked(options).get("from", "0"), "angular rate")
+    unit, size = unit_of(
+        changed_options(options).get("to") or changed_options(options).get("from", "0"), "angular rate"
+    )
     figures = {"campbell": partial(steady.campbell, diagram, loaded.case.title, (1 / size, unit))}
     deliver(
         diagram, "campbell", folder, output, origin=loaded.case.provenance, figures=figures, speeds={unit: 1 / size},
@@ -138,7 +140,7 @@ def critical_speed(
     if masses is not None:
         with naming("--masses"):
             loaded.case.require_beam()
-        chosen = question.chosen(asked(options))
+        chosen = question.chosen(changed_options(options))
         if "vary" in chosen:
             raise InputError("--masses", f"stands beside --vary {chosen['vary']}", "a map is of hub rates")
         return critical_map(loaded, motion, masses, positions, chosen.get("to"), folder, output)

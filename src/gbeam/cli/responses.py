@@ -63,8 +63,8 @@ def run(
     for decision, reasons in refused.items():
         for name, reason in reasons.items():
             complain(f"motion.{name} {decision}: {reason}")
-    kept = not any(refused.values()) and (ignore_limits or not answer.exceeding)
-    return 0 if answer.outcome == "done" and kept else FAILED
+    accepted = not any(refused.values()) and (ignore_limits or not answer.exceeding)
+    return 0 if answer.outcome == "done" and accepted else FAILED
 
 
 def _import_leaves() -> None:
@@ -125,8 +125,8 @@ def report(
     with Watch(f"reading {file}"):
         page = report_of_file(file)
     name = f"{_NAMES.get(file.stem, file.stem)}.html"
-    (written,) = publish(folder, lambda hidden: (hidden / name).write_text(page, encoding="utf-8"))
-    print(printable(str(written)))
+    (file_written,) = publish(folder, lambda hidden: (hidden / name).write_text(page, encoding="utf-8"))
+    print(printable(str(file_written)))
     return 0
 
 
@@ -255,14 +255,14 @@ def _answered(file: Path, origin: Provenance, folder: Path, changes: tuple[str, 
     arguments = bound.arguments
     if "scenario" not in arguments:
         raise InputError(str(file), "is of no verb that reads a scenario", "give the result of another")
-    parameters, asked = bound.signature.parameters, arguments.get("output", Output())
+    parameters, output_before = bound.signature.parameters, arguments.get("output", Output())
     unwritten = {"write": None, "write_back": False}  # no scenario is written
     arguments |= {"scenario": scenario} | {name: value for name, value in unwritten.items() if name in parameters}
-    out = None
+    store = None
     if "resume" in parameters:  # a sweep always has a store; its cluster may be gone
-        out = folder / "out"
+        store = folder / "out"
         arguments |= {"resume": False, "scheduler": None}
-    new_output = Output((*asked.overrides, *changes), out, json=True)
+    new_output = Output((*output_before.overrides, *changes), store, json=True)
     if "output" in parameters:
         arguments["output"] = new_output
     else:  # of check
@@ -300,7 +300,7 @@ def _row_names(rows: list[Any]) -> list[Any]:
 
 
 def _is_array(node: Any) -> bool:
-    return isinstance(node, list) and all(isinstance(each, (int, float)) or each is None for each in node)
+    return isinstance(node, list) and all(isinstance(entry, (int, float)) or entry is None for entry in node)
 
 
 def _number(value: float) -> float:

@@ -17,7 +17,7 @@ from gbeam.cli.options import (
     SmoothVerb,
     Starts,
     WriteTo,
-    asked,
+    changed_options,
     names,
     number,
     option,
@@ -75,7 +75,7 @@ def fit(
             bounds=limits,
             motion=motion,
             at=time,
-            options=asked(options),
+            options=changed_options(options),
             starts=starts,
             overrides=output.overrides,
             progress=watch,
@@ -131,18 +131,17 @@ def optimize(
 
     from gbeam.studies.optimise import optimise as compute
 
-    required = [each.strip() for text in subject_to for each in text.split(",") if each.strip()]
     with Watch() as watch:
         answer = compute(
             scenario,
             minimise,
             names(over),
-            subject_to=required,
+            subject_to=names(subject_to),
             bounds=search_bounds(bounds),
             verb=verb,
             motion=motion,
             at=None if at is None else number("--at", at, "time"),
-            options=asked(options),
+            options=changed_options(options),
             starts=starts,
             overrides=output.overrides,
             progress=watch,

@@ -96,8 +96,11 @@ def figures_of(result: Any, title: str = "") -> dict[str, Describe]:
 
 def figure_names(kind: type[Figured[Any]]) -> tuple[str, ...]:
     """Names of the figures that results of a kind can have; none where they follow from what a result holds."""
-    bases = [base for each in kind.__mro__ for base in vars(each).get("__orig_bases__", ())]
-    return get_args(next(get_args(base)[0] for base in bases if get_origin(base) is Figured))
+    for ancestor in kind.__mro__:
+        for base in vars(ancestor).get("__orig_bases__", ()):
+            if get_origin(base) is Figured:
+                return get_args(get_args(base)[0])
+    raise TypeError(f"{kind.__name__} has no figures")
 
 
 def _of_records(summaries: Mapping[str, RecordSummary], title: str) -> dict[str, Describe]:
@@ -107,22 +110,25 @@ def _of_records(summaries: Mapping[str, RecordSummary], title: str) -> dict[str,
     read = {name: summary for name, summary in summaries.items() if summary.as_read is not None}
     described: dict[str, Describe] = {}
     for name, summary in read.items():
-        same_file = {other: record for other, record in read.items() if record.as_read is summary.as_read}
+        same_file = {flight: record for flight, record in read.items() if record.as_read is summary.as_read}
         if next(iter(same_file)) == name and any(record.is_part for record in same_file.values()):
             described[f"file {name}"] = partial(records.file, same_file, title)
     return described | {f"record {name}": partial(records.record, read[name], name, title) for name in read}
 
 
-def _by_motion(named: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
+def _by_motion(figures_by_motion: Mapping[str, dict[str, Describe]]) -> dict[str, Describe]:
     """Figures of several results of one kind, each with the name of its motion."""
-    return {f"{kind} {name}": describe for name, described in named.items() for kind, describe in described.items()}
+    figures: dict[str, Describe] = {}
+    for name, described in figures_by_motion.items():
+        figures |= {f"{kind} {name}": describe for kind, describe in described.items()}
+    return figures
 
 
 def _of_rests(rests: Sequence[Rest], title: str = "") -> dict[str, Describe]:
     """Figures of states of rest in several motions: one of all together, then the loads of each body that bends."""
-    drawn = [rest for rest in rests if rest.several or rest.specimen is None]
-    described: dict[str, Describe] = {"static": partial(steady.static, drawn, title)} if drawn else {}
-    for rest in drawn:
+    bending = [rest for rest in rests if rest.several or rest.specimen is None]
+    described: dict[str, Describe] = {"static": partial(steady.static, bending, title)} if bending else {}
+    for rest in bending:
         for name, body in rest.bodies.items():
             if body.loads is not None and body.bends:
                 words = " ".join(filter(None, ("loads", name if len(rest.bodies) > 1 else "", rest.motion)))
@@ -149,7 +155,7 @@ def _of_machine(result: Response | MachinePlan, axes: AxesResult, title: str) ->
     quantities = ("rate", "acceleration", *(["jerk"] if axes.jerk is not None else []))
     return {
         "tracking": partial(machine.tracking, result, axes, title),
-        **{f"axes_{each}": partial(machine.axes_of, result, axes, each, title) for each in quantities},
+        **{f"axes_{quantity}": partial(machine.axes_of, result, axes, quantity, title) for quantity in quantities},
     }
 
 
@@ -171,7 +177,7 @@ def _of_response(result: Response, title: str) -> dict[str, Describe]:
         described["loop"] = partial(response.loop, result, result.loop, title)
     for name, body in result.bodies.items():
         body_figures = _of_body(result, name, body, title)
-        described |= {_named(kind, name, result.bodies): describe for kind, describe in body_figures.items()}
+        described |= {_figure_name(kind, name, result.bodies): describe for kind, describe in body_figures.items()}
     if result.axes is not None:
         described |= _of_machine(result, result.axes, title)
     if result.hub is not None:
@@ -193,16 +199,16 @@ def _of_body(result: Response, name: str, body: BodyResponse, title: str) -> dic
     return described
 
 
-def _named(kind: str, body: str, names: Collection[str]) -> str:
+def _figure_name(kind: str, body: str, names: Collection[str]) -> str:
     """Name of a figure of a body, with that of the body where there are several."""
     return f"{kind} {body}" if len(names) > 1 else kind
 
 
-def _of_comparison(result: Comparison, title: str, main: str, other: str, end: str = "") -> dict[str, Describe]:
+def _of_comparison(result: Comparison, title: str, main: str, side: str, end: str = "") -> dict[str, Describe]:
     """Figures of a comparison: `main` along the axis in which the tip moves most, `other` along others, and shock."""
     first, *others = imitation.moved(result)
     described: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
-    described |= {f"{other}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
+    described |= {f"{side}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
     if result.shock is not None:
         described[f"shock{end}"] = partial(imitation.shock, result, result.shock, title)
     return described
@@ -216,7 +222,7 @@ def _of_study(study: Study, title: str) -> dict[str, Describe]:
             run for run in study.responses.values() if body in run.bodies and run.bodies[body].loads is not None
         ]
         if len(with_loads) > 1:
-            described[_named("sizes", body, names)] = partial(response.sizes, study, body)
+            described[_figure_name("sizes", body, names)] = partial(response.sizes, study, body)
     described |= _by_motion({name: _of_response(run, title) for name, run in study.responses.items()})
     return described | _compared(study, title)
 
@@ -225,7 +231,7 @@ def _of_tips(study: Study) -> dict[str, Describe]:
     """Figures of the tip of every body, in all of a study's motions together; a rigid specimen has none."""
     responses, names = study.responses.values(), response.bodies(study)
     return {
-        _named("tip", body, names): partial(response.tip, study, body)
+        _figure_name("tip", body, names): partial(response.tip, study, body)
         for body in names
         if any(body in run.bodies and run.bodies[body].specimen is None for run in responses)
     }

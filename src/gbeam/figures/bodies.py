@@ -17,7 +17,7 @@ from gbeam.figures.description import (
     Panel,
     components,
     estimated,
-    largest,
+    largest_size,
     limit_levels,
     of_motion,
     scale_of,
@@ -59,7 +59,7 @@ def carried_along(loads: Loads) -> tuple[Panel, ...]:
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
     panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
-    return tuple(replace(each, x=f"position from the root, {unit}") for each in panels)
+    return tuple(replace(panel, x=f"position from the root, {unit}") for panel in panels)
 
 
 def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
@@ -83,7 +83,7 @@ def judged(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...
 
 
 def _carried(
-    where: Floats,
+    abscissa: Floats,
     force: Floats,
     moment: Floats,
     stress: tuple[Floats, Floats],
@@ -91,14 +91,14 @@ def _carried(
     names: Names = SECTION,
 ) -> Iterator[Panel]:
     """Panels of forces and moments (k, 3) over `where` (k,) and, if known, of the largest and smallest stress (k,)."""
-    lever = largest(force) * float(np.max(carried.stations, initial=0.0))
+    lever = largest_size(force) * float(np.max(carried.stations, initial=0.0))
     moment = np.where(np.abs(moment) <= ROUNDING * lever, 0.0, moment)  # what is no number stays a gap
     for kind, si, values, labels in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):
         scale, unit = scale_of(si, values)
-        yield components(where, scale * values, labels, Panel(f"{kind}, {unit}", zero=True))
+        yield components(abscissa, scale * values, labels, Panel(f"{kind}, {unit}", zero=True))
     if np.isfinite(carried.stress).all():
         scale, unit = scale_of("Pa", *stress)
-        lines = [Line(where, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
+        lines = [Line(abscissa, scale * stress[k], name, colour=k) for k, name in enumerate(("largest", "smallest"))]
         strength = math.inf if carried.yield_strength is None else carried.yield_strength
         levels = limit_levels(scale * strength, scale * np.concatenate(stress), "yield strength")
         yield Panel(f"stress, {unit}", tuple(lines), levels=levels)
@@ -113,13 +113,17 @@ def stress(result: SolidStress, title: str = "") -> Figure:
         for k, name in enumerate(result.points)
     ]
     levels: tuple[Level, ...] = ()
-    worst = result.nearest_yield
-    if worst is not None and worst.yield_strength is not None and worst.yield_strength < NEAR * result.von_mises.max():
-        levels = (Level(scale * worst.yield_strength, f"yield of {worst.material or 'the material'}"),)
+    critical = result.nearest_yield
+    if (
+        critical is not None
+        and critical.yield_strength is not None
+        and critical.yield_strength < NEAR * result.von_mises.max()
+    ):
+        levels = (Level(scale * critical.yield_strength, f"yield of {critical.material or 'the material'}"),)
     subject = of_motion(result.motion, f"von Mises stress, {result.model}")
     panel = Panel(f"von Mises stress, {unit}", tuple(lines), levels=levels, zero=True, height=2.0)
-    where = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.spread_words}"
-    return Figure(title, subject, (panel,), (f"largest: {where}", *filter(None, [result.left_out])))
+    place_of_largest = f"at {place_words(result.worst.place)}, {result.worst.time:.4g} s{result.worst.spread_words}"
+    return Figure(title, subject, (panel,), (f"largest: {place_of_largest}", *filter(None, [result.left_out])))
 
 
 def specimen(result: SpecimenLoads, title: str = "") -> Figure:

@@ -126,8 +126,8 @@ class Figure:
     @property
     def heading(self) -> str:
         """Title, in capitals what must not be overlooked, the subject, and the notes, on lines of their own."""
-        failed = sorted({each.upper() for each in self.outcomes if each != "done"})
-        first, *others = [each for each in (self.title, self.subject) if each]
+        failed = sorted({outcome.upper() for outcome in self.outcomes if outcome != "done"})
+        first, *others = [text for text in (self.title, self.subject) if text]
         return "\n".join([" – ".join([*failed, first]), *others, *self.notes])
 
 
@@ -144,21 +144,21 @@ def of_motion(name: str, subject: str) -> str:
 
 def estimated(errors: Mapping[str, float]) -> tuple[str, ...]:
     """Note on the estimated errors that are known, fractions by name; none where none is."""
-    known = [f"{name} {percent(error)}".strip() for name, error in errors.items() if math.isfinite(error)]
-    return (f"estimated error: {', '.join(known)}",) if known else ()
+    words = [f"{name} {percent(error)}".strip() for name, error in errors.items() if math.isfinite(error)]
+    return (f"estimated error: {', '.join(words)}",) if words else ()
 
 
 def moving(*values: Floats) -> list[int]:
     """Indices of components (last axis) larger than a hundredth of the largest; that one alone where none moves."""
-    finite = [np.nan_to_num(each, nan=0.0, posinf=0.0, neginf=0.0) for each in values]
-    size = np.max([np.abs(each).reshape(-1, each.shape[-1]).max(axis=0) for each in finite], axis=0)
+    finite = [np.nan_to_num(array, nan=0.0, posinf=0.0, neginf=0.0) for array in values]
+    size = np.max([np.abs(array).reshape(-1, array.shape[-1]).max(axis=0) for array in finite], axis=0)
     return [i for i in range(len(size)) if size[i] > SMALL * size.max()] or [int(size.argmax())]
 
 
-def not_drawn(shown: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
+def not_drawn(axes: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
     """Note on the largest sizes of the components (last axis) of lengths, m, that are not `shown`; none of rounding."""
-    sizes = [max(largest(each[..., i]) for each in lengths) for i in range(3)]
-    hidden = [i for i in range(3) if i not in shown and sizes[i] > ROUNDING * max(sizes)]
+    sizes = [max(largest_size(array[..., i]) for array in lengths) for i in range(3)]
+    hidden = [i for i in range(3) if i not in axes and sizes[i] > ROUNDING * max(sizes)]
     units = {i: scale_of("m", sizes[i]) for i in hidden}
     words = [f"{'xyz'[i]} by {scale * sizes[i]:.2g} {unit}" for i, (scale, unit) in units.items()]
     return (f"(not drawn: {' and '.join(words)} at most)",) if words else ()
@@ -212,15 +212,16 @@ def stretches(axes: AxesResult | None, time: Floats, accounting: Accounting | No
         not_followed = [(stretch.start, stretch.end, stretch.reason) for stretch in accounting.not_followed]
     first, last = (float(time[0]), float(time[-1])) if axes is None else axes.span
     ends = [(float(time[0]), first, "spin-up"), *not_followed, (last, float(time[-1]), "spin-down")]
-    return tuple((start, end, _short(reason)) for start, end, reason in ends if end - start > _SPAN)
+    return tuple((start, end, _shorten(reason)) for start, end, reason in ends if end - start > _SPAN)
 
 
-def _short(reason: str) -> str:
+def _shorten(reason: str) -> str:
     """A reason as a legend has it: of several limits that are used up, ``axis 2 jerk, axis 3 jerk``, the axes only."""
     limits = reason.split(", ")
     if len(limits) == 1:
         return reason
-    return f"limits of {' and '.join(sorted({each.rpartition(' ')[0] for each in limits}))}"
+    axes = sorted({limit.rpartition(" ")[0] for limit in limits})
+    return f"limits of {' and '.join(axes)}"
 
 
 # By the SI unit: size from which on, factor, name; ascending, and the second is for what is zero.
@@ -237,12 +238,12 @@ _READABLE = (0.01, 1e4)  # beyond it a power of ten goes to the axis
 def scale_of(si: str, *values: Floats | float) -> tuple[float, str]:
     """Factor and name of the unit in which the largest of some values in an SI unit reads well."""
     units = _UNITS[si]
-    size = max((largest(np.asarray(each)) for each in values), default=0.0)
+    size = max((largest_size(np.asarray(array)) for array in values), default=0.0)
     chosen = units[1] if size == 0 else [unit for unit in units if size >= unit[0]][-1]
     return chosen[1:]
 
 
-def largest(values: Floats) -> float:
+def largest_size(values: Floats) -> float:
     """Return the largest finite size; zero where there is none."""
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
@@ -251,7 +252,7 @@ def largest(values: Floats) -> float:
 def scaled(name: str, unit: str, values: Floats) -> tuple[float, str]:
     """Return a factor 1000^n that makes values readable, and the label of an axis in the scaled unit."""
     low, high = _READABLE
-    size, unit = largest(values), raised(unit)
+    size, unit = largest_size(values), raised(unit)
     power = 0 if size == 0 or low <= size < high else 3 * math.floor(math.log10(size) / 3)
     prefix = {-9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G"}.get(power)
     if power and unit and prefix and not unit.startswith(("k", "m/")):

@@ -21,7 +21,7 @@ def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
     """Describe a comparison over time along an axis: root loads, tip and load, or else the tip's difference alone."""
     c = comparison
     histories = [*_root(c, axis), *_tip(c, axis), *_load_difference(c, axis)]
-    histories = histories or [("tip displacement", "m", "difference", {_less(c): c.difference[:, axis]})]
+    histories = histories or [("tip displacement", "m", "difference", {_difference_words(c): c.difference[:, axis]})]
     height = 0.85 if len(histories) > 1 else 1.6
     spans = stretches(None, c.time, c.accounting)
     panels = tuple(replace(_panel(c, *part), spans=spans, height=height) for part in histories)
@@ -46,7 +46,7 @@ def moved(comparison: Comparison) -> list[int]:
     return [main, *(i for i in moving(comparison.peak_flight, comparison.peak_centrifuge) if i != main)]
 
 
-def _less(c: Comparison) -> str:
+def _difference_words(c: Comparison) -> str:
     return f"{c.centrifuge} − {c.flight}"
 
 
@@ -67,7 +67,7 @@ def _tip(c: Comparison, axis: int) -> Iterator[_Part]:
     stations = c.stations
     if stations is None:
         return
-    lines = {_less(c): stations.trend_difference[:, axis]}
+    lines = {_difference_words(c): stations.trend_difference[:, axis]}
     if c.load_difference is not None and np.isfinite(c.load_difference.tip_bound[axis]):
         envelope = c.load_difference.tip_envelope[:, axis]
         lines |= {"what a slow difference of load implies": envelope, "and its negative": -envelope}

@@ -18,7 +18,7 @@ from gbeam.figures.description import (
     declared,
     ends_of,
     imitating,
-    largest,
+    largest_size,
     limit_levels,
     moving,
     of_motion,
@@ -42,8 +42,8 @@ def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str =
     for i in range(3):
         limit = allowed.get(f"axis {i + 1}", math.inf)
         levels = limit_levels(limit, history[:, i])
-        beyond = ", beyond the panel" if math.isfinite(limit) and not levels else ""
-        title_of = f"{AXES[i]}: {_used(history[:, i], limit, unit)}{beyond}"
+        remark = ", beyond the panel" if math.isfinite(limit) and not levels else ""
+        title_of = f"{AXES[i]}: {_used(history[:, i], limit, unit)}{remark}"
         lines = (Line(response.time, history[:, i], **imitating(0)),)
         panels.append(Panel(f"{quantity}, {unit}", lines, title_of, levels=levels, spans=spans, zero=True))
     if quantity == "acceleration":
@@ -70,10 +70,14 @@ def _with_power(panel: Panel, axes: AxesResult) -> Panel:
 def _used(history: Floats, limit: float, unit: str) -> str:
     """Use of a limit, in words."""
     used = float(np.nanmax(np.abs(history)))
-    return f"{_plain(used)} of {_plain(limit)} {unit}" if math.isfinite(limit) else f"up to {_plain(used)} {unit}"
+    return (
+        f"{_three_digits(used)} of {_three_digits(limit)} {unit}"
+        if math.isfinite(limit)
+        else f"up to {_three_digits(used)} {unit}"
+    )
 
 
-def _plain(value: float) -> str:
+def _three_digits(value: float) -> str:
     """Three digits, below a million without an exponent."""
     rounded = float(f"{value:.3g}")
     return f"{rounded:.0f}" if 1000 <= rounded < 1e6 else f"{rounded:g}"
@@ -110,7 +114,9 @@ def _error(time: Floats, axes: AxesResult, scale: float, unit: str) -> Panel:
     error, followed = axes.tracking_error, ~axes.not_followed
     ends = ends_of(followed, scale * error)
     # An axis of at least a millionth of the load shows rounding errors as a line at zero.
-    top = max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest(axes.reference)) or 1.0
+    top = (
+        max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest_size(axes.reference)) or 1.0
+    )
     title = f"size of machine − target{', scaled to the times that are followed' if ends else ''}"
     line = Line(time, scale * error, "machine − target", **imitating(0))
     return Panel(f"tracking error, {unit}", (line,), title, limits=(0.0, top), named=False, height=0.8)

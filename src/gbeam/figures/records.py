@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import groupby
+from itertools import chain, groupby
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +26,8 @@ def record(summary: RecordSummary, name: str = "", title: str = "") -> Figure:
     assert summary.as_read is not None and summary.as_flown is not None  # it was read from its file
     read = _panels(summary.as_read, "as read", summary.span)
     flown = _panels(summary.as_flown, "flown", summary.span)
-    spans = tuple(_within(_marked(summary), summary.span))
-    panels = [replace(panel, spans=spans) for pair in zip(read, flown, strict=True) for panel in pair]
+    spans = tuple(_clip(_marked(summary), summary.span))
+    panels = [replace(panel, spans=spans) for panel in chain(*zip(read, flown, strict=True))]
     section = f", {summary.sections_by} {summary.section}" if summary.section else ""
     subject = of_motion(name, f"{Path(summary.file).name}{section}, as read in its own axes, and as flown in base axes")
     offsets = ("offsets of the sensors subtracted",) if summary.offsets else ()
@@ -40,9 +40,9 @@ def file(records: Mapping[str, RecordSummary], title: str = "") -> Figure:
     assert summary.as_read is not None  # it was read from its file
     parts = {name: record.span for name, record in records.items()}
     width = float(np.ptp(summary.as_read.time))
-    apart = _BETWEEN * width
-    touching = [any(abs(start - end) < apart for start, _ in parts.values()) for _, end in parts.values()]
-    ends = [end - apart * touches for (_, end), touches in zip(parts.values(), touching, strict=True)]
+    gap = _BETWEEN * width
+    touching = [any(abs(start - end) < gap for start, _ in parts.values()) for _, end in parts.values()]
+    ends = [end - gap * touches for (_, end), touches in zip(parts.values(), touching, strict=True)]
     flown = ((start, end, "flown") for (start, _), end in zip(parts.values(), ends, strict=True) if end > start)
     spans = (*flown, *_marked(summary))
     first, *other_panels = (replace(panel, spans=spans) for panel in _panels(summary.as_read, "as read", _ALWAYS))
@@ -89,13 +89,13 @@ def _panels(channels: Channels, what: str, span: tuple[float, float]) -> list[Pa
 
 def _marked(summary: RecordSummary) -> Iterator[Span]:
     """Yield stretches at rest, that the instrument was levelled by, and samples that were lost."""
-    yield from ((each.start, each.end, "at rest") for each in summary.offsets)
+    yield from ((stretch.start, stretch.end, "at rest") for stretch in summary.offsets)
     if summary.levelled is not None:
         yield (*summary.levelled, "level")
-    yield from ((each.start, each.end, "lost samples") for each in summary.gaps)
+    yield from ((gap.start, gap.end, "lost samples") for gap in summary.gaps)
 
 
-def _within(spans: Iterator[Span], ends: tuple[float, float]) -> Iterator[Span]:
+def _clip(spans: Iterator[Span], ends: tuple[float, float]) -> Iterator[Span]:
     """Yield what of some stretches lies between the ends of a part, s."""
     for first, last, reason in spans:
         if first < ends[1] and last > ends[0]:

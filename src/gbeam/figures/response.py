@@ -24,7 +24,7 @@ from gbeam.figures.description import (
     ends_of,
     estimated,
     imitating,
-    largest,
+    largest_size,
     moving,
     not_drawn,
     of_motion,
@@ -48,22 +48,22 @@ DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
 
 def looks(study: Study) -> dict[str, dict[str, Any]]:
     """Styles of the lines of every environment: broad of a flight that another imitates."""
-    flights = {each.flight for each in study.comparisons}
+    flights = {comparison.flight for comparison in study.comparisons}
     others = [name for name in study.responses if name not in flights]
-    plain: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(others)}
-    compared = {name: imitating(k) for k, name in enumerate(others)} if flights else plain
+    coloured: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(others)}
+    compared = {name: imitating(k) for k, name in enumerate(others)} if flights else coloured
     return {name: compared.get(name, FLIGHT) for name in study.responses}
 
 
 def bodies(study: Study) -> tuple[str, ...]:
     """Names of the bodies of a study's responses."""
-    return tuple(dict.fromkeys(name for each in study.responses.values() for name in each.bodies))
+    return tuple(dict.fromkeys(name for run in study.responses.values() for name in run.bodies))
 
 
 def at_tip(compared: Comparison, body: str) -> bool:
     """True if a comparison is of the tip of a body."""
-    of, _, point = (compared.point or "tip").rpartition(".")
-    return point == "tip" and of in ("", body)
+    owner, _, point = (compared.point or "tip").rpartition(".")
+    return point == "tip" and owner in ("", body)
 
 
 def tip(study: Study, body: str) -> Figure:
@@ -134,7 +134,7 @@ def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span
     scale, unit = scale_of("m", counted)
     # A difference from flight while the target is another load must not set the scale.
     limits = ends_of(covered, scale * difference)
-    beyond = limits is not None and largest(difference) > 1.05 * largest(counted)
+    beyond = limits is not None and largest_size(difference) > 1.05 * largest_size(counted)
     title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")
     line = Line(compared.time, scale * difference, title, **looks(study).get(compared.centrifuge, imitating(0)))
     label = f"difference in {'xyz'[axis]}, {unit}"

@@ -42,7 +42,7 @@ _DASHES: dict[str, Dash] = {"x": "dotted", "y": "solid", "z": "dashed", "twist":
 SHOWN = 6  # shapes drawn
 
 
-def _few(stations: Floats) -> Marks:
+def _marks(stations: Floats) -> Marks:
     """Dots where there are too few places for a line."""
     return "joined" if len(stations) < 3 else ""
 
@@ -59,31 +59,31 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
     panels, notes = list[Panel](), list[str]()
     for name in bending:
         bodies = [rest.bodies[name] for rest in rests]
-        moved = [_along(body) for body in bodies]
+        moved = [_deflection(body) for body in bodies]
         axes = moving(*(shape for _, shape in moved))
         notes += not_drawn(axes, *(shape for _, shape in moved))
         x_scale, x_unit = scale_of("m", *(points for points, _ in moved))
         for i in axes:
             scale, unit = scale_of(declared(BodyRest, "displacement")[1], *(shape[:, i] for _, shape in moved))
             lines = tuple(
-                Line(x_scale * points, scale * shape[:, i], rest.motion, marks=_few(points), **look)
+                Line(x_scale * points, scale * shape[:, i], rest.motion, marks=_marks(points), **look)
                 for rest, (points, shape), look in zip(rests, moved, looks, strict=True)
             )
-            quantity = " ".join(filter(None, (name if len(bending) > 1 else "", "xyz"[i])))
+            quantity = f"{name} {'xyz'[i]}" if len(bending) > 1 else "xyz"[i]
             x = f"position from the root, {x_unit}"
-            named = len(rests) > 1 and not panels
-            panels.append(Panel(f"{quantity}, {unit}", lines, x=x, zero=True, named=named))
+            legend = len(rests) > 1 and not panels
+            panels.append(Panel(f"{quantity}, {unit}", lines, x=x, zero=True, named=legend))
     relative = "displacement at rest relative to the base" if bending else "displacement at rest"
-    panels += [
-        _points_at_rest(rest, rest.motion if len(rests) > 1 else "") for rest in rests if rest.several or not bending
-    ]
+    for rest in rests:
+        if rest.several or not bending:
+            panels.append(_points_at_rest(rest, rest.motion if len(rests) > 1 else ""))
     errors = [rest.errors.displacement.total for rest in rests]
     error = {"": max((total for total in errors if math.isfinite(total)), default=math.nan)}
     subject = ", ".join((relative, *_models(first), f"t = {first.time:.4g} s"))
     return Figure(title, subject, tuple(panels), (*notes, *estimated(error)))
 
 
-def _along(body: BodyRest) -> tuple[Floats, Floats]:
+def _deflection(body: BodyRest) -> tuple[Floats, Floats]:
     """Positions along a body, (p,) m, and the displacement there, (p, 3) m: of its outline where that has more."""
     if body.outline is not None and len(body.outline.points) > len(body.stations):
         return body.outline.points, body.outline.displacement[0]
@@ -99,15 +99,15 @@ def _points_at_rest(rest: Rest, title: str) -> Panel:
 
 def _models(result: Rest | Modes) -> list[str]:
     """Kinds of the models of the bodies that deform, each once."""
-    return [*dict.fromkeys(each.model for each in result.bodies.values())]
+    return [*dict.fromkeys(body.model for body in result.bodies.values())]
 
 
 def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
     """Describe, along a body at rest, the sections' force and moment and the largest and smallest stress."""
     carried = rest.bodies[body].loads
     assert carried is not None
-    of = f" of {body}" if len(rest.bodies) > 1 else ""
-    subject = of_motion(rest.motion, f"internal loads at rest{of}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
+    owner = f" of {body}" if len(rest.bodies) > 1 else ""
+    subject = of_motion(rest.motion, f"internal loads at rest{owner}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
     return Figure(title, subject, carried_along(carried), judged(rest, body, carried))
 
 
@@ -136,7 +136,7 @@ def _shapes(result: Modes, name: str) -> Panel:
         points, moved = body.moved(k)
         x_scale, x_unit = scale_of("m", points)
         label = f"{result.frequency[k]:.4g} Hz, {body.direction[k]}"
-        real = Line(x_scale * points, moved.real, label, colour=k % SHOWN, marks=_few(points))
+        real = Line(x_scale * points, moved.real, label, colour=k % SHOWN, marks=_marks(points))
         lines.append(real)
         if np.abs(moved.imag).max() > SMALL:
             lines.append(replace(real, y=moved.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))

@@ -37,17 +37,17 @@ def sweep(result: Sweep, name: str, title: str = "") -> Figure:
     elif result.dimensions == (SAMPLE,):
         # How the draws are distributed, then over each value that is drawn.
         panels = [_histogram(factor * values, label)]
-        panels += [_drawn(drawn, factor * values, label) for drawn in result.parameters if drawn.numeric]
+        panels += [_scatter(drawn, factor * values, label) for drawn in result.parameters if drawn.numeric]
     else:
-        panels = [_over(result.parameters[0], _bands if values.ndim == 2 else _line, factor * values, label)]
+        panels = [_parameter_panel(result.parameters[0], _bands if values.ndim == 2 else _line, factor * values, label)]
     return Figure(title or result.title, subject, tuple(replace(panel, height=2.0) for panel in panels))
 
 
-def _over(parameter: Parameter, draw: Any, values: Floats, label: str) -> Panel:
+def _parameter_panel(parameter: Parameter, draw: Any, values: Floats, label: str) -> Panel:
     """A panel over a parameter, whose words stand at 0, 1, 2 …"""
     x, ticks = _places(parameter)
     panel: Panel = draw(x, values, label)
-    return replace(panel, x=_named(parameter), ticks=ticks)
+    return replace(panel, x=_axis_label(parameter), ticks=ticks)
 
 
 def _places(parameter: Parameter) -> tuple[Floats, tuple[str, ...]]:
@@ -61,17 +61,17 @@ def _line(x: Floats, values: Floats, label: str) -> Panel:
     return Panel(label, (Line(x[order], values[order], label, marks="joined"),), named=False)
 
 
-def _drawn(parameter: Parameter, values: Floats, label: str) -> Panel:
+def _scatter(parameter: Parameter, values: Floats, label: str) -> Panel:
     order = np.argsort(np.asarray(parameter.values, dtype=float))
     x = np.asarray(parameter.values, dtype=float)[order]
-    return Panel(label, (Line(x, values[order], label, marks="dots"),), x=_named(parameter), named=False)
+    return Panel(label, (Line(x, values[order], label, marks="dots"),), x=_axis_label(parameter), named=False)
 
 
 def _bands(x: Floats, values: Floats, label: str) -> Panel:
     """Median and the middle nine tenths of the samples over a parameter."""
-    known = np.isfinite(values).any(axis=1)
+    rows = np.isfinite(values).any(axis=1)
     quantiles = np.full((3, len(values)), np.nan)
-    quantiles[:, known] = np.nanquantile(values[known], [0.05, 0.5, 0.95], axis=1)
+    quantiles[:, rows] = np.nanquantile(values[rows], [0.05, 0.5, 0.95], axis=1)
     low, middle, high = quantiles
     return Panel(label, (Line(x, middle, "median", marks="joined"),), areas=(Area(x, low, high, "5 % to 95 %"),))
 
@@ -97,12 +97,12 @@ def _surface(result: Sweep, values: Floats, label: str) -> Panel:
         outcomes = result.outcome if first is result.parameters[0] else result.outcome.T
         outcome = tuple(map(str, outcomes.ravel()))
         cells = Map(first.values.tolist(), second.values.tolist(), values, label, outcome)
-        return Panel(_named(second), title=label, x=_named(first), map=cells)
+        return Panel(_axis_label(second), title=label, x=_axis_label(first), map=cells)
     x, ticks = _places(first)
     lines = tuple(
         Line(x, values[:, k], _value(second, k), colour=k % 6, marks="joined") for k in range(len(second.values))
     )
-    return Panel(label, lines, second.path.replace("motion.", "", 1), x=_named(first), ticks=ticks)
+    return Panel(label, lines, second.path.replace("motion.", "", 1), x=_axis_label(first), ticks=ticks)
 
 
 def _value(parameter: Parameter, k: int) -> str:
@@ -110,8 +110,8 @@ def _value(parameter: Parameter, k: int) -> str:
     return value if isinstance(value, str) else f"{value:.4g} {raised(parameter.unit)}".rstrip()
 
 
-def _named(parameter: Parameter) -> str:
-    return f"{parameter.path}{f', {raised(parameter.unit)}' if parameter.unit else ''}"
+def _axis_label(parameter: Parameter) -> str:
+    return f"{parameter.path}, {raised(parameter.unit)}" if parameter.unit else parameter.path
 
 
 def history(result: Sweep, name: str, title: str = "") -> Figure:
@@ -138,8 +138,8 @@ def history(result: Sweep, name: str, title: str = "") -> Figure:
 
 def _place(result: Sweep, place: tuple[int, ...]) -> str:
     """A point of the grid, in words."""
-    grid = [each for each in result.parameters if not each.drawn]
-    return "".join(f", {_value(each, i)}" for each, i in zip(grid, place, strict=True))
+    grid = [parameter for parameter in result.parameters if not parameter.drawn]
+    return "".join(f", {_value(parameter, i)}" for parameter, i in zip(grid, place, strict=True))
 
 
 def indices(result: Sweep, name: str, title: str = "") -> Figure:
@@ -147,9 +147,9 @@ def indices(result: Sweep, name: str, title: str = "") -> Figure:
     shares = result.indices[name]
     values = np.nan_to_num(shares.values[(0,) * (shares.values.ndim - 3)])
     order = np.argsort(-values[:, 1, 0], kind="stable")
-    by_bound = [
-        {words: values[order, k, bound] for k, words in enumerate(("by itself", "in total"))} for bound in range(3)
-    ]
+    by_bound = []  # the estimate, its low and its high end
+    for bound in range(3):
+        by_bound.append({"by itself": values[order, 0, bound], "in total": values[order, 1, bound]})
     bars = Bars(tuple(shares.parameters[k] for k in order), *by_bound)
     panel = Panel("", title="bars: 95 % confidence", x="Sobol index", bars=bars, height=2.0)
     return Figure(title or result.title, f"{name}: share of its variance", (panel,))
@@ -164,7 +164,7 @@ def probability(result: Sweep, name: str, title: str = "") -> Figure:
         return Panel(label, (Line(x, middle, "estimate", marks="joined"),), areas=areas, zero=True, height=2.0)
 
     (parameter,) = (parameter for parameter in result.parameters if not parameter.drawn)
-    panel = _over(parameter, draw, result.statistics[name][PROBABILITY], f"probability of {name}")
+    panel = _parameter_panel(parameter, draw, result.statistics[name][PROBABILITY], f"probability of {name}")
     return Figure(title or result.title, f"{name}: probability", (panel,))
 
 
@@ -179,11 +179,11 @@ def fit(result: Fit, title: str = "") -> Figure:
 def _values(result: Fit | Optimum) -> str:
     """Values of a fit or an optimum in words, with their units."""
     rows = zip(result.parameters, result.values, result.units, strict=True)
-    short = isinstance(result, Fit)
-    return ", ".join(
-        f"{path.rpartition('.')[2] if short else path.replace('motion.', '', 1)} {value:.4g} {raised(unit)}".rstrip()
-        for path, value, unit in rows
-    )
+    words = []
+    for path, value, unit in rows:
+        name = path.rpartition(".")[2] if isinstance(result, Fit) else path.replace("motion.", "", 1)
+        words.append(f"{name} {value:.4g} {raised(unit)}".rstrip())
+    return ", ".join(words)
 
 
 def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
@@ -276,8 +276,8 @@ def robustness(command: ShapedCommand, title: str = "") -> Figure:
     top = 1.2 * 1e3 * float(c.runs[-1].by_ratio.max())
     lines = tuple(Line(c.ratio, 1e3 * run.by_ratio, run.name, colour=k) for k, run in enumerate(c.runs))
     spans = ((1 - c.robust, 1 + c.robust, "designed for"),) if c.robust else ()
-    over = "frequencies over the design's"
-    panel = Panel("amplitude left, mm", lines, x=over, spans=spans, limits=(0.0, top), height=1.6)
+    axis_label = "frequencies over the design's"
+    panel = Panel("amplitude left, mm", lines, x=axis_label, spans=spans, limits=(0.0, top), height=1.6)
     return Figure(title, _subject(c), (panel,))
 
 

@@ -45,10 +45,10 @@ def write_figures(
 ) -> list[Path]:
     """Draw figures and write each under its name, as far as files may have it: ``axes_rate_spin`` of axes_rate spin."""
     files: list[Path] = []
-    named = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): describe for name, describe in described.items()}
+    figures = {re.sub(r"[^\w.-]+", "_", re.sub(r"[\[\]]", "", name)): describe for name, describe in described.items()}
     with style():
-        for k, (name, describe) in enumerate(named.items()):
-            tell(progress, f"drawing {name}", k / len(named))
+        for k, (name, describe) in enumerate(figures.items()):
+            tell(progress, f"drawing {name}", k / len(figures))
             files += save(draw(describe()), folder, name, source)
     return files
 

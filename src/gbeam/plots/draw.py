@@ -38,11 +38,12 @@ def line(panel: Axes, x: Floats, y: Floats, **options: Any) -> None:
     if bins is None or not runs:
         panel.plot(*thinned(x, y, COLUMNS), **options)
         return
-    (drawn,) = panel.plot(*bins.middle(x, y, runs), **options)
-    named = any(each.get_label() == ENVELOPE for other in drawn.figure.axes for each in other.collections)
-    xs, low, high = (np.concatenate(each) for each in zip(*(bins.envelope(x, y, run) for run in runs), strict=True))
-    look: dict[str, Any] = {"color": drawn.get_color(), "zorder": drawn.get_zorder()}
-    panel.fill_between(xs, low, high, **look, lw=0, alpha=0.35, label=None if named else ENVELOPE)
+    (curve,) = panel.plot(*bins.middle(x, y, runs), **options)
+    labelled = any(collection.get_label() == ENVELOPE for axes in curve.figure.axes for collection in axes.collections)
+    envelopes = [bins.envelope(x, y, run) for run in runs]
+    xs, low, high = (np.concatenate(parts) for parts in zip(*envelopes, strict=True))
+    look: dict[str, Any] = {"color": curve.get_color(), "zorder": curve.get_zorder()}
+    panel.fill_between(xs, low, high, **look, lw=0, alpha=0.35, label=None if labelled else ENVELOPE)
     for edge in (low, high):
         panel.plot(xs, edge, **look, lw=0.6, label="_edge")
 
@@ -54,18 +55,19 @@ class _Bins:
         edges = np.linspace(x[0], x[-1], BINS + 1)
         self.centre = (edges[1:] + edges[:-1]) / 2
         self.starts = np.searchsorted(x, edges[:-1])
-        self.low, self.high = (each.reduceat(y, self.starts) for each in (np.minimum, np.maximum))
+        self.low = np.minimum.reduceat(y, self.starts)
+        self.high = np.maximum.reduceat(y, self.starts)
         ranges = self.high - self.low
         path = np.add.reduceat(np.abs(np.diff(y, append=y[-1])), self.starts)
-        self.fast = _closed((path > _FAST * ranges) & (ranges > _SEEN * np.nanmax(ranges, initial=0.0)))
+        self.fast = _join_runs((path > _FAST * ranges) & (ranges > _SEEN * np.nanmax(ranges, initial=0.0)))
         self._ends = np.append(self.starts, len(x) - 1)
 
     def middle(self, x: Floats, y: Floats, runs: list[slice]) -> tuple[Floats, Floats]:
         """The line, in the middle of its envelope where it has one."""
         parts, begin = [], 0
         for run in runs:
-            before = slice(begin, self._ends[run.start] + 1)
-            parts.append(thinned(x[before], y[before], COLUMNS))
+            stretch = slice(begin, self._ends[run.start] + 1)
+            parts.append(thinned(x[stretch], y[stretch], COLUMNS))
             parts.append((self.centre[run], (self.low[run] + self.high[run]) / 2))
             begin = self._ends[run.stop]
         parts.append(thinned(x[begin:], y[begin:], COLUMNS))
@@ -75,11 +77,11 @@ class _Bins:
     def envelope(self, x: Floats, y: Floats, run: slice) -> tuple[Floats, Floats, Floats]:
         """Times of a stretch, its low and its high edge: it begins and ends on the line, then there is a gap."""
         first, last = self._ends[[run.start, run.stop]]
-        low, high = ([y[first], *each[run], y[last], np.nan] for each in (self.low, self.high))
+        low, high = ([y[first], *edge[run], y[last], np.nan] for edge in (self.low, self.high))
         return np.array([x[first], *self.centre[run], x[last], np.nan]), np.array(low), np.array(high)
 
 
-def _closed(fast: Flags) -> Flags:
+def _join_runs(fast: Flags) -> Flags:
     """Join stretches of bins that small gaps separate, then drop short ones."""
     joined = fast.copy()
     for gap in true_runs(~fast):
@@ -221,9 +223,8 @@ def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
     for x, y, words in panel.texts:
         white = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
         axes.text(x, y, words, ha="center", va="center", color="0.35", fontsize=8, zorder=1.2, bbox=white)
-    if panel.lines and all(
-        curve.marks == "joined" and not np.any(curve.x % 1) for curve in panel.lines
-    ):  # counted, as tries are
+    counted = all(curve.marks == "joined" and not np.any(curve.x % 1) for curve in panel.lines)
+    if panel.lines and counted:  # as tries are
         axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True))
     if panel.ticks:
         axes.set_xticks(range(len(panel.ticks)), panel.ticks)
@@ -280,7 +281,8 @@ def _include(axes: Axes, panel: Panel) -> None:
 
 def _shade(axes: Axes, spans: Sequence[Span], *, named: bool) -> None:
     """Shade stretches in a panel, with their reasons in the legend of the first."""
-    ordered = sorted(spans, key=lambda span: [each[2] for each in spans].index(span[2]))
+    reasons = [reason for *_, reason in spans]
+    ordered = sorted(spans, key=lambda span: reasons.index(span[2]))
     for reason, group in groupby(ordered, key=lambda span: span[2]):
         face, hatch = _PATTERNS.get(reason, _LIMIT)
         corners = [[(a, 0.0), (a, 1.0), (b, 1.0), (b, 0.0)] for a, b, _ in group]

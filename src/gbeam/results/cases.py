@@ -186,14 +186,14 @@ class Sweep(Figured[str]):
         return np.isin(self.outcome.astype(str), ("done", *ANSWERED))
 
     @property
-    def failures(self) -> int:
+    def failure_count(self) -> int:
         """Number of cases that are not computed to the end."""
         return int((~self.computed).sum())
 
     @property
     def state(self) -> str:
         """Outcome of the sweep: done, some cases failed, or some cases not accepted."""
-        if self.failures:
+        if self.failure_count:
             return "some cases failed"
         return "done" if set(self.counts) <= {"done"} else "some cases not accepted"
 

@@ -40,7 +40,7 @@ class Cases:
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the result's arrays, the samples last."""
-        return tuple(len(each.texts) for each in self.grid) + ((self.samples,) if self.drawn else ())
+        return tuple(len(variation.texts) for variation in self.grid) + ((self.samples,) if self.drawn else ())
 
     @property
     def independent(self) -> int:
@@ -53,9 +53,9 @@ class Cases:
     def overrides(self, case: int) -> tuple[str, ...]:
         """Changes of the scenario that make the case of this number."""
         index = [int(i) for i in np.unravel_index(case, self.shape)]  # the sample's, if any, is the last
-        chosen = [(each, each.texts[i]) for each, i in zip(self.grid, index, strict=False)]
-        chosen += [(each, each.texts[index[-1]]) for each in self.drawn]
-        return tuple(f"{each.path}={text}" for each, text in chosen)
+        changes = [f"{variation.path}={variation.texts[i]}" for variation, i in zip(self.grid, index, strict=False)]
+        changes += [f"{variation.path}={variation.texts[index[-1]]}" for variation in self.drawn]
+        return tuple(changes)
 
 
 def read_cases(
@@ -67,9 +67,9 @@ def read_cases(
 ) -> Cases:
     """Read variations ``PATH=VALUES``, and draw samples of theirs and the scenario's distributions (by path)."""
     variations = [read_variation(text) for text in over]
-    paths = [each.path for each in variations]
+    paths = [variation.path for variation in variations]
     declared = distributions or {}
-    variations += [drawn_from(path, each) for path, each in declared.items() if path not in paths]
+    variations += [drawn_from(path, distribution) for path, distribution in declared.items() if path not in paths]
     if not variations:
         raise InputError(OPTION, "is missing", 'say what varies: --over "motion.centrifuge.arm=1 m:12 m:12"')
     for path in paths:
@@ -77,8 +77,8 @@ def read_cases(
             raise InputError(OPTION, f"varies {path} twice", "give all its values in one")
         if path == SAMPLE:
             raise InputError(OPTION, f"varies {path!r}, which is no key of a scenario", "check the key")
-    grid = tuple(each for each in variations if not each.distribution)
-    drawn = tuple(each for each in variations if each.distribution)
+    grid = tuple(variation for variation in variations if not variation.distribution)
+    drawn = tuple(variation for variation in variations if variation.distribution)
     if samples is not None and not drawn:
         raise InputError(
             "--samples", "stands without a distribution", 'draw from one: "beam.damping_ratio=uniform(0.5 %, 2 %)"'
@@ -100,7 +100,7 @@ def read_cases(
         unit = _saltelli(_points(count, 2 * len(drawn), "sobol", seed))
     else:
         unit = _points(count, len(drawn), sampler, seed)
-    return Cases(grid, tuple(each.drawn(unit[:, k]) for k, each in enumerate(drawn)), len(unit), sampler)
+    return Cases(grid, tuple(variation.sample(unit[:, k]) for k, variation in enumerate(drawn)), len(unit), sampler)
 
 
 def _saltelli(points: np.ndarray) -> np.ndarray:
@@ -146,7 +146,7 @@ class Variation:
     unit: str = ""
     distribution: Distribution | None = None
 
-    def drawn(self, probability: NDArray[Any]) -> Variation:
+    def sample(self, probability: NDArray[Any]) -> Variation:
         """Variation with the distribution's quantiles at probabilities (n,) between 0 and 1."""
         assert self.distribution is not None
         with np.errstate(over="ignore"):
@@ -160,9 +160,9 @@ class Variation:
     def parameter(self, unit: str) -> Parameter:
         """Record of the variation in the result; `unit` is the scenario's, used where the values have none."""
         assert self.values is not None
-        drawn = str(self.distribution) if self.distribution else ""
+        distribution = str(self.distribution) if self.distribution else ""
         numeric = np.issubdtype(self.values.dtype, np.number)
-        return Parameter(self.path, self.values, (self.unit or unit) if numeric else "", drawn)
+        return Parameter(self.path, self.values, (self.unit or unit) if numeric else "", distribution)
 
 
 def read_variation(text: str) -> Variation:
@@ -183,7 +183,7 @@ def read_variation(text: str) -> Variation:
     if call and call[1] == "log":
         return _range(path, call[2], logarithmic=True)
     if call:
-        with _of(path):
+        with _naming_path(path):
             return drawn_from(path, read_distribution(call[1], call[2].split(",")))
     if values.count(":") == 2 and '"' not in values:
         return _range(path, values, logarithmic=False)
@@ -202,7 +202,7 @@ def _range(path: str, text: str, *, logarithmic: bool) -> Variation:
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError(OPTION, f"{path} has the range {text!r}", "write FROM:TO:COUNT, such as 1 m:12 m:12")
-    with _of(path):
+    with _naming_path(path):
         (low, high), unit = quantities(parts[:2])
     try:
         count = int(parts[2])
@@ -235,14 +235,14 @@ def _list(path: str, text: str) -> Variation:
         repeated = next(part for part in parts if parts.count(part) > 1)
         raise InputError(OPTION, f"{path} has {repeated!r} twice", "give each value once")
     if all(NUMBER.fullmatch(part) for part in parts):
-        with _of(path):
+        with _naming_path(path):
             values, unit = quantities(parts)
         return Variation(path, tuple(with_unit(value, unit) for value in values), np.array(values), unit)
     return Variation(path, tuple(parts), np.array(parts, dtype=object))
 
 
 @contextmanager
-def _of(path: str) -> Iterator[None]:
+def _naming_path(path: str) -> Iterator[None]:
     """Name the option and the path in the InputErrors raised inside."""
     try:
         yield

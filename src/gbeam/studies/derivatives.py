@@ -102,9 +102,9 @@ class Neighbourhood:
             tell(self.progress, parameter.path, k / len(self.parameters))
             step = self._step(k, _FACTS)
             if rough:
-                smaller, larger = (read(case, self.inquiry.facts(case)) for case in self._beside(k, step, rough))
-                unknown = np.full(len(values), np.nan)
-                rows.append(((larger - smaller) / (2 * step), unknown, unknown))
+                smaller, larger = (read(case, self.inquiry.facts(case)) for case in self._neighbours(k, step, rough))
+                nans = np.full(len(values), np.nan)
+                rows.append(((larger - smaller) / (2 * step), nans, nans))
                 continue
 
             def shifted(count: float, k: int = k, step: float = step) -> Floats:
@@ -114,7 +114,7 @@ class Neighbourhood:
             rows.append(_differences(shifted, values, step))
         return _gathered(values, rows, [DIFFERENCE] * len(rows))
 
-    def done(self, name: str) -> Response:
+    def response(self, name: str) -> Response:
         """The response in one environment; ComputationError if it is not done."""
         end = self.answer.failures.get(name) or self.answer.responses[name]
         if end.outcome != "done":
@@ -125,7 +125,7 @@ class Neighbourhood:
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
         case = self.case
-        return Grid.of(case.system, case.environments[name], case.settings_of(name), self.done(name))
+        return Grid.of(case.system, case.environments[name], case.settings_of(name), self.response(name))
 
     def _differentiated(self, name: str, grid: Grid) -> Differentiated:
         motion, settings = self.case.environments[name], self.case.settings_of(name)
@@ -134,7 +134,7 @@ class Neighbourhood:
 
     def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
         """Slopes of runs: all parameters along which the jumps stay are right-hand sides of one solution."""
-        done = {name: self.done(name) for name in motions}
+        originals = {name: self.response(name) for name in motions}
         for name in motions:
             if name not in self._by_motion:
                 self._differentiated(name, self.grid(name))
@@ -145,12 +145,12 @@ class Neighbourhood:
         pairs: dict[str, dict[int, Any]] = {name: {} for name in motions}
         jumping, cases = set(), []
         for k, step in enumerate(steps):
-            less, more = self._beside(k, step, rough)
-            cases.append((less, more))
+            smaller, larger = self._neighbours(k, step, rough)
+            cases.append((smaller, larger))
             for name in motions:
                 if not self._felt(k, name):
                     continue
-                pair = runs[name].pair(self._variant(less, k, name), self._variant(more, k, name))
+                pair = runs[name].pair(self._variant(smaller, k, name), self._variant(larger, k, name))
                 if runs[name].jumps_move(pair):
                     jumping.add(k)
                 pairs[name][k] = pair
@@ -167,11 +167,11 @@ class Neighbourhood:
 
                 def shifted(count: float, k: int = k, step: float = step) -> Floats:
                     case = self._case(k, count * step)
-                    return read(case, _runs(case, {name: done[name].step for name in motions}))
+                    return read(case, _runs(case, {name: originals[name].step for name in motions}))
 
                 rows.append(_differences(shifted, values, step))
                 continue
-            sides: tuple[dict[str, Response], dict[str, Response]] = (dict(done), dict(done))
+            sides: tuple[dict[str, Response], dict[str, Response]] = (dict(originals), dict(originals))
             for name in motions:
                 if k in pairs[name]:
                     sides[0][name], sides[1][name] = next(responses[name])
@@ -179,7 +179,7 @@ class Neighbourhood:
             rows.append((*_slope(ends[0], values, ends[1], steps[k]), np.full(len(values), np.nan)))
         return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
 
-    def _beside(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
+    def _neighbours(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
         """Cases with parameter `k` smaller and larger by `step`.
 
         Where the scenario refuses one of them, `rough` takes the case itself and one two steps to the other side, and
@@ -193,8 +193,8 @@ class Neighbourhood:
                 if not rough:
                     raise
                 self.edges.add(k)
-                unchanged, beyond = self._case(k, 0.0), self._case(k, -sign * 2 * step)
-                return (unchanged, beyond) if sign < 0 else (beyond, unchanged)
+                unchanged, second = self._case(k, 0.0), self._case(k, -sign * 2 * step)
+                return (unchanged, second) if sign < 0 else (second, unchanged)
         return ends[0], ends[1]
 
     def _case(self, k: int, step: float) -> Case:
@@ -262,22 +262,22 @@ class Quantities:
 
     def __call__(self, values: Floats) -> Floats:
         """Quantities (m,) at values (p,) of the parameters; the last ones are kept."""
-        return self._at(values)[1]
+        return self._evaluate(values)[1]
 
     def slopes(self, values: Floats) -> Floats:
         """Derivatives with respect to the values, (m, p); the last ones are kept."""
-        nearby = self._at(values)[2]
+        nearby = self._evaluate(values)[2]
         if self._sloped is None or self._sloped[0] is not nearby:
             self._sloped = nearby, nearby.slopes(self._read, self._motions, rough=True).slopes
         return self._sloped[1]
 
     def edges(self, values: Floats) -> tuple[int, ...]:
         """Parameters whose values lie at the edge of what the scenario allows."""
-        nearby = self._at(values)[2]
+        nearby = self._evaluate(values)[2]
         self.slopes(values)  # tries both sides
         return tuple(nearby.edges)
 
-    def _at(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
+    def _evaluate(self, values: Floats) -> tuple[Floats, Floats, Neighbourhood]:
         """The values, the quantities at them, and the neighbourhood; computed unless the last values were the same."""
         if self._last is None or not np.array_equal(self._last[0], values):
             self.evaluations += 1
@@ -292,7 +292,7 @@ class Quantities:
                 problem = f"allow {', '.join(tried)}, which the scenario refuses: {error.where} {error.problem}"
                 raise InputError("--bounds", problem, "give narrower ones") from None
             for name in self._motions if self._grids is not None else ():
-                nearby.done(name)
+                nearby.response(name)
             quantities = self._read(nearby.case, nearby.answer)
             if not np.isfinite(quantities).all():
                 raise ComputationError("not converged", "a figure of the search has no value")
@@ -304,13 +304,13 @@ class Quantities:
         return case if self._start is None else in_model_of(self._start.case, case)
 
 
-def in_model_of(like: Case, case: Case) -> Case:
+def in_model_of(model_case: Case, case: Case) -> Case:
     """Case whose beams have as many shapes as those of the case `like`, where the numbers are automatic there."""
     changed = {}
-    for name, other in like.automatic_beams.items():
+    for name, model_body in model_case.automatic_beams.items():
         body = case.system.flexible[name]
-        if model_of(body) != model_of(other):
-            changed[name] = remade(body, model_of(other), stations_asked(body))
+        if model_of(body) != model_of(model_body):
+            changed[name] = remade(body, model_of(model_body), stations_asked(body))
     if not changed:
         return case
     return replace(case, system=replace(case.system, bodies={**case.system.bodies, **changed}))
@@ -334,9 +334,9 @@ def _runs(case: Case, steps: Mapping[str, float]) -> Study:
     return study_of(case, responses)
 
 
-def _slope(less: Floats, middle: Floats, more: Floats, step: float) -> tuple[Floats, Floats]:
+def _slope(smaller: Floats, middle: Floats, larger: Floats, step: float) -> tuple[Floats, Floats]:
     """The central difference, and by how much the slopes on either side differ."""
-    return (more - less) / (2 * step), np.abs(more - 2 * middle + less) / step
+    return (larger - smaller) / (2 * step), np.abs(larger - 2 * middle + smaller) / step
 
 
 def _differences(shifted: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
@@ -352,5 +352,5 @@ def _differences(shifted: Callable[[float], Floats], middle: Floats, step: float
 
 
 def _gathered(values: Floats, rows: Sequence[tuple[Floats, Floats, Floats]], methods: Sequence[str]) -> Slopes:
-    slopes, bends, errors = (np.stack(each, axis=1) for each in zip(*rows, strict=True))
+    slopes, bends, errors = (np.stack(column, axis=1) for column in zip(*rows, strict=True))
     return Slopes(values, slopes, errors, tuple(methods), bends)

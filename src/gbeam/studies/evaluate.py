@@ -82,7 +82,7 @@ class Inquiry:
         if not self.keys and not self.histories:
             return Needs()
         errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
-        loads = any(map(of_loads, self.keys)) or any(each.quantity != "tip" for each in self.histories)
+        loads = any(map(of_loads, self.keys)) or any(history.quantity != "tip" for history in self.histories)
         return Needs(errors, loads)
 
     def case(self, overrides: Sequence[str]) -> Case:
@@ -112,7 +112,7 @@ class Inquiry:
             function_values, problem = _measured(self.functions, case)
             values += function_values
             for history in self.histories:
-                values += history.at(facts["study"], self.times).tolist()
+                values += history.interpolate(facts["study"], self.times).tolist()
         except Exception as error:
             return without_figures(number, self.width, error)
         outcome, message = ended(facts)
@@ -121,16 +121,16 @@ class Inquiry:
 
 def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
     """Values of functions of a case, NaN for those that fail, and the reasons. If all fail the last error is raised."""
-    values, problems, last = [], [], Exception()
+    values, problems, last_error = [], [], Exception()
     for k, function in enumerate(functions):
         try:
             values.append(float(function(case)))
         except Exception as error:
             values.append(math.nan)
             problems.append(f"measure {k + 1}: {type(error).__name__}: {_line(error)}")
-            last = error
+            last_error = error
     if problems and len(problems) == len(functions):
-        raise last
+        raise last_error
     return values, "; ".join(problems)
 
 
@@ -153,12 +153,12 @@ def ended(facts: Facts) -> tuple[str, str]:
 
 def without_figures(number: int, width: int, error: Exception) -> Row:
     """Row of a case that raised `error`: no figures, an outcome by the error's type, and its message."""
-    unknown = (math.nan,) * width
+    nans = (math.nan,) * width
     if isinstance(error, ComputationError):
-        return Row(number, unknown, error.outcome, _line(error))
+        return Row(number, nans, error.outcome, _line(error))
     if isinstance(error, GbeamError):
-        return Row(number, unknown, "refused", _line(error))
-    return Row(number, unknown, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
+        return Row(number, nans, "refused", _line(error))
+    return Row(number, nans, "failed", f"{type(error).__name__}: {_line(error)}")  # a defect, or a measure's own
 
 
 def _line(error: Exception) -> str:
@@ -199,11 +199,11 @@ def settled(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
 def rows(inquiry: Inquiry, tasks: Iterable[Task]) -> Iterator[Row]:
     """Compute cases; if they are integrated together, their rows come in any order."""
     if inquiry.together:
-        return _together(inquiry, iter(tasks))
+        return _batch_rows(inquiry, iter(tasks))
     return (inquiry.row(*task) for task in tasks)
 
 
-def _together(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
+def _batch_rows(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
     """Rows of cases, computed many at a time. Neighbours with equal settings are integrated together."""
     while chunk := list(islice(tasks, MANY)):
         posed: list[Posed] = []
@@ -254,8 +254,8 @@ def _responses(
         if len(pending) == 1:
             yield next(iter(pending)), error
             return
-        remaining, half = list(pending), len(pending) // 2
-        for part in (remaining[:half], remaining[half:]):
+        rest, half = list(pending), len(pending) // 2
+        for part in (rest[:half], rest[half:]):
             yield from _responses(posed, part, settings, one_structure=one_structure)
 
 

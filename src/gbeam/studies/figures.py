@@ -64,9 +64,9 @@ def tree_of_figures(kind: type) -> dict[str, Any]:
         if "limits" in motion:
             motion["limits"] = {ANY: {ANY: dict(motion["limits"])}}
     if "comparisons" in tree:
-        kept = {"accepted": Entry("", "whether every limit is kept")}
+        accepted = {"accepted": Entry("", "whether every limit is kept")}
         judged = {rule.name: Entry("", f"value that the limit `{rule.name}` is on") for rule in RULES.values()}
-        tree["comparisons"] = {ANY: {**tree["comparisons"], "verdict": judged | kept}}
+        tree["comparisons"] = {ANY: {**tree["comparisons"], "verdict": judged | accepted}}
     return tree
 
 
@@ -74,7 +74,10 @@ def choices(verb: str) -> dict[str, Entry]:
     """Entry of every figure of a verb's answers by its path: ``*`` is any name, ``[i]`` any place in a list."""
     from gbeam.results.facts import paths_of
 
-    return {path: each for kind in question_of(verb).records for path, each in paths_of(tree_of_figures(kind))}
+    entries: dict[str, Entry] = {}
+    for kind in question_of(verb).records:
+        entries |= paths_of(tree_of_figures(kind))
+    return entries
 
 
 def _message(answer: Any) -> str:
@@ -91,8 +94,8 @@ def _message(answer: Any) -> str:
 def _by_axis(limits: list[Facts]) -> Facts:
     """Limits of a machine by axis and quantity, as scenarios name them."""
     axes: dict[str, dict[str, Facts]] = {}
-    for each in limits:
-        axes.setdefault(each["axis"].replace(" ", ""), {})[each["quantity"]] = each
+    for limit in limits:
+        axes.setdefault(limit["axis"].replace(" ", ""), {})[limit["quantity"]] = limit
     return axes
 
 
@@ -109,15 +112,15 @@ _MANY = 12  # figures that a message lists
 def find(facts: Facts, name: str) -> Keys:
     """Return the keys of the figure whose path in the facts of a case ends in `name`, such as ``tip.z.max_abs``."""
     keys_of = {path_text(keys): keys for keys, _ in _figures(facts)}
-    wanted = f".{name}"
-    fits = [path for path in keys_of if f".{path}".endswith(wanted)]
+    ending = f".{name}"
+    fits = [path for path in keys_of if f".{path}".endswith(ending)]
     # Of the only body that deforms, its name may be left out.
-    fits = fits or [path for path, keys in keys_of.items() if f".{path_text(without_body(keys))}".endswith(wanted)]
+    fits = fits or [path for path, keys in keys_of.items() if f".{path_text(without_body(keys))}".endswith(ending)]
     if not fits:
         ends = set()
         for path in keys_of:
             steps = path.split(".")
-            ends |= {".".join(steps[first:]) for first in range(len(steps))}
+            ends |= {".".join(steps[k:]) for k in range(len(steps))}
         guess = closest(name, sorted(ends, key=lambda end: (abs(end.count(".") - name.count(".")), end)))
         fix = f"did you mean {guess!r}?" if guess else "list names every figure, with its unit"
         if name.endswith("verdict.accepted"):
@@ -129,7 +132,7 @@ def find(facts: Facts, name: str) -> Keys:
     return keys_of[name if name in fits else fits[0]]
 
 
-def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
+def check_figures(verb: str, names: Iterable[str], option: str = OPTION) -> None:
     """Refuse a name that no figure of a verb can have, before anything is computed."""
     paths = [_segments(path) for path in choices(verb)]
     for name in names:
@@ -138,8 +141,8 @@ def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
             # Ends of paths as long as the name, with the name's own words where any name may stand.
             candidates = []
             for path in paths:
-                last = path[-len(ends) :]
-                pairs = zip(last, ends[-len(last) :], strict=True)
+                end_keys = path[-len(ends) :]
+                pairs = zip(end_keys, ends[-len(end_keys) :], strict=True)
                 candidates.append(".".join(end if key == "*" else key for key, end in pairs))
             guess = closest(name, candidates)
             fix = f"did you mean {guess!r}?" if guess else "list names every figure, with its unit"
@@ -148,8 +151,8 @@ def offered(verb: str, names: Iterable[str], option: str = OPTION) -> None:
 
 def without_body(keys: Sequence[Any]) -> tuple[Any, ...]:
     """Keys of a figure without those that lead to a body."""
-    at = keys.index(BODIES) if BODIES in keys else len(keys)
-    return (*keys[:at], *keys[at + 2 :])
+    place = keys.index(BODIES) if BODIES in keys else len(keys)
+    return (*keys[:place], *keys[place + 2 :])
 
 
 def _segments(path: str) -> list[str]:
@@ -169,15 +172,15 @@ def _fits(ends: Sequence[str], path: Sequence[str]) -> bool:
 @cache
 def _ending(path: tuple[str, ...]) -> re.Pattern[str]:
     """Compile the pattern of the ends of a path."""
-    last = len(path) - 1
-    words = [re.escape(key) if key != "*" else ".+" if k < last else "[^.]+" for k, key in enumerate(path)]
-    before = ""
-    for word in words[:-1]:
-        before = rf"(?:{before}{word}\.)?"
-    return re.compile(before + words[-1])
+    pattern = ""
+    for key in path[:-1]:
+        word = ".+" if key == "*" else re.escape(key)
+        pattern = rf"(?:{pattern}{word}\.)?"
+    last_word = "[^.]+" if path[-1] == "*" else re.escape(path[-1])
+    return re.compile(pattern + last_word)
 
 
-def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
+def usual_figures(template: Template, verb: str, *, judged: bool = False) -> tuple[str, ...]:
     """Figures of a verb that are taken if none is named; those of comparisons only if `judged`.
 
     These begin with what the verdict is on: limits of acceptance, or the largest load where there is none.
@@ -191,15 +194,21 @@ def usual(template: Template, verb: str, *, judged: bool = False) -> tuple[str, 
     figures += [pattern for pattern in patterns if not any(key in pattern for key in ("{judged}", "{motion}"))]
     if len(deforming) == 1:
         figures = [figure.replace(f"{BODIES}.{{body}}.", "") for figure in figures]
-    limits = ((name, limit) for name in case.tracks for limit in case.accept.get(name) or ("largest_load",))
+    verdicts = []
+    for name in case.tracks:
+        limits = case.accept.get(name) or ("largest_load",)
+        verdicts += [f"{name}.verdict.{limit}" for limit in limits]
     names_by_key: dict[str, Sequence[str]] = {
         "{body}": deforming,
         "{machine}": tuple(case.tracks),
         "{limited}": limited,
-        "{judged}": [f"{name}.verdict.{limit}" for name, limit in limits],
+        "{judged}": verdicts,
     }
     for key, words in names_by_key.items():
-        figures = [figure.replace(key, name) for figure in figures for name in (words if key in figure else ("",))]
+        filled = []
+        for figure in figures:
+            filled += [figure.replace(key, word) for word in words] if key in figure else [figure]
+        figures = filled
     return tuple(dict.fromkeys(figure for figure in figures if judged or not figure.startswith("comparisons.")))
 
 
@@ -267,7 +276,7 @@ class History:
     quantity: str  # as the response's `signal` names it
     unit: str  # SI
 
-    def at(self, study: Study, times: Floats) -> Floats:
+    def interpolate(self, study: Study, times: Floats) -> Floats:
         """Values at times (t,), s; NaN where the response has none."""
         response = study.responses.get(self.motion)
         if response is None:
@@ -277,8 +286,8 @@ class History:
         # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
         time, values = response.time, response.signal(self.quantity)
         slack = 1e-9 * float(time[-1] - time[0])
-        inside = (times >= time[0] - slack) & (times <= time[-1] + slack)
-        return np.where(inside, CubicSpline(time, values)(times), math.nan)
+        covered = (times >= time[0] - slack) & (times <= time[-1] + slack)
+        return np.where(covered, CubicSpline(time, values)(times), math.nan)
 
 
 def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History:
@@ -315,8 +324,8 @@ def signals_of_case(case: Case) -> dict[str, str]:
         units |= {f"{name}.{point}.{axis}": "m" for point in stations_of(body) for axis in "xyz"}
         units |= {f"{name}.{load}.{axis}": unit for load, unit in _LOADS.items() for axis in "xyz"}
     units |= signals_of(case.system)
-    short = {}
+    short_names = {}
     if len(owners) == 1:
         prefix = f"{next(iter(owners))}."
-        short = {signal.removeprefix(prefix): unit for signal, unit in units.items() if signal.startswith(prefix)}
-    return short | units | _OF_HUBS
+        short_names = {signal.removeprefix(prefix): unit for signal, unit in units.items() if signal.startswith(prefix)}
+    return short_names | units | _OF_HUBS

@@ -20,7 +20,7 @@ from gbeam.results.searches import Fit, FittedColumn
 from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.measurement import Measurement, read_measurement
-from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, named, on_bound, searched
+from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, on_bound, searched, select_values
 from gbeam.studies.template import template_of
 
 OPTION = "--free"
@@ -104,7 +104,7 @@ def fit(
     template = template_of(scenario, overrides)
     if not free:
         raise InputError(OPTION, "is missing", 'name values: --free "beam.material.youngs_modulus"')
-    parameters = named(template, free, OPTION)
+    parameters = select_values(template, free, OPTION)
     case = template.built()
     measurement = read_measurement(data, case, motion)
     verb, read = ("modes", "modes") if measurement.modal else ("run", "motions")
@@ -112,7 +112,7 @@ def fit(
     if len(measurement.values) <= len(parameters):
         problem = f"names {len(parameters)} values for {len(measurement.values)} data"
         raise InputError(OPTION, problem, "measure more, or free fewer")
-    limits = np.array([bounds_of(each, bounds or {}, OPTION) for each in parameters])
+    limits = np.array([bounds_of(parameter, bounds or {}, OPTION) for parameter in parameters])
     adapt = partial(reduced, needs=Needs(errors=False))
     start = None if measurement.modal else Neighbourhood(inquiry, parameters, adapt=adapt, progress=progress)
     model = Quantities(
@@ -120,12 +120,12 @@ def fit(
         measurement.instrumented, progress,
     )  # fmt: skip
     solutions = searched(parameters, limits, starts, lambda x: _search(model, measurement, parameters, x, limits))
-    best = max(solutions, key=lambda each: each.likelihood)
-    solution = replace(best, before=solutions[0].before)
+    likeliest = max(solutions, key=lambda solution: solution.likelihood)
+    solution = replace(likeliest, before=solutions[0].before)
     described = _described(model, measurement, parameters, limits, solution)
-    agreed = agreeing([each.values for each in solutions], solution.values, limits)
+    agreed = agreeing([solution.values for solution in solutions], solution.values, limits)
     return replace(
-        described, title=template.title([each.path for each in parameters]), starts=starts, agreed=agreed,
+        described, title=template.title([parameter.path for parameter in parameters]), starts=starts, agreed=agreed,
         notes=template.notes, provenance=template.provenance,
     )  # fmt: skip
 
@@ -144,16 +144,16 @@ def _described(
     count, size = len(measured), len(parameters)
     at_edge = np.isin(np.arange(size), model.edges(solution.values))
     at_bound = on_bound(solution.values, limits) | at_edge
-    inside = np.flatnonzero(~at_bound)
+    free_indices = np.flatnonzero(~at_bound)
     variance = float(np.sum(((fitted - measured) * solution.weights) ** 2)) / (count - size)
     spread = np.full((size, size), np.nan)  # covariance over variance, which may be zero
     condition = np.nan
-    if inside.size:
-        jacobian = solution.jacobian[:, inside]
-        condition = tell_apart(jacobian * solution.values[inside], [parameters[int(k)] for k in inside])
+    if free_indices.size:
+        jacobian = solution.jacobian[:, free_indices]
+        condition = tell_apart(jacobian * solution.values[free_indices], [parameters[int(k)] for k in free_indices])
         lengths = np.linalg.norm(jacobian, axis=0)
         unit = jacobian / lengths
-        spread[np.ix_(inside, inside)] = np.linalg.inv(unit.T @ unit) / np.outer(lengths, lengths)
+        spread[np.ix_(free_indices, free_indices)] = np.linalg.inv(unit.T @ unit) / np.outer(lengths, lengths)
     sizes = np.sqrt(np.diag(spread))
     errors = np.sqrt(variance) * sizes
     half = float(stdtrit(count - size, 0.975)) * errors
@@ -162,9 +162,9 @@ def _described(
     return Fit(
         title="",
         data=measurement.file,
-        parameters=tuple(each.path for each in parameters),
-        units=tuple(each.unit for each in parameters),
-        before=np.array([each.value for each in parameters]),
+        parameters=tuple(parameter.path for parameter in parameters),
+        units=tuple(parameter.unit for parameter in parameters),
+        before=np.array([parameter.value for parameter in parameters]),
         values=solution.values,
         errors=errors,
         intervals=np.stack([solution.values - half, solution.values + half], axis=1),
@@ -189,12 +189,16 @@ def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int
     ends = np.cumsum([len(column.values) for column in measurement.columns])[:-1]
     share = 1 - size / len(fitted)  # of the degrees of freedom that the parameters leave
     columns = []
-    for column, now, then in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
-        r = column.values - now
+    for column, values_now, values_before in zip(
+        measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True
+    ):
+        r = column.values - values_now
         power = float(np.sum(r**2))
         correlation = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
         noise = float(np.sqrt(power / (len(r) * share)))
-        columns.append(FittedColumn(column.name, column.unit, column.values, now, then, noise, correlation))
+        columns.append(
+            FittedColumn(column.name, column.unit, column.values, values_now, values_before, noise, correlation)
+        )
     return tuple(columns)
 
 
@@ -250,11 +254,11 @@ def _search(
     from scipy.optimize import least_squares
 
     measured = measurement.values
-    before = model(start)
+    start_values = model(start)
     scale = np.where(start == 0, limits[:, 1] - limits[:, 0], np.abs(start))
     weights = measurement.weights(None, len(start))
     tell_apart(model.slopes(start) * scale * weights[:, None], parameters)
-    first_residual = max(float(np.linalg.norm((before - measured) * weights)), 1.0)
+    first_residual = max(float(np.linalg.norm((start_values - measured) * weights)), 1.0)
 
     def residual(x: Floats, weights: Floats) -> Floats:
         try:
@@ -272,15 +276,15 @@ def _search(
             xtol=_PRECISE, ftol=_PRECISE, gtol=None,
         )  # fmt: skip
         x = fitted.x
-        new = measurement.weights(model(x * scale) - measured, len(x))
-        change = new / weights
-        weights = new
+        new_weights = measurement.weights(model(x * scale) - measured, len(x))
+        change = new_weights / weights
+        weights = new_weights
         if change.max() <= (1 + _SETTLED) * change.min():
             break
     misfit = (model(x * scale) - measured) * weights
     # Where noise is estimated from the residuals the misfit is the same in all searches, else the weights are.
     likelihood = float(np.log(weights).sum() - (misfit @ misfit) / 2)
-    return Solution(before, x * scale, weights, model.slopes(x * scale) * weights[:, None], likelihood)
+    return Solution(start_values, x * scale, weights, model.slopes(x * scale) * weights[:, None], likelihood)
 
 
 def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
@@ -291,8 +295,8 @@ def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
     """
     lengths = np.linalg.norm(jacobian, axis=0)
     names = [parameter.path for parameter in parameters]
-    least = max(_ALIKE * lengths.max(), _IDLE)
-    idle = [name for name, length in zip(names, lengths, strict=True) if length <= least]
+    threshold = max(_ALIKE * lengths.max(), _IDLE)
+    idle = [name for name, length in zip(names, lengths, strict=True) if length <= threshold]
     if idle:
         raise ComputationError(ALIKE, f"the data do not depend on {' and '.join(idle)}: leave that out of --free")
     _, sizes, directions = np.linalg.svd(jacobian / lengths, full_matrices=False)

@@ -47,15 +47,15 @@ class Journal:
     @property
     def finished(self) -> bool:
         """True if the folder holds no sweep, or all cases of the sweep that it holds, this one or another, are done."""
-        first, rows = self._known()
-        return not first or len({row["case"] for row in rows if row}) >= first["cases"]
+        first_line, rows = self._stored_lines()
+        return not first_line or len({row["case"] for row in rows if row}) >= first_line["cases"]
 
     def read(self) -> list[Row]:
         """Return the cases that are done, none without a store. InputError if the store is another sweep's."""
-        first, rows = self._known()
-        if not first:
+        first_line, rows = self._stored_lines()
+        if not first_line:
             return []
-        differing = [key for key in self._sweep if first.get(key) != self._sweep[key]]
+        differing = [key for key in self._sweep if first_line.get(key) != self._sweep[key]]
         if differing:
             raise InputError(
                 "--out",
@@ -63,12 +63,12 @@ class Journal:
                 f"{'differ' if len(differing) > 1 else 'differs'}",
                 _ANOTHER,
             )
-        self.figures = list(first["figures"])
+        self.figures = list(first_line["figures"])
         damaged = [str(number) for number, row in enumerate(rows, 2) if row is None]
         if damaged:
-            named = ", ".join(damaged[:_LISTED]) + (", …" if len(damaged) > _LISTED else "")
+            numbers = ", ".join(damaged[:_LISTED]) + (", …" if len(damaged) > _LISTED else "")
             self.warnings = (
-                f"{len(damaged)} of the {len(rows)} cases kept in {self._file} were damaged (line {named}) and "
+                f"{len(damaged)} of the {len(rows)} cases kept in {self._file} were damaged (line {numbers}) and "
                 f"computed again; the other {len(rows) - len(damaged)} are as they were",
             )
         return [_row(row) for row in rows if row is not None]
@@ -76,15 +76,15 @@ class Journal:
     @contextmanager
     def writing(self, *, resume: bool) -> Iterator[None]:
         """Open the store for `add`. InputError if another process has it open, or if its cases would be overwritten."""
-        with ExitStack() as held:
+        with ExitStack() as resources:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise InputError("--out", f"{self.folder} cannot be made ({error.strerror})", _ANOTHER) from None
-            held.enter_context(hold_lock(self.folder / LOCK, "--out", f"wait for its end, or {_ANOTHER}"))
-            with self._written():
+            resources.enter_context(hold_lock(self.folder / LOCK, "--out", f"wait for its end, or {_ANOTHER}"))
+            with self._saving():
                 self._begin(resume)
-                self._out = held.enter_context(open(self._file, "ab", buffering=0))
+                self._out = resources.enter_context(open(self._file, "ab", buffering=0))
             yield
 
     def add(self, rows: Iterable[Row]) -> None:
@@ -95,7 +95,7 @@ class Journal:
             values = [value if math.isfinite(value) else None for value in row.values]
             line = {"case": row.case, "outcome": row.outcome, "message": row.message, "values": values}
             text += _line(line, self._seed)
-        with self._written():
+        with self._saving():
             while text:
                 text = text[self._out.write(text) :]
             os.fsync(self._out.fileno())
@@ -117,14 +117,14 @@ class Journal:
         else:
             refuse_unfinished(self)
         lines = _parsed(self._file.read_bytes()) if resume and self._file.exists() else []
-        whole = [line for line, values in lines if values] or [_line({**self._sweep, "figures": list(self.figures)})]
-        self._seed = json.loads(whole[0])["crc32"]
-        if lines and len(whole) == len(lines):
+        intact = [line for line, values in lines if values] or [_line({**self._sweep, "figures": list(self.figures)})]
+        self._seed = json.loads(intact[0])["crc32"]
+        if lines and len(intact) == len(lines):
             return
         # A new file takes the place of the old one at once: an interruption leaves one of them whole.
         new_file = self._file.with_suffix(".new")
         with open(new_file, "wb") as out:
-            out.writelines(whole)
+            out.writelines(intact)
             out.flush()
             os.fsync(out.fileno())
         os.replace(new_file, self._file)
@@ -135,22 +135,22 @@ class Journal:
             finally:
                 os.close(folder)
 
-    def _known(self) -> tuple[Line, list[Line]]:
+    def _stored_lines(self) -> tuple[Line, list[Line]]:
         """First line and rows of the file, without damaged rows at its end, which were cut off; None without a file."""
         try:
             lines = _parsed(self._file.read_bytes()) if self._file.exists() else []
         except OSError as error:
             raise InputError("--out", f"{self._file} cannot be read ({error.strerror})", _ANOTHER) from None
-        first, *rows = [values for _, values in lines] or [None]
-        if lines and (first is None or "figures" not in first):
+        first_line, *rows = [values for _, values in lines] or [None]
+        if lines and (first_line is None or "figures" not in first_line):
             problem = f"{self._file} is not the store of a sweep, or its first line is damaged"
             raise InputError("--out", problem, f"remove it, or {_ANOTHER}")
         while rows and rows[-1] is None:
             rows.pop()
-        return first, rows
+        return first_line, rows
 
     @contextmanager
-    def _written(self) -> Iterator[None]:
+    def _saving(self) -> Iterator[None]:
         """Turn an OSError inside into a ComputationError that says how to go on."""
         try:
             yield
@@ -169,8 +169,9 @@ def _parsed(data: bytes) -> list[tuple[bytes, Line]]:
     """Lines with their values, None if damaged; only the first line if that is damaged."""
     lines = data.splitlines(keepends=True)
     parsed = [(line, _read(line, 0)) for line in lines[:1]]
-    if parsed and (first := parsed[0][1]):
-        parsed += [(line, _read(line, first["crc32"])) for line in lines[1:]]
+    first_line = parsed[0][1] if parsed else None
+    if first_line:
+        parsed += [(line, _read(line, first_line["crc32"])) for line in lines[1:]]
     return parsed
 
 
@@ -205,7 +206,7 @@ def identity(inquiry: Inquiry, cases: Cases, measures: Sequence[str], histories:
     }
 
 
-def opened(
+def open_journal(
     store: str | os.PathLike[str] | None, resume: bool, sweep: Mapping[str, Any]
 ) -> tuple[Journal | None, list[Row]]:
     """Journal of a sweep, None without a store, and the rows that it has. InputError if cases would be lost."""

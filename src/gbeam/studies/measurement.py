@@ -67,17 +67,17 @@ class Measurement:
     @property
     def values(self) -> Floats:
         """All columns, one after the other, (m,)."""
-        return np.concatenate([each.values for each in self.columns])
+        return np.concatenate([column.values for column in self.columns])
 
     @property
     def motions(self) -> tuple[str, ...]:
         """Names of the motions whose responses are measured."""
-        return tuple(dict.fromkeys(each.motion for each in self.columns))
+        return tuple(dict.fromkeys(column.motion for column in self.columns))
 
     @property
     def parts(self) -> dict[str, bool]:
         """Parts of a response, loads and axes, that the columns need."""
-        return {"loads": any("root_" in each.quantity or each.face for each in self.columns), "axes": False}
+        return {"loads": any("root_" in column.quantity or column.face for column in self.columns), "axes": False}
 
     def weights(self, residuals: Floats | None, freed: int) -> Floats:
         """Reciprocals (m,) of the noise of the data.
@@ -85,9 +85,10 @@ class Measurement:
         The noise is estimated from residuals (m,) of a fit of `freed` values, or assumed if they are None. It is the
         same at all times of a column, and in proportion to the values of modes.
         """
-        weights, first = [], 0
+        weights, start = [], 0
         for column in self.columns:
-            rows = slice(first, first := first + len(column.values))
+            rows = slice(start, start + len(column.values))
+            start = rows.stop
             size = np.abs(column.values)
             size = size if self.modal else np.full(len(size), size.max())
             size = np.where(size > 0, size, 1.0)
@@ -112,14 +113,15 @@ class Measurement:
     def read(self, case: Case, answer: Any) -> Floats:
         """Values (m,) of the measured quantities in an answer to a case, in the order of `values`."""
         if self.modal:
-            return np.array([_modal(answer, each.quantity, int(k)) for each in self.columns for k in self.at])
+            modes = [int(number) for number in self.at]
+            return np.array([_modal(answer, column.quantity, k) for column in self.columns for k in modes])
         study = answer if isinstance(answer, Study) else answer["study"]
-        return np.concatenate([self._history(case, study, each) for each in self.columns])
+        return np.concatenate([self._history(case, study, column) for column in self.columns])
 
     def _history(self, case: Case, answer: Study, column: Measured) -> Floats:
         """Values at the measured times: a signal of the response, or the strain of a gauge."""
         if not column.face:
-            return History(column.name, column.motion, column.quantity, column.unit).at(answer, self.at)
+            return History(column.name, column.motion, column.quantity, column.unit).interpolate(answer, self.at)
         from scipy.interpolate import CubicSpline
 
         response = answer.responses[column.motion]
@@ -160,10 +162,10 @@ def _read(path: str, case: Case, motion: str | None) -> Measurement:
     return Measurement(path, clock_values, modal, columns)
 
 
-def _check_clock(at: Floats, path: str, modal: bool, case: Case, motions: Sequence[str]) -> None:
+def _check_clock(clock: Floats, path: str, modal: bool, case: Case, motions: Sequence[str]) -> None:
     """Raise InputError unless times increase within the responses in all motions, or each mode is numbered once."""
     if modal:
-        if (at < 1).any() or (at % 1 != 0).any() or len(set(at)) < len(at):
+        if (clock < 1).any() or (clock % 1 != 0).any() or len(set(clock)) < len(clock):
             raise InputError(OPTION, f"{path} has modes that are no numbers 1, 2, …", "number each mode once")
         return
     settings = [case.settings_of(name) for name in motions]
@@ -171,13 +173,15 @@ def _check_clock(at: Floats, path: str, modal: bool, case: Case, motions: Sequen
         max(setting.start for setting in settings),
         min(setting.start + setting.duration for setting in settings),
     )
-    if len(at) < 2:
+    if len(clock) < 2:
         raise InputError(OPTION, f"{path} has one time", "give two or more, which increase")
-    if (np.diff(at) <= 0).any():
+    if (np.diff(clock) <= 0).any():
         raise InputError(OPTION, f"{path} has times that do not increase", "sort its rows")
     slack = 1e-9 * (end - start)
-    if at[0] < start - slack or at[-1] > end + slack:
-        problem = f"{path} has times from {at[0]:g} to {at[-1]:g} s, and the response goes from {start:g} to {end:g} s"
+    if clock[0] < start - slack or clock[-1] > end + slack:
+        problem = (
+            f"{path} has times from {clock[0]:g} to {clock[-1]:g} s, and the response goes from {start:g} to {end:g} s"
+        )
         raise InputError(OPTION, problem, "give response.duration the data's, or cut the data")
 
 

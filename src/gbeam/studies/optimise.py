@@ -25,9 +25,9 @@ from gbeam.results.searches import Optimum, Requirement
 from gbeam.results.study import Study
 from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Inquiry
-from gbeam.studies.figures import Facts, Keys, offered, unit_at
-from gbeam.studies.parameters import Bounds, agreeing, bounds_of, named, on_bound, searched
-from gbeam.studies.sensitivity import facts_of, figure, needed, values_at
+from gbeam.studies.figures import Facts, Keys, check_figures, unit_at
+from gbeam.studies.parameters import Bounds, agreeing, bounds_of, on_bound, searched, select_values
+from gbeam.studies.sensitivity import facts_of, figure, needed_parts, values_at
 from gbeam.studies.template import template_of
 
 OPTION, SUBJECT = "--minimise", "--subject-to"
@@ -103,44 +103,49 @@ def optimise(
     template = template_of(scenario, overrides)
     if not over:
         raise InputError("--over", "is missing", 'name values: --over "motion.centrifuge.control_point"')
-    parameters = named(template, over, "--over")
-    offered(verb, [minimise], OPTION)
-    limits = np.array([bounds_of(each, bounds or {}, "--over") for each in parameters])
+    parameters = select_values(template, over, "--over")
+    check_figures(verb, [minimise], OPTION)
+    limits = np.array([bounds_of(parameter, bounds or {}, "--over") for parameter in parameters])
     inquiry = Inquiry(template, verb, motion, at, options or {})
-    first = Neighbourhood(inquiry, parameters, progress=progress)
-    goal = _goal(facts_of(first.answer), first.case, minimise, subject_to)
+    first_neighbourhood = Neighbourhood(inquiry, parameters, progress=progress)
+    goal = _goal(facts_of(first_neighbourhood.answer), first_neighbourhood.case, minimise, subject_to)
     # The search computes only what its figures are read from; the last answer is whole.
-    motions, parts = needed(goal.keys, first.case.tracks)
+    motions, parts = needed_parts(goal.keys, first_neighbourhood.case.tracks)
     model = Quantities(
-        replace(inquiry, keys=goal.keys), parameters, goal.read, first, motions, parts, progress=progress
+        replace(inquiry, keys=goal.keys), parameters, goal.read, first_neighbourhood, motions, parts, progress=progress
     )
     search = Search(model, goal, limits)
     ends = searched(parameters, limits, starts, search)
     values = search.tried[-1][0]
-    last = Neighbourhood(inquiry, parameters, values.tolist(), progress=progress)
-    before, after = (values_at(facts_of(each.answer), goal.keys) for each in (first, last))
-    if last.runs:
-        for name in needed(goal.keys, last.case.tracks)[0]:
-            last.done(name)
+    last_neighbourhood = Neighbourhood(inquiry, parameters, values.tolist(), progress=progress)
+    before, after = (
+        values_at(facts_of(neighbourhood.answer), goal.keys)
+        for neighbourhood in (first_neighbourhood, last_neighbourhood)
+    )
+    if last_neighbourhood.runs:
+        for name in needed_parts(goal.keys, last_neighbourhood.case.tracks)[0]:
+            last_neighbourhood.response(name)
     requirements = tuple(
-        Requirement(name, unit_at(facts_of(last.answer), keys), low, high, float(before[k]), float(after[k]))
+        Requirement(
+            name, unit_at(facts_of(last_neighbourhood.answer), keys), low, high, float(before[k]), float(after[k])
+        )
         for k, (name, keys, low, high) in enumerate(goal.required, 1)
     )
-    broken = [each.name for each in requirements if not each.kept]
-    paths = tuple(each.path for each in parameters)
+    broken = [requirement.name for requirement in requirements if not requirement.kept]
+    paths = tuple(parameter.path for parameter in parameters)
     return Optimum(
         title=template.title(paths),
         minimise=minimise,
         unit=goal.unit,
         parameters=paths,
-        units=tuple(each.unit for each in parameters),
-        before=np.array([each.value for each in parameters]),
+        units=tuple(parameter.unit for parameter in parameters),
+        before=np.array([parameter.value for parameter in parameters]),
         values=values,
         bounds=limits,
         at_bound=on_bound(values, limits),
         figure_before=float(before[0]),
         figure=float(after[0]),
-        error=_error(last.answer),
+        error=_error(last_neighbourhood.answer),
         requirements=requirements,
         path=np.array([x for x, _ in search.tried]),
         history=np.array([f for _, f in search.tried]),
@@ -158,7 +163,7 @@ def _error(answer: Any) -> float:
     """Largest estimated error of a study's responses; NaN for other answers."""
     if not isinstance(answer, Study):
         return math.nan
-    return max((each.error_estimate for each in answer.responses.values()), default=math.nan)
+    return max((response.error_estimate for response in answer.responses.values()), default=math.nan)
 
 
 def _goal(facts: Facts, case: Case, minimise: str, subject_to: Sequence[str]) -> Goal:
@@ -193,7 +198,7 @@ def _machine_limits(facts: Facts) -> Any:
 
 
 def _bound(text: str, unit: str, name: str) -> float:
-    kind = "frequency" if unit == "Hz" else next((kind for kind, each in KINDS.items() if each.unit == unit), "ratio")
+    kind = "frequency" if unit == "Hz" else next((kind for kind, entry in KINDS.items() if entry.unit == unit), "ratio")
     return read_quantity(SUBJECT, text, kind, f"of {name}: ")
 
 

@@ -66,7 +66,7 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
     possible = [path for path in quantities if _why_fixed(path) is None]
     if not names:
         usual = (path for path in possible if quantities[path][0] and not _UNUSUAL.search(path))
-        return [_made(path, (path,), quantities) for path in usual]
+        return [_physical_value(path, (path,), quantities) for path in usual]
     chosen: list[PhysicalValue] = []
     for name in names:
         places = _matching(name, possible) or ((name,) if name in quantities else ())
@@ -87,7 +87,7 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
             pair = ((path, *quantities[path]) for path in (places[0], differing[0]))
             texts = (f"{path} = {value:g} {KINDS[kind].unit}".strip() for path, value, kind in pair)
             raise InputError("--with", f"{name!r} names values that differ, {' and '.join(texts)}", "make them alike")
-        chosen.append(_made(name, places, quantities))
+        chosen.append(_physical_value(name, places, quantities))
     return chosen
 
 
@@ -100,9 +100,11 @@ def _matching(name: str, paths: Sequence[str]) -> tuple[str, ...]:
     return tuple(filter(pattern.fullmatch, paths))
 
 
-def _made(name: str, places: tuple[str, ...], quantities: dict[str, tuple[float, str]]) -> PhysicalValue:
+def _physical_value(name: str, places: tuple[str, ...], quantities: dict[str, tuple[float, str]]) -> PhysicalValue:
     value, kind = quantities[places[0]]
-    followers = {at_tip: position for path in places for at_tip, position in _at_tip(path, quantities)}
+    followers: dict[str, float] = {}
+    for path in places:
+        followers |= _at_tip(path, quantities)
     return PhysicalValue(name, value, kind, followers, places)
 
 
@@ -113,11 +115,12 @@ def _at_tip(path: str, quantities: dict[str, tuple[float, str]]) -> Iterator[tup
         return
     beam = match[1]
     pieces = re.compile(rf"{re.escape(beam)}\.line\.pieces\[\d+\]\.length")
-    length = sum(value for other, (value, _) in quantities.items() if pieces.fullmatch(other)) or quantities[path][0]
-    for other, (value, _) in quantities.items():
-        along = other.startswith(f"{beam}.") or (beam == "beam" and other.startswith("motion."))
-        if along and other != path and _AT_TIP.search(other) and math.isclose(value, length, rel_tol=_NEAR_TIP):
-            yield other, value
+    lengths = [value for place, (value, _) in quantities.items() if pieces.fullmatch(place)]
+    length = sum(lengths) or quantities[path][0]
+    for place, (value, _) in quantities.items():
+        on_beam = place.startswith(f"{beam}.") or (beam == "beam" and place.startswith("motion."))
+        if on_beam and place != path and _AT_TIP.search(place) and math.isclose(value, length, rel_tol=_NEAR_TIP):
+            yield place, value
 
 
 def changed(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> dict[str, float]:
@@ -137,14 +140,14 @@ def changes_to(parameters: Sequence[PhysicalValue], values: Sequence[float]) -> 
 
 
 def _why_fixed(path: str) -> str | None:
-    return next((why for pattern, why in _FIXED.items() if re.match(pattern, path)), None)
+    return next((reason for pattern, reason in _FIXED.items() if re.match(pattern, path)), None)
 
 
 Bounds = Mapping[str, tuple[float | str, float | str]]  # by path, SI or text with a unit
 _NEAR, _FAR = 0.1, 10.0  # times the scenario's value: bounds where none are given
 
 
-def named(template: Template, names: Sequence[str], option: str) -> list[PhysicalValue]:
+def select_values(template: Template, names: Sequence[str], option: str) -> list[PhysicalValue]:
     """Physical values of these names; InputErrors name the option of the command line."""
     with naming(option):
         return physical_values(template, names)
@@ -153,12 +156,12 @@ def named(template: Template, names: Sequence[str], option: str) -> list[Physica
 def bounds_of(parameter: PhysicalValue, bounds: Bounds, option: str) -> tuple[float, float]:
     """Return the bounds of a value, by default a tenth to ten times it. InputError unless they contain the value."""
     if parameter.path in bounds:
-        low, high = (
-            read_quantity("--bounds", end, parameter.kind, f"of {parameter.path}: ")
-            if isinstance(end, str)
-            else float(end)
-            for end in bounds[parameter.path]
-        )
+        ends_given = []
+        for end in bounds[parameter.path]:
+            if isinstance(end, str):
+                end = read_quantity("--bounds", end, parameter.kind, f"of {parameter.path}: ")
+            ends_given.append(float(end))
+        low, high = ends_given
         if not low < high:
             raise InputError(
                 "--bounds", f"of {parameter.path} go from {low:g} to {high:g}", "give the smaller one first"
@@ -236,12 +239,12 @@ def _starting_points(start: Floats, limits: Floats, count: int) -> list[Floats]:
     share = sequence[: count - 1]
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = high / low
-        wide = (low > 0) & (ratio > _WIDE)
-        points = np.where(wide, low * ratio**share, low + share * (high - low))
+        far_apart = (low > 0) & (ratio > _WIDE)
+        points = np.where(far_apart, low * ratio**share, low + share * (high - low))
     return [start, *points]
 
 
-def agreeing(ends: Sequence[Floats], best: Floats, limits: Floats) -> int:
+def agreeing(ends: Sequence[Floats], solution: Floats, limits: Floats) -> int:
     """Number of searches that ended at the best values."""
     width = limits[:, 1] - limits[:, 0]
-    return sum(bool((np.abs(end - best) <= _SAME * width).all()) for end in ends)
+    return sum(bool((np.abs(end - solution) <= _SAME * width).all()) for end in ends)

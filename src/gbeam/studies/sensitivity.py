@@ -23,7 +23,18 @@ from gbeam.results.study import Study
 from gbeam.scenario.values import path_text
 from gbeam.studies.derivatives import Neighbourhood, Slopes
 from gbeam.studies.evaluate import Inquiry, of_loads
-from gbeam.studies.figures import Facts, Keys, answer_facts, find, node_at, offered, own_keys, unit_at, usual, value_at
+from gbeam.studies.figures import (
+    Facts,
+    Keys,
+    answer_facts,
+    check_figures,
+    find,
+    node_at,
+    own_keys,
+    unit_at,
+    usual_figures,
+    value_at,
+)
 from gbeam.studies.parameters import PhysicalValue, changes_to, physical_values
 from gbeam.studies.template import template_of
 
@@ -95,10 +106,10 @@ def sensitivity(
     [[-2.]]
     """
     template = template_of(scenario, overrides)
-    of = of or usual(template, verb)
+    of = of or usual_figures(template, verb)
     if not of:
         raise InputError(OPTION, "is missing", 'name figures: --of "tip.z.max_abs, verdict.tip"; list prints all')
-    offered(verb, of, OPTION)
+    check_figures(verb, of, OPTION)
     inquiry = Inquiry(template, verb, motion, at, options or {})
     chosen, refused = _possible(inquiry, physical_values(template, parameters), strict=bool(parameters))
     if not chosen:
@@ -106,11 +117,11 @@ def sensitivity(
     nearby = Neighbourhood(inquiry, chosen, progress=progress)
     facts = facts_of(nearby.answer)
     keys = tuple(figure(facts, name) for name in of)
-    motions, nearby.parts = needed(keys, nearby.case.tracks)
+    motions, nearby.parts = needed_parts(keys, nearby.case.tracks)
     nearby.inquiry = replace(inquiry, keys=keys)  # further answers hold only what these figures are read from
     slopes = nearby.slopes(lambda _, answer: values_at(facts_of(answer), keys), motions)
-    units = tuple(unit_at(facts, each) for each in keys)
-    kinks = _kinks(slopes, [each.value for each in chosen], units)
+    units = tuple(unit_at(facts, figure_keys) for figure_keys in keys)
+    kinks = _kinks(slopes, [value.value for value in chosen], units)
     kinked = [
         f"{name} has a kink in {chosen[j].path}: its derivative is the mean of those on either side"
         for k, name in enumerate(of)
@@ -122,9 +133,9 @@ def sensitivity(
         measures=tuple(of),
         units=units,
         figures=slopes.values,
-        parameters=tuple(each.path for each in chosen),
-        parameter_units=tuple(each.unit for each in chosen),
-        values=np.array([each.value for each in chosen]),
+        parameters=tuple(parameter.path for parameter in chosen),
+        parameter_units=tuple(parameter.unit for parameter in chosen),
+        values=np.array([parameter.value for parameter in chosen]),
         derivatives=slopes.slopes,
         errors=slopes.errors,
         methods=slopes.methods,
@@ -167,7 +178,7 @@ def figure(facts: Facts, name: str, option: str = OPTION) -> Keys:
     return keys
 
 
-def needed(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
+def needed_parts(keys: Sequence[Keys], tracks: Mapping[str, str]) -> tuple[list[str], dict[str, bool]]:
     """Motions whose responses the figures of ``run`` are read from, and whether their loads and axes are needed."""
     motions: dict[str, None] = {}  # an ordered set
     axes = False
@@ -186,7 +197,7 @@ def facts_of(answer: Any) -> Facts:
 
 
 def values_at(facts: Facts, keys: Sequence[Keys]) -> Floats:
-    return np.array([value_at(facts, each) for each in keys])
+    return np.array([value_at(facts, figure_keys) for figure_keys in keys])
 
 
 def _possible(
@@ -196,7 +207,7 @@ def _possible(
 
     `strict` raises InputError for the first of these.
     """
-    kept, refused = [], []
+    possible, refused = [], []
     for parameter in values:
         value = parameter.value
         try:
@@ -209,5 +220,5 @@ def _possible(
                 raise InputError("--with", problem, "leave it out: it has no derivative there") from None
             refused.append(f"{parameter.path}: {reason}")
             continue
-        kept.append(parameter)
-    return kept, refused
+        possible.append(parameter)
+    return possible, refused

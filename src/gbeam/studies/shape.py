@@ -182,18 +182,15 @@ def hub_of(case: Case, name: str | None) -> tuple[str, Hub]:
 
 def driven_joint(system: System, name: str | None) -> tuple[str, Hub]:
     """Coordinate that a command moves, `name` or the only one driven, and a hub with its rate, or a free one."""
-    commands = {
-        f"{owner}.{coordinate}": joint.rates.get(coordinate)
-        for owner, joint in system.joints.items()
-        for coordinate in (*joint.rates, *joint.efforts)
-    }
+    commands = {}
+    for owner, joint in system.joints.items():
+        for coordinate in (*joint.rates, *joint.efforts):
+            commands[f"{owner}.{coordinate}"] = joint.rates.get(coordinate)
     if name is None:
         if len(commands) != 1:
-            fix = (
-                f"choose from {', '.join(commands)}"
-                if commands
-                else 'give a joint a rate or an effort, such as "0 N m"'
-            )
+            fix = 'give a joint a rate or an effort, such as "0 N m"'
+            if commands:
+                fix = f"choose from {', '.join(commands)}"
             raise InputError("--joint", "is missing: it says what moves", fix)
         name = next(iter(commands))
     choice("--joint", name, movable(system))
@@ -228,10 +225,10 @@ def _grounded(case: Case, name: str | None) -> System:
 
 def _end(hub: Hub, name: str) -> float:
     """Time of the last corner of the scenario's own command, s."""
-    last = float(np.max(hub.corners(np.inf), initial=0.0))
-    if not last > 0:
+    end = float(np.max(hub.corners(np.inf), initial=0.0))
+    if not end > 0:
         raise InputError("--duration", f"is missing, and {name} has no end of its own", "give it, in s")
-    return last
+    return end
 
 
 def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
@@ -258,9 +255,9 @@ def scenario_with(
     if "joints" in data:
         name, _, coordinate = command.motion.rpartition(".")
         key = "effort" if command.kind in ("torque", "force") else "rate"
-        before = data["joints"][name].get(key)
-        several = isinstance(before, dict) and "profile" not in before
-        data["joints"][name][key] = {**before, coordinate: table} if several else table
+        command_before = data["joints"][name].get(key)
+        several = isinstance(command_before, dict) and "profile" not in command_before
+        data["joints"][name][key] = {**command_before, coordinate: table} if several else table
     else:
         data["motion"] = {command.motion: {**data["motion"][command.motion], command.kind: table}}
     lasting = max(base.response.duration or 0.0, _AFTER * command.duration)

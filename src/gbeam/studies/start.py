@@ -35,7 +35,7 @@ class OverTime:
     names: tuple[str, ...] = ()
     count: int = 0
 
-    def of(self, inquiry: Inquiry, case: Case) -> Inquiry:
+    def add_to(self, inquiry: Inquiry, case: Case) -> Inquiry:
         """Return the inquiry with these histories, at times over their responses in `case`."""
         if not self.names:
             return inquiry
@@ -96,16 +96,16 @@ def start(
                 rows.append(Row(number, (math.nan,) * figures, *ended(facts)))
                 continue
             inquiry = replace(inquiry, keys=keys)
-            units = tuple(unit_at(facts, each) for each in keys)
-            truths = tuple(isinstance(node_at(facts, each), bool) for each in keys)
-        inquiry = settled(histories.of(inquiry, case), case, len(cases))
+            units = tuple(unit_at(facts, figure_keys) for figure_keys in keys)
+            truths = tuple(isinstance(node_at(facts, figure_keys), bool) for figure_keys in keys)
+        inquiry = settled(histories.add_to(inquiry, case), case, len(cases))
         task = (number, cases.overrides(number))
         rows += computed(inquiry, [task]) if inquiry.together else (inquiry.measured(number, case, facts),)
         seconds = time.perf_counter() - begin
-        following = missing[index + 1 : index + 1 + min(_FEW, width(inquiry))] or missing[:1]
-        following = [each for each in following if all(each != row.case for row in rows)]
-        if following and (seconds < _IMPORTS or inquiry.together):
-            timed, seconds = _timed(inquiry, cases, following)
+        next_cases = missing[index + 1 : index + 1 + min(_FEW, width(inquiry))] or missing[:1]
+        next_cases = [candidate for candidate in next_cases if all(candidate != row.case for row in rows)]
+        if next_cases and (seconds < _IMPORTS or inquiry.together):
+            timed, seconds = _timed(inquiry, cases, next_cases)
             rows += timed
         return Start(inquiry, units, truths, example, tuple(rows), seconds)
     assert reason is not None
@@ -129,13 +129,13 @@ def go_on(
     example = inquiry.template.changed(cases.overrides(possible[0].case))
     if histories.names or inquiry.together:
         case = example.built()
-        inquiry = settled(histories.of(inquiry, case), case, len(cases))
+        inquiry = settled(histories.add_to(inquiry, case), case, len(cases))
     rows: list[Row] = []
     seconds = 0.0
-    few = min(_FEW, width(inquiry))
+    count = min(_FEW, width(inquiry))
     # The first time includes imports and compilation. Where these may be most of it, a second batch is timed.
-    for first in (0, few):
-        chosen = missing[first : first + few]
+    for begin in (0, count):
+        chosen = missing[begin : begin + count]
         if chosen:
             timed, seconds = _timed(inquiry, cases, chosen)
             rows += timed

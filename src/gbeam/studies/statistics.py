@@ -80,10 +80,10 @@ def _moments_and_quantiles(draws: Floats) -> Floats:
     for share in QUANTILES.values():
         # The draws below the quantile are a binomial number: P(X_(low) <= quantile <= X_(high)) >= the confidence.
         low, high = int(binom.ppf(tail, n, share)), int(binom.ppf(1 - tail, n, share)) + 1  # ranks, from 1
-        unknown = np.full_like(mean, math.nan)
-        below = draws[:, low - 1] if low >= 1 else unknown
-        above = draws[:, high - 1] if high <= n else unknown
-        rows.append(np.stack([np.quantile(draws, share, axis=-1), below, above], axis=-1))
+        nans = np.full_like(mean, math.nan)
+        lower = draws[:, low - 1] if low >= 1 else nans
+        upper = draws[:, high - 1] if high <= n else nans
+        rows.append(np.stack([np.quantile(draws, share, axis=-1), lower, upper], axis=-1))
     return np.stack(rows, axis=1)
 
 
@@ -101,11 +101,11 @@ def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
     bounds = np.full((*values.shape[:-1], d, 2, len(BOUNDS)), math.nan)
     count = np.zeros(values.shape[:-1], dtype=int)
     for index in np.ndindex(values.shape[:-1]):
-        whole = blocks[index][np.isfinite(blocks[index]).all(axis=-1)]
-        count[index] = len(whole)
-        if len(whole) < LEAST or np.ptp(whole) <= 1e-12 * np.abs(whole).max():
+        complete = blocks[index][np.isfinite(blocks[index]).all(axis=-1)]
+        count[index] = len(complete)
+        if len(complete) < LEAST or np.ptp(complete) <= 1e-12 * np.abs(complete).max():
             continue
-        samples = tuple((whole - whole.mean()).T)  # a mean far from zero would spread the estimates
+        samples = tuple((complete - complete.mean()).T)  # a mean far from zero would spread the estimates
         share = _first_and_total(*samples)
         spread = bootstrap(
             samples, _first_and_total, paired=True, vectorized=True, n_resamples=RESAMPLES, batch=TOGETHER,

@@ -22,8 +22,8 @@ from gbeam.questions import Options
 from gbeam.results.cases import Sweep
 from gbeam.studies.cases import Cases, read_cases
 from gbeam.studies.evaluate import Function, Inquiry, Row, Task, may_share, width
-from gbeam.studies.figures import HISTORY, TIMES, offered, usual
-from gbeam.studies.journal import Journal, identity, opened
+from gbeam.studies.figures import HISTORY, TIMES, check_figures, usual_figures
+from gbeam.studies.journal import Journal, identity, open_journal
 from gbeam.studies.start import NO_HISTORIES, OverTime, Start, go_on, start
 from gbeam.studies.statistics import indices, statistics
 from gbeam.studies.template import template_of
@@ -139,7 +139,7 @@ def sweep(
         sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
     verb = verb or "run"
     if not (measure or histories):
-        measure = usual(template, verb, judged=True)
+        measure = usual_figures(template, verb, judged=True)
     names = tuple(measure)
     if not (names or histories):
         fix = 'name figures: --measure "tip.z.max_abs, verdict.tip"; list prints all'
@@ -147,18 +147,19 @@ def sweep(
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
         raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
-    cases = read_cases(_texts(over), samples, sampler or "sobol", seed := seed or 0, template.distributions)
+    seed = seed or 0
+    cases = read_cases(_texts(over), samples, sampler or "sobol", seed, template.distributions)
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
     if not isinstance(measure, Mapping):
-        offered(verb, names)
+        check_figures(verb, names)
     functions = tuple(measure.values()) if isinstance(measure, Mapping) else ()
-    share = not functions and may_share(verb, [each.path for each in cases.variations])
+    share = not functions and may_share(verb, [variation.path for variation in cases.variations])
     inquiry = Inquiry(template, verb, motion, at, options or {}, functions=functions, together=share)
-    known = {} if store is None else identity(inquiry, cases, names, [over_time.names, over_time.count])
-    journal, done = opened(store, resume, known)
-    kept = {row.case for row in done}
-    missing = [number for number in range(len(cases)) if number not in kept] if kept else range(len(cases))
+    sweep_identity = {} if store is None else identity(inquiry, cases, names, [over_time.names, over_time.count])
+    journal, done = open_journal(store, resume, sweep_identity)
+    stored = {row.case for row in done}
+    missing = [number for number in range(len(cases)) if number not in stored] if stored else range(len(cases))
     several = workers > 1 and scheduler is None and len(missing) > 1
     with processes(workers, functions) if several else nullcontext() as pool:
         if journal is not None and done:
@@ -168,8 +169,8 @@ def sweep(
         inquiry = begun.inquiry
         _confirm(len(missing), begun.seconds / workers, confirmed)
         tried = {row.case for row in begun.rows}
-        left = len(missing) - len(tried)
-        size = int(min(_LONGEST, KEPT / max(begun.seconds, 1e-4), left / (4 * workers)))
+        remaining = len(missing) - len(tried)
+        size = int(min(_LONGEST, KEPT / max(begun.seconds, 1e-4), remaining / (4 * workers)))
         tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
         batches = _batches(tasks, max(1, size // width(inquiry)) * width(inquiry))
         if scheduler is not None:
@@ -184,9 +185,11 @@ def sweep(
             with journal.writing(resume=resume):
                 journal.add(begun.rows)
                 rows += _collected(computed, rows, len(cases), progress, journal)
-    answer = assembled(template.title([each.path for each in cases.variations]), cases, names, begun, rows, seed)
-    said = () if journal is None else journal.warnings
-    return replace(answer, warnings=said, notes=template.notes, provenance=template.provenance)
+    answer = assembled(
+        template.title([variation.path for variation in cases.variations]), cases, names, begun, rows, seed
+    )
+    warnings = () if journal is None else journal.warnings
+    return replace(answer, warnings=warnings, notes=template.notes, provenance=template.provenance)
 
 
 def _over_time(histories: tuple[str, ...], times: int, verb: str) -> OverTime:
@@ -240,21 +243,21 @@ def _batches(tasks: Iterator[Task], size: int) -> Iterator[list[Task]]:
 
 def _collected(
     batches: Iterator[list[Row]],
-    before: Sequence[Row],
+    rows_before: Sequence[Row],
     count: int,
     progress: Progress,
     journal: Journal | None = None,
 ) -> list[Row]:
     """Rows of all batches. Each batch is written to the journal and reported before the next one is awaited."""
     rows: list[Row] = []
-    failed = sum(row.failed for row in before)
-    tell(progress, len(before), failed, count)
+    failed = sum(row.failed for row in rows_before)
+    tell(progress, len(rows_before), failed, count)
     for batch in batches:
         if journal is not None:
             journal.add(batch)
         rows += batch
         failed += sum(row.failed for row in batch)
-        tell(progress, len(before) + len(rows), failed, count)
+        tell(progress, len(rows_before) + len(rows), failed, count)
     return rows
 
 
@@ -290,9 +293,9 @@ def with_statistics(sweep: Sweep, cases: Cases, truths: Mapping[str, bool], seed
     """Return the sweep with statistics over its samples, which are the last dimension of its measures."""
     independent = slice(cases.independent)
     # Figures of cases that were cut off are left out, such as the peak before a run diverged.
-    done = sweep.computed
-    measures = {name: np.where(done, values, math.nan) for name, values in sweep.measures.items()}
-    histories = {name: np.where(done[..., None], values, math.nan) for name, values in sweep.histories.items()}
+    computed = sweep.computed
+    measures = {name: np.where(computed, values, math.nan) for name, values in sweep.measures.items()}
+    histories = {name: np.where(computed[..., None], values, math.nan) for name, values in sweep.histories.items()}
     estimates = {name: statistics(values[..., independent], truth=truths[name]) for name, values in measures.items()}
     estimates |= {
         name: statistics(np.swapaxes(values[..., independent, :], -1, -2)) for name, values in histories.items()

@@ -78,7 +78,7 @@ class ScenarioTemplate:
         source = self.scenario.source
         assert source is not None
         digest = hashlib.sha256(source.text.encode()).hexdigest()
-        return {"scenario": digest, "changes": [each.text for each in source.overrides]}
+        return {"scenario": digest, "changes": [change.text for change in source.overrides]}
 
     def changed(self, changes: Sequence[str]) -> ScenarioTemplate:
         """The template with changes PATH=VALUE; GbeamError if one is impossible."""
@@ -118,7 +118,7 @@ class _BeamBody:
         """The structure with some arguments changed, at those of its stations that lie within the beam."""
         arguments = self.arguments | changes
         model, beam = arguments.pop("model"), Beam(**arguments)
-        return assemble(beam, model, [at for at in self.structure.stations[:-1] if at < beam.length])
+        return assemble(beam, model, [station for station in self.structure.stations[:-1] if station < beam.length])
 
 
 @dataclass(frozen=True)
@@ -182,25 +182,25 @@ class CaseTemplate:
         """Template of the case with other values, from texts such as "beam.length=250 mm"."""
         if not changes:
             return self
-        wanted: dict[Any, Any] = {}  # a tree: all of one object at once, as a mass at the tip moves with the length
+        tree: dict[Any, Any] = {}  # a tree: all of one object at once, as a mass at the tip moves with the length
         for text in changes:
             name, equals, value = text.partition("=")
             steps = parse_path(name.strip())
             if not equals or steps is None:
                 raise InputError(text, "is not PATH=VALUE", 'write it such as "beam.length=250 mm"')
-            node = wanted
+            node = tree
             for step in steps[:-1]:
                 if not isinstance(node.get(step), dict):  # of several changes of one place the last counts
                     node[step] = {}
                 node = node[step]
             node[steps[-1]] = value.strip()
-        parts = _with(self._tree, _KINDS, wanted, ())
+        parts = _replace_values(self._tree, _KINDS, tree, ())
         motions: dict[str, Any] = parts.pop("motion")
         for machine, flight in self.case.tracks.items():
             if motions.get(flight) is not self.case.motions.get(flight):
                 motions[machine] = motions[machine].altered(flight=motions[flight])
         case = replace(self.case, response=parts.pop("response"), motions=motions)
-        if not parts.keys() & wanted.keys():
+        if not parts.keys() & tree.keys():
             return CaseTemplate(case)
         if BEAM in parts:
             return CaseTemplate(case.remade(**parts))
@@ -219,8 +219,9 @@ class CaseTemplate:
         node: Any = self._tree
         kinds = _KINDS
         for step in parse_path(path) or ():
-            node, kinds = _below(node, kinds).get(step, (None, ""))
-        return KINDS[kind].unit if (kind := common_kind(kinds)) else ""
+            node, kinds = _children(node, kinds).get(step, (None, ""))
+        kind = common_kind(kinds)
+        return KINDS[kind].unit if kind else ""
 
 
 def _joined(system: System, parts: dict[str, Any]) -> System:
@@ -242,7 +243,7 @@ def template_of(
     return ScenarioTemplate(scenario_of(scenario, overrides, distributions=distributions))
 
 
-def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
+def _children(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
     """Children of a node by name or number. Each has the kinds of quantity of its own name, or else
     those of the node.
     """
@@ -255,12 +256,12 @@ def _below(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
     return {name: (child, kind_of_argument(owner, name, arguments) or kinds) for name, child in arguments.items()}
 
 
-def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
+def _replace_values(node: Any, kinds: Kinds, changes: Any, path: Path) -> Any:
     """The node with the values of `wanted`, a tree of texts in SI or with a unit, in place of its own values."""
-    if isinstance(wanted, str):
-        return _read(node, common_kind(kinds), wanted, path)
-    children = _below(node, kinds)
-    for step in wanted:
+    if isinstance(changes, str):
+        return _read(node, common_kind(kinds), changes, path)
+    children = _children(node, kinds)
+    for step in changes:
         if step not in children:
             varied = []
             for name, (child, _) in children.items():
@@ -268,7 +269,7 @@ def _with(node: Any, kinds: Kinds, wanted: Any, path: Path) -> Any:
                     varied.append(str(name))
             fix = advise(str(step), varied) if varied else "vary one of its numbers"
             raise InputError(path_text((*path, step)), "is no value that the case gives", fix)
-    changed = {step: _with(*children[step], texts, (*path, step)) for step, texts in wanted.items()}
+    changed = {step: _replace_values(*children[step], texts, (*path, step)) for step, texts in changes.items()}
     values = {step: child for step, (child, _) in children.items()} | changed
     if isinstance(node, Mapping):
         return values
@@ -299,5 +300,5 @@ def _numbers(node: Any, kinds: Kinds, path: Path) -> Iterator[tuple[Path, float,
     if isinstance(node, float) or (hasattr(node, "dtype") and np.ndim(node) == 0):
         yield path, float(node), common_kind(kinds) or "ratio"
         return
-    for step, (child, its_kinds) in _below(node, kinds).items():
+    for step, (child, its_kinds) in _children(node, kinds).items():
         yield from _numbers(child, its_kinds, (*path, step))

@@ -112,10 +112,16 @@ class Workers:
         That case is tried once more. If it ends a process again, its row says that it failed.
         """
         pending, retries, suspects = iter(batches), deque[Sequence[Task]](), set[int]()
+
+        def send_next(worker: _Worker) -> None:
+            batch = retries.popleft() if retries else next(pending, None)
+            if batch:
+                worker.send(inquiry, batch)
+
         while True:
             for worker in self._workers:
-                if worker.batch is None and (batch := retries.popleft() if retries else next(pending, None)):
-                    worker.send(inquiry, batch)
+                if worker.batch is None:
+                    send_next(worker)
             busy = {worker.pipe: k for k, worker in enumerate(self._workers) if worker.batch}
             if not busy:
                 return
@@ -142,8 +148,7 @@ class Workers:
                 worker.batch = None
                 if isinstance(answer, str):
                     raise RuntimeError(f"a worker failed:\n{answer}")
-                if following := retries.popleft() if retries else next(pending, None):
-                    worker.send(inquiry, following)  # while this process keeps the rows
+                send_next(worker)  # which computes while this process keeps the rows
                 yield answer
 
     def close(self) -> None:
@@ -166,7 +171,7 @@ class Workers:
         try:
             problem = worker.pipe.recv()
         except (EOFError, OSError):
-            if any(other.ready for other in self._workers):
+            if any(process.ready for process in self._workers):
                 raise EOFError from None  # it was killed as it began
             worker.process.join()
             fix = 'put what your script does under if __name__ == "__main__":, or leave the workers out'
@@ -182,7 +187,7 @@ class Workers:
 def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
     """Start processes, which import while this one goes on, and close them at the end."""
     inherited = variables() | {_THREADS: os.environ.get(_THREADS, "1")}
-    before = {name: os.environ.get(name) for name in inherited}
+    environment_before = {name: os.environ.get(name) for name in inherited}
     os.environ |= inherited
     try:
         workers = Workers(count, functions)
@@ -191,7 +196,7 @@ def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
         finally:
             workers.close()
     finally:
-        for name, value in before.items():
+        for name, value in environment_before.items():
             del os.environ[name]
             if value is not None:
                 os.environ[name] = value
@@ -200,14 +205,14 @@ def processes(count: int, functions: Sequence[Function]) -> Iterator[Workers]:
 @contextmanager
 def _program(*, needed: bool, path: list[str]) -> Iterator[None]:
     """Let new processes import from `path`, and the main program only if it is `needed`, as it defines functions."""
-    main, before = sys.modules["__main__"], sys.path
+    main, path_before = sys.modules["__main__"], sys.path
     if not needed or not os.path.exists(getattr(main, "__file__", None) or ""):  # of a notebook, or typed in
         sys.modules["__main__"] = ModuleType("__main__")
     sys.path = path
     try:
         yield
     finally:
-        sys.modules["__main__"], sys.path = main, before
+        sys.modules["__main__"], sys.path = main, path_before
 
 
 def _work(pipe: Connection, functions: bytes) -> None:
@@ -299,7 +304,7 @@ def _connected(address: str) -> Iterator[Any]:
         try:
             client = Quiet(address, timeout=CONNECTION, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
-            problem = f"{address} does not answer ({_first(error)})"
+            problem = f"{address} does not answer ({_first_line(error)})"
             raise InputError(_OPTION, problem, "give the address that `dask scheduler` prints") from None
         yield from _with_worker(client, address)
 
@@ -358,7 +363,7 @@ class _Dispatch:
                     continue
                 yield self._received(future, self.under_way.pop(future))
         except _LOST as error:
-            self._interrupted(f"the scheduler at {self.address} is lost ({_first(error) or type(error).__name__})")
+            self._interrupted(f"the scheduler at {self.address} is lost ({_first_line(error) or type(error).__name__})")
 
     def _send(self) -> None:
         """Submit batches until enough are under way. Cases of killed workers come first, each alone."""
@@ -392,7 +397,7 @@ class _Dispatch:
             raise InputError(_OPTION, problem, "install the same version everywhere; --resume does the rest") from None
         except (ImportError, AttributeError) as error:  # what was sent cannot be unpacked there
             fix = "install gbeam, the same version, and the modules of measures on every worker"
-            raise InputError(_OPTION, f"has a worker that lacks what it needs ({_first(error)})", fix) from None
+            raise InputError(_OPTION, f"has a worker that lacks what it needs ({_first_line(error)})", fix) from None
 
     def _look(self) -> None:
         """Count the workers' threads, at most once a second. ComputationError if there was none for a minute."""
@@ -411,6 +416,6 @@ class _Dispatch:
         raise ComputationError("interrupted", f"{message}; what is done is kept: --resume does the rest") from None
 
 
-def _first(error: BaseException) -> str:
+def _first_line(error: BaseException) -> str:
     """First line of an exception's message."""
     return (str(error).strip().splitlines() or [""])[0]
