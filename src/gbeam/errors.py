@@ -63,7 +63,7 @@ class InputError(GbeamError, ValueError):
 
 @contextmanager
 def naming(where: str | Mapping[str, str]) -> Iterator[None]:
-    """Give InputErrors raised inside another place; a mapping gives new places, or their beginnings, by the old."""
+    """Give another place to InputErrors raised inside. A mapping has the new place of each old one or its beginning."""
     try:
         yield
     except InputError as error:

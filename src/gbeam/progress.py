@@ -53,8 +53,8 @@ class Bar:
             self._outer(*news)
             return
         what, share = news if len(news) == 2 else _of_cases(*news)
-        before, done = self._now
-        if what != before or share < done:
+        previous, done = self._now
+        if what != previous or share < done:
             self._since = monotonic()
         self._now = what, share
 
@@ -63,7 +63,7 @@ class Bar:
         what, share = self._now
         if not share:
             return on_one_line(what)
-        return f"{on_one_line(what)}: {share:.0%}{_left(monotonic() - self._since, share)}"
+        return f"{on_one_line(what)}: {share:.0%}{_time_left(monotonic() - self._since, share)}"
 
     def _show(self) -> None:
         """Draw a bar after some patience, or write lines if there is no terminal, until the computation is over."""
@@ -156,9 +156,9 @@ def _interval() -> float | None:
         return None
 
 
-def _left(passed: float, share: float) -> str:
+def _time_left(passed: float, share: float) -> str:
     """Time left in words; empty before 2 % and a second are done."""
     if share < 0.02 or passed < 1:
         return ""
-    left = passed * (1 - share) / share
-    return f", {left:.0f} s left" if left < 100 else f", {left / 60:.0f} min left"
+    remaining = passed * (1 - share) / share
+    return f", {remaining:.0f} s left" if remaining < 100 else f", {remaining / 60:.0f} min left"

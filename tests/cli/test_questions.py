@@ -114,9 +114,9 @@ def test_it_is_swept_differentiated_and_minimised() -> None:
 def test_it_is_in_the_app_and_in_the_schema() -> None:
     code = """
 import json, question_of_droop
-from gbeam.app.verbs import offered
+from gbeam.app.verbs import verb_facts
 from gbeam.scenario import json_schema
-print(json.dumps([offered(), json.loads(json_schema())]))
+print(json.dumps([verb_facts(), json.loads(json_schema())]))
 """
     verbs, schema = python(code)
     (load,) = [each for each in verbs["droop"]["options"] if each["name"] == "load"]

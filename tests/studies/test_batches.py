@@ -13,7 +13,7 @@ import gbeam as gb
 from gbeam.analysis.response import record
 from gbeam.integrate import side_by_side
 from gbeam.scenario.load import load
-from gbeam.studies.evaluate import Inquiry, may_share, rows, settled
+from gbeam.studies.evaluate import Inquiry, may_share, rows, settle
 from gbeam.studies.template import ScenarioTemplate
 
 LEVEL = "motion.flight.acceleration.z.level"
@@ -133,8 +133,8 @@ def test_few_cases_of_an_automatic_step_are_computed_one_by_one(fast: Path) -> N
             together=True,
         )
         case = inquiry.case(())
-        assert settled(inquiry, case, cases).together == together
-        assert not settled(inquiry, case.remade(model=replace(case.model, automatic=True)), cases).together
+        assert settle(inquiry, case, cases).together == together
+        assert not settle(inquiry, case.remade(model=replace(case.model, automatic=True)), cases).together
 
 
 def test_many_cases_of_an_automatic_step_have_the_figures_of_their_own_runs(fast: Path) -> None:

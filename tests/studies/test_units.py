@@ -8,7 +8,7 @@ import pytest
 
 from gbeam.scenario.load import loads
 from gbeam.studies.evaluate import Inquiry
-from gbeam.studies.figures import Facts, _figures, declared, find, own_keys, unit_at
+from gbeam.studies.figures import Facts, _figures, declared_unit, find, own_keys, unit_at
 from gbeam.studies.template import ScenarioTemplate
 
 from ..scenarios import FAST, FREE_HUB, RAMPS, SLEWING
@@ -51,7 +51,7 @@ def facts_of(text: str, verb: str, motion: str | None) -> Facts:
 def test_every_figure_has_a_unit_declared(text: str, verb: str, motion: str | None) -> None:
     facts = facts_of(text, verb, motion)
     places = [keys for keys, _ in _figures(facts) if keys[-1] not in ("written", "reason")]  # null or words
-    assert places and [keys for keys in places if declared(facts, keys) is None] == []
+    assert places and [keys for keys in places if declared_unit(facts, keys) is None] == []
 
 
 @pytest.mark.parametrize("name", ["torque", "force", "stress-test", "error_case", "step", "time", "axes"])

@@ -61,7 +61,7 @@ def regular(folder: Path, name: str) -> Path:
     return file
 
 
-def ensured(folder: Path) -> Path:
+def ensure_folder(folder: Path) -> Path:
     """Make a folder for its owner only, unless it exists; return it."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     return folder
@@ -87,7 +87,7 @@ def store(folder: Path, name: str, content: bytes, read: Callable[[Path], T]) ->
         raise InputError(
             name, f"has more than {LARGEST // 2**20} MiB", "cut or resample the record, or mesh more coarsely"
         )
-    if len(names(ensured(folder))) >= MANY:
+    if len(names(ensure_folder(folder))) >= MANY:
         raise InputError(name, f"is one too many: {MANY} files are kept", f"delete some in {folder}")
     with TemporaryDirectory(prefix=_NEW, dir=folder) as hidden:
         file = Path(hidden) / name
@@ -100,7 +100,7 @@ def store(folder: Path, name: str, content: bytes, read: Callable[[Path], T]) ->
     return answer
 
 
-def tidied(folder: Path) -> None:
+def tidy(folder: Path) -> None:
     """Remove what an earlier server left in a folder as it ended."""
     for incomplete in folder.glob(f"{_NEW}*"):
         shutil.rmtree(incomplete, ignore_errors=True)

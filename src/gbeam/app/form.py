@@ -117,9 +117,12 @@ def _entry(schema: Node, parent: Any, path: Path, *, required: bool) -> Node:
 
 def _table(schema: Node, tables: list[Node], raw: Any, path: Path) -> Node:
     table = _table_of(tables, raw)
-    entries = [] if table is None or not isinstance(raw, dict) else _entries(table, raw, path)
-    choice = "" if table is None or not isinstance(raw, dict) else tag_of(table)[1]
-    description = "" if table is None or len(tables) == 1 else table.get("description", "")
+    entries: list[Node] = []
+    choice = description = ""
+    if table is not None and isinstance(raw, dict):
+        entries, choice = _entries(table, raw, path), tag_of(table)[1]
+    if table is not None and len(tables) > 1:
+        description = table.get("description", "")
     return {"kind": "table", "options": _words(schema), "choice": choice, "about": description, "inside": entries}
 
 

@@ -22,7 +22,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from gbeam.app.files import SHORT, ensured, names, private, regular, write
+from gbeam.app.files import SHORT, ensure_folder, names, private, regular, write
 from gbeam.app.verbs import INPUT, verbs
 from gbeam.errors import InputError
 from gbeam.guards.importing import variables
@@ -100,15 +100,15 @@ class Jobs:
         now = datetime.now()  # first in the id, as runs are computed in the order of their ids
         number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
         facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
-        hidden = ensured(self.folder / f".new-{number}")
+        hidden = ensure_folder(self.folder / f".new-{number}")
         try:
-            inputs = ensured(hidden / INPUT)
+            inputs = ensure_folder(hidden / INPUT)
             for record in records:
                 write(inputs / record.name, record.read_bytes())
             scenario = text.encode("utf-8")
             write(inputs / _SCENARIO, scenario)
             if "--write" in arguments:
-                write(ensured(hidden / _BEFORE) / _SCENARIO, scenario)
+                write(ensure_folder(hidden / _BEFORE) / _SCENARIO, scenario)
             write(hidden / _STATE, json.dumps({"state": "queued", **facts}).encode())
             with self._lock:
                 jobs = self.list()
@@ -326,7 +326,7 @@ def _command(state: Mapping[str, Any]) -> list[str]:
 
 
 def _state(place: Path, default: str) -> str:
-    """State of a run by its answer, such as done or not accepted; `otherwise` if the answer does not say it."""
+    """State of a run by its answer, such as done or not accepted; `default` if the answer does not say it."""
     try:
         answer = json.loads((place / _ANSWER).read_text(encoding="utf-8"))
         state = str(answer.get("state") or answer["outcome"])

@@ -57,7 +57,7 @@ def create_app(folder: Path) -> FastAPI:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         asyncio.get_running_loop().set_exception_handler(_exception_handler(jobs.complain))
-        files.tidied(records)
+        files.tidy(records)
         jobs.start()
         yield
         await jobs.stop()
@@ -167,7 +167,7 @@ def create_app(folder: Path) -> FastAPI:
     @app.get("/api/verbs")
     def offered() -> dict[str, Any]:
         """Verbs for a scenario, with their options."""
-        return verbs.offered()
+        return verbs.verb_facts()
 
     @app.post("/api/runs")
     def submit(
@@ -267,7 +267,7 @@ def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
             signal.raise_signal(self.told)
 
     with hold_lock(
-        files.ensured(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"
+        files.ensure_folder(folder) / ".lock", "--folder", "open the address that it printed, or name another folder"
     ):
         try:
             opened = listening(port)

@@ -94,7 +94,7 @@ def _option(name: str, argument: Argument) -> Option:
     return Option(name, words, example=example, choices=choices, many=count, of=suggestions)
 
 
-def offered() -> dict[str, Any]:
+def verb_facts() -> dict[str, Any]:
     """Return the verbs and their options, for JSON."""
     return {name: asdict(verb) for name, verb in verbs().items()}
 

@@ -53,9 +53,9 @@ def has_unit(value: Any) -> bool:
 def as_array(value: Any) -> Any:
     """A value, or list of values, as a float64 array of NumPy or JAX; TypeError of text and quantities with a unit."""
     listed = value if isinstance(value, (tuple, list)) else (value,)
-    for each in listed:
-        if isinstance(each, str) or has_unit(each):
-            raise TypeError(f"{each!s:.60} is not a bare number in SI")
+    for entry in listed:
+        if isinstance(entry, str) or has_unit(entry):
+            raise TypeError(f"{entry!s:.60} is not a bare number in SI")
     return namespace(*listed).asarray(value, dtype=float)
 
 

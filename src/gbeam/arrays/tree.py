@@ -42,22 +42,22 @@ class Value:
         cls.__repr__ = cls.__repr__  # type: ignore[method-assign]  # else a dataclass gets one of all its numbers
 
     def __repr__(self) -> str:
-        return shown(self)
+        return one_line(self)
 
     def __eq__(self, other: object) -> bool:
-        return _same(self, other) if type(other) is type(self) else NotImplemented
+        return _alike(self, other) if type(other) is type(self) else NotImplemented
 
     def __hash__(self) -> int:
         # Words alone: 1 equals 1.0 and an array of it, whose hashes differ.
-        return hash((type(self), *(each for each in vars(self).values() if isinstance(each, str))))
+        return hash((type(self), *(value for value in vars(self).values() if isinstance(value, str))))
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(static, dataclasses.field))
 def record(cls: type[_T]) -> type[_T]:
     """Make a class a frozen dataclass, a pytree, equal by its fields; an own ``__init__`` uses :func:`assign`."""
-    written = {name: name in cls.__dict__ for name in ("__init__", "__repr__")}
-    record_type = dataclasses.dataclass(frozen=True, eq=False, init=not written["__init__"], repr=False)(cls)
-    for method in (Value.__eq__, __hash__, *(() if written["__repr__"] else (Value.__repr__,))):
+    own_methods = {name: name in cls.__dict__ for name in ("__init__", "__repr__")}
+    record_type = dataclasses.dataclass(frozen=True, eq=False, init=not own_methods["__init__"], repr=False)(cls)
+    for method in (Value.__eq__, __hash__, *(() if own_methods["__repr__"] else (Value.__repr__,))):
         setattr(record_type, method.__name__, method)
     register(record_type)
     if "jax" in sys.modules:  # whoever imported it may hand records to it before any array
@@ -69,7 +69,7 @@ def __hash__(self: Any) -> int:
     return hash((type(self), *(getattr(self, name) for name in leaves_and_statics(type(self))[1])))  # type: ignore[arg-type]
 
 
-def _same(one: Any, other: Any) -> bool:
+def _alike(one: Any, other: Any) -> bool:
     """True if two values are alike.
 
     NaN is like NaN. A list, a tuple and an array of the same numbers are alike. What JAX traces is only like itself.
@@ -78,14 +78,14 @@ def _same(one: Any, other: Any) -> bool:
         return True
     if isinstance(one, (tuple, list)) or isinstance(other, (tuple, list)):
         both_ordered = all(isinstance(value, (tuple, list)) or np.ndim(value) for value in (one, other))
-        return both_ordered and len(one) == len(other) and all(map(_same, one, other))
+        return both_ordered and len(one) == len(other) and all(map(_alike, one, other))
     if isinstance(one, dict):
         if type(one) is not type(other) or one.keys() != other.keys():
             return False
-        return all(_same(one[key], other[key]) for key in one)
+        return all(_alike(one[key], other[key]) for key in one)
     if dataclasses.is_dataclass(one):
         compared = [field.name for field in dataclasses.fields(one) if field.compare]
-        return type(one) is type(other) and all(_same(getattr(one, name), getattr(other, name)) for name in compared)
+        return type(one) is type(other) and all(_alike(getattr(one, name), getattr(other, name)) for name in compared)
     if is_traced(one, other):
         return False
     if hasattr(one, "tocsr") and hasattr(other, "tocsr"):
@@ -108,7 +108,7 @@ def arguments_of(value: Any) -> dict[str, Any] | None:
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return None
     if type(value).__dataclass_params__.init:  # type: ignore[attr-defined]
-        return {each.name: getattr(value, each.name) for each in dataclasses.fields(value) if each.init}
+        return {field.name: getattr(value, field.name) for field in dataclasses.fields(value) if field.init}
     names = list(inspect.signature(type(value)).parameters)
     return {name: getattr(value, name) for name in names} if all(hasattr(value, name) for name in names) else None
 
@@ -120,7 +120,7 @@ def altered(value: Any, **changes: Any) -> Any:
     return type(value)(**{**(arguments_of(value) or {}), **changes})
 
 
-def shown(value: Any) -> str:
+def one_line(value: Any) -> str:
     """An object on one line: the name of its class, and the arguments that differ from their defaults."""
     arguments = arguments_of(value)
     if arguments is None:
@@ -132,27 +132,27 @@ def shown(value: Any) -> str:
             defaults[field.name] = field.default_factory()
     unequal = object()  # to anything
     words = [
-        f"{name}={_short(argument)}"
+        f"{name}={_shorten(argument)}"
         for name, argument in arguments.items()
-        if not _same(argument, defaults.get(name, unequal))
+        if not _alike(argument, defaults.get(name, unequal))
     ]
     return f"{type(value).__name__}({', '.join(words)})"
 
 
-def _short(value: Any) -> str:
+def _shorten(value: Any) -> str:
     """A value as short text: many numbers by their count, what is longer than a line's share by its class."""
     if is_traced(value):
         return "traced"
     if hasattr(value, "dtype"):
-        few = hasattr(value, "tolist") and np.size(value) <= _FEW  # a sparse matrix has none
-        return _short(value.tolist()) if few else f"<{' x '.join(map(str, value.shape))} numbers>"
+        short_list = hasattr(value, "tolist") and np.size(value) <= _FEW  # a sparse matrix has none
+        return _shorten(value.tolist()) if short_list else f"<{' x '.join(map(str, value.shape))} numbers>"
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, (list, tuple)):
         comma = "," if len(value) == 1 else ""
-        text, shorter = f"({', '.join(map(_short, value))}{comma})", f"<{len(value)}>"
+        text, shorter = f"({', '.join(map(_shorten, value))}{comma})", f"<{len(value)}>"
     elif isinstance(value, dict):
-        entries = ", ".join(f"{key}: {_short(entry)}" for key, entry in value.items())
+        entries = ", ".join(f"{key}: {_shorten(entry)}" for key, entry in value.items())
         text, shorter = f"{{{entries}}}", f"{{{', '.join(map(str, value))}}}"
     else:
         text, shorter = repr(value), f"{type(value).__name__}(…)"
@@ -181,7 +181,7 @@ def leaves_of(tree: Any) -> list[Any]:
     return leaves
 
 
-def together(trees: Sequence[Any]) -> Any:
+def stack_trees(trees: Sequence[Any]) -> Any:
     """Stack the arrays of equally built records, tuples, lists and None along a new first axis."""
-    stacked = iter([np.stack(each) for each in zip(*map(leaves_of, trees), strict=True)])
+    stacked = iter([np.stack(leaves) for leaves in zip(*map(leaves_of, trees), strict=True)])
     return each_leaf(lambda _: next(stacked), trees[0])

@@ -41,7 +41,7 @@ def report(error: GbeamError, as_json: bool) -> int:
     return _refuse(f"{mark}{words}", _diagnostics(error), as_json)
 
 
-def ended(*answers: Result) -> int:
+def report_outcomes(*answers: Result) -> int:
     """Print on stderr why answers are not known, and return the exit status."""
     from gbeam.results.result import Decided
 

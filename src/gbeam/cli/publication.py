@@ -66,7 +66,7 @@ def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
         make(hidden)
         names = sorted(file.name for file in hidden.iterdir())
         _synchronise(hidden)
-        with deferred(), _alone_in(parent):
+        with deferred(), _lock_folder(parent):
             if not (is_new and _moved_whole(hidden, folder)):
                 for name in names:
                     os.replace(hidden / name, folder / name)
@@ -75,7 +75,7 @@ def _published(folder: Path, make: Callable[[Path], object]) -> list[Path]:
 
 
 @contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
+def _lock_folder(folder: Path) -> Iterator[None]:
     """Lock a folder, after waiting for other runs that move files into it: files of two runs must not mix."""
     if os.name != "posix":
         yield

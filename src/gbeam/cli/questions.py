@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from gbeam.cli.failures import ended
+from gbeam.cli.failures import report_outcomes
 from gbeam.cli.options import (
     At,
     Input,
@@ -68,7 +68,7 @@ def verb_of(question: Question) -> Callable[..., int]:
             answer, name, folder, output, verb=question.name, origin=loaded.case.provenance,
             title=loaded.case.title, listed=False,
         )  # fmt: skip
-        return ended(*(answer if isinstance(answer, tuple) else (answer,)))
+        return report_outcomes(*(answer if isinstance(answer, tuple) else (answer,)))
 
     verb.__name__ = name
     several = "Without --motion for all of them. " if question.motion is None else ""
@@ -153,7 +153,7 @@ def critical_speed(
         critical, "critical_speed", folder, output, origin=loaded.case.provenance, listed=False,
         figures={"critical_speed": partial(steady.critical, critical, loaded.case.title)},
     )  # fmt: skip
-    return ended(critical)
+    return report_outcomes(critical)
 
 
 def critical_map(

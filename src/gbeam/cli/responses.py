@@ -179,10 +179,10 @@ def _of_netcdf(file: Path) -> Reproduction:
 
 def answer_again(file: Path) -> Reproduction:
     """Run the command of a verb's JSON again, on the scenario that the JSON holds, and compare every value."""
-    from gbeam.scenario.rerun import checked
+    from gbeam.scenario.rerun import check_origin
 
     facts, origin = _read(file)
-    checked(str(file), origin)
+    check_origin(str(file), origin)
     return _compared(file, facts, origin)
 
 
@@ -294,9 +294,12 @@ def _leaves(node: Any, name: str = "", form: str = "") -> Iterator[tuple[str, st
 
 def _row_names(rows: list[Any]) -> list[Any]:
     """Names of the rows of a table, which further rows do not change; their indices if they have no unique names."""
-    keys = ("motion", "model", "path", "name")
-    names = [" ".join(str(row[key]) for key in keys if key in row) if isinstance(row, dict) else "" for row in rows]
-    return names if all(names) and len(set(names)) == len(names) else list(range(len(rows)))
+    names = []
+    for row in rows:
+        keys = ("motion", "model", "path", "name") if isinstance(row, dict) else ()
+        names.append(" ".join(str(row[key]) for key in keys if key in row))
+    unique = len(set(names)) == len(names)
+    return names if all(names) and unique else list(range(len(rows)))
 
 
 def _is_array(node: Any) -> bool:

@@ -205,8 +205,8 @@ def _figure_name(kind: str, body: str, names: Collection[str]) -> str:
 
 
 def _of_comparison(result: Comparison, title: str, main: str, side: str, end: str = "") -> dict[str, Describe]:
-    """Figures of a comparison: `main` along the axis in which the tip moves most, `other` along others, and shock."""
-    first, *others = imitation.moved(result)
+    """Figures of a comparison, `main` along the axis in which the tip moves most, `side` along others; and shock."""
+    first, *others = imitation.moved_axes(result)
     described: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
     described |= {f"{side}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
     if result.shock is not None:
@@ -224,20 +224,20 @@ def _of_study(study: Study, title: str) -> dict[str, Describe]:
         if len(with_loads) > 1:
             described[_figure_name("sizes", body, names)] = partial(response.sizes, study, body)
     described |= _by_motion({name: _of_response(run, title) for name, run in study.responses.items()})
-    return described | _compared(study, title)
+    return described | _of_comparisons(study, title)
 
 
 def _of_tips(study: Study) -> dict[str, Describe]:
     """Figures of the tip of every body, in all of a study's motions together; a rigid specimen has none."""
-    responses, names = study.responses.values(), response.bodies(study)
-    return {
-        _figure_name("tip", body, names): partial(response.tip, study, body)
-        for body in names
-        if any(body in run.bodies and run.bodies[body].specimen is None for run in responses)
-    }
+    names, described = response.bodies(study), dict[str, Describe]()
+    for body in names:
+        runs = [run for run in study.responses.values() if body in run.bodies]
+        if any(run.bodies[body].specimen is None for run in runs):
+            described[_figure_name("tip", body, names)] = partial(response.tip, study, body)
+    return described
 
 
-def _compared(study: Study, title: str) -> dict[str, Describe]:
+def _of_comparisons(study: Study, title: str) -> dict[str, Describe]:
     """Figures of a study's comparisons, by the names of their centrifuges."""
     described: dict[str, Describe] = {}
     for comparison in study.comparisons:

@@ -16,7 +16,7 @@ from gbeam.figures.description import (
     Line,
     Panel,
     components,
-    estimated,
+    error_note,
     largest_size,
     limit_levels,
     of_motion,
@@ -51,24 +51,24 @@ def loads(response: Response, body: str, title: str = "") -> Figure:
     words = section if is_beam else f"loads on the base{of_body}, base axes"
     shaded = tuple(replace(panel, spans=spans) for panel in panels)
     subject = of_motion(response.name, words)
-    return Figure(title, subject, shaded, judged(response, body, carried), (response.outcome,))
+    return Figure(title, subject, shaded, error_notes(response, body, carried), (response.outcome,))
 
 
-def carried_along(loads: Loads) -> tuple[Panel, ...]:
+def load_panels_along(loads: Loads) -> tuple[Panel, ...]:
     """Loads of the sections at one time, along the beam."""
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
-    panels = _carried(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
+    panels = _load_panels(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
     return tuple(replace(panel, x=f"position from the root, {unit}") for panel in panels)
 
 
 def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:
     """Loads of the root's section over time, and the extreme stresses along the beam."""
     stress = (carried.stress_tension.max(axis=1), carried.stress_compression.min(axis=1))
-    return _carried(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried, names)
+    return _load_panels(time, carried.section_force[:, 0], carried.section_moment[:, 0], stress, carried, names)
 
 
-def judged(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...]:
+def error_notes(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...]:
     """Notes on the estimated errors of a body's loads and, if it is known, stress."""
     errors = result.errors
     kinds = {"loads": errors.loads.total, "their peaks": errors.loads.peak}
@@ -79,10 +79,10 @@ def judged(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...
         kinds = {kind: values.get(body, math.nan) for kind, values in zip(kinds, errors_of_body, strict=True)}
     if not np.isfinite(carried.stress).all():
         kinds |= {"stress": math.nan, "its peaks": math.nan}
-    return estimated(kinds)
+    return error_note(kinds)
 
 
-def _carried(
+def _load_panels(
     abscissa: Floats,
     force: Floats,
     moment: Floats,
@@ -90,7 +90,7 @@ def _carried(
     carried: Loads,
     names: Names = SECTION,
 ) -> Iterator[Panel]:
-    """Panels of forces and moments (k, 3) over `where` (k,) and, if known, of the largest and smallest stress (k,)."""
+    """Panels, over an abscissa (k,), of forces and moments (k, 3) and, if known, of the extreme stresses (k,)."""
     lever = largest_size(force) * float(np.max(carried.stations, initial=0.0))
     moment = np.where(np.abs(moment) <= ROUNDING * lever, 0.0, moment)  # what is no number stays a gap
     for kind, si, values, labels in (("force", "N", force, names[0]), ("moment", "N m", moment, names[1])):

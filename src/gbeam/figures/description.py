@@ -127,11 +127,12 @@ class Figure:
     def heading(self) -> str:
         """Title, in capitals what must not be overlooked, the subject, and the notes, on lines of their own."""
         failed = sorted({outcome.upper() for outcome in self.outcomes if outcome != "done"})
-        first, *others = [text for text in (self.title, self.subject) if text]
-        return "\n".join([" – ".join([*failed, first]), *others, *self.notes])
+        lines = [text for text in (self.title, self.subject) if text]
+        lines[0] = " – ".join([*failed, lines[0]])
+        return "\n".join([*lines, *self.notes])
 
 
-def declared(kind: type, name: str) -> tuple[str, str]:
+def words_and_unit(kind: type, name: str) -> tuple[str, str]:
     """Words and unit of a field of a result, as they are declared."""
     declaration = dict(declarations(kind))[name]
     return declaration.words.partition(";")[0], declaration.unit if isinstance(declaration.unit, str) else ""
@@ -142,31 +143,36 @@ def of_motion(name: str, subject: str) -> str:
     return f"{name}: {subject}" if name else subject
 
 
-def estimated(errors: Mapping[str, float]) -> tuple[str, ...]:
+def error_note(errors: Mapping[str, float]) -> tuple[str, ...]:
     """Note on the estimated errors that are known, fractions by name; none where none is."""
     words = [f"{name} {percent(error)}".strip() for name, error in errors.items() if math.isfinite(error)]
     return (f"estimated error: {', '.join(words)}",) if words else ()
 
 
-def moving(*values: Floats) -> list[int]:
+def moving_axes(*values: Floats) -> list[int]:
     """Indices of components (last axis) larger than a hundredth of the largest; that one alone where none moves."""
-    finite = [np.nan_to_num(array, nan=0.0, posinf=0.0, neginf=0.0) for array in values]
-    size = np.max([np.abs(array).reshape(-1, array.shape[-1]).max(axis=0) for array in finite], axis=0)
+    sizes = []
+    for array in values:
+        finite = np.nan_to_num(array, nan=0.0, posinf=0.0, neginf=0.0)
+        sizes.append(np.abs(finite).reshape(-1, array.shape[-1]).max(axis=0))
+    size = np.max(sizes, axis=0)
     return [i for i in range(len(size)) if size[i] > SMALL * size.max()] or [int(size.argmax())]
 
 
 def not_drawn(axes: Sequence[int], *lengths: Floats) -> tuple[str, ...]:
-    """Note on the largest sizes of the components (last axis) of lengths, m, that are not `shown`; none of rounding."""
+    """Note on the largest sizes of the components (last axis) of lengths, m, that are not `axes`; none of rounding."""
     sizes = [max(largest_size(array[..., i]) for array in lengths) for i in range(3)]
-    hidden = [i for i in range(3) if i not in axes and sizes[i] > ROUNDING * max(sizes)]
-    units = {i: scale_of("m", sizes[i]) for i in hidden}
-    words = [f"{'xyz'[i]} by {scale * sizes[i]:.2g} {unit}" for i, (scale, unit) in units.items()]
+    words = []
+    for i, size in enumerate(sizes):
+        if i not in axes and size > ROUNDING * max(sizes):
+            scale, unit = scale_of("m", size)
+            words.append(f"{'xyz'[i]} by {scale * size:.2g} {unit}")
     return (f"(not drawn: {' and '.join(words)} at most)",) if words else ()
 
 
 def components(x: Floats, values: Floats, names: Sequence[str], panel: Panel) -> Panel:
     """Put components (n, 3) into a panel. Those below a hundredth of the largest are named and not drawn."""
-    drawn_axes, sizes = moving(values), np.abs(values).max(axis=0)
+    drawn_axes, sizes = moving_axes(values), np.abs(values).max(axis=0)
     omitted = [names[i] for i in range(3) if i not in drawn_axes and sizes[i] > ROUNDING * sizes.max()]
     lines = tuple(Line(x, values[:, i], names[i], colour=i, dash=_DASHES[i]) for i in drawn_axes)
     return replace(
@@ -174,7 +180,7 @@ def components(x: Floats, values: Floats, names: Sequence[str], panel: Panel) ->
     )
 
 
-def imitating(index: int) -> dict[str, Any]:
+def imitation_look(index: int) -> dict[str, Any]:
     """Look of the `index`-th line that is compared with flight's; from the second on dashed, on top of the first."""
     return {"colour": (index + 1) % 6, "dash": ("solid", "dashed", "dotted")[min(index, 2)]}
 
@@ -249,7 +255,7 @@ def largest_size(values: Floats) -> float:
     return float(finite.max()) if finite.size else 0.0
 
 
-def scaled(name: str, unit: str, values: Floats) -> tuple[float, str]:
+def readable_scale(name: str, unit: str, values: Floats) -> tuple[float, str]:
     """Return a factor 1000^n that makes values readable, and the label of an axis in the scaled unit."""
     low, high = _READABLE
     size, unit = largest_size(values), raised(unit)

@@ -7,7 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.figures.description import FLIGHT, Bars, Figure, Line, Panel, ends_of, imitating, moving, scale_of, stretches
+from gbeam.figures.description import (
+    FLIGHT,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    ends_of,
+    imitation_look,
+    moving_axes,
+    scale_of,
+    stretches,
+)
 from gbeam.results.comparison import Comparison
 from gbeam.results.measures import Shock
 from gbeam.results.placement import Placement
@@ -33,17 +44,17 @@ def _panel(c: Comparison, title: str, si: str, quantity: str, lines: dict[str, F
     covered = c.covered if c.covered.any() else ~c.covered
     scale, unit = scale_of(si, *(history[covered] for history in lines.values()))
     other_names = [name for name in lines if name != c.flight]
-    looks = {name: imitating(min(k, 1)) for k, name in enumerate(other_names)} | {c.flight: FLIGHT}
+    looks = {name: imitation_look(min(k, 1)) for k, name in enumerate(other_names)} | {c.flight: FLIGHT}
     values = {name: scale * history for name, history in lines.items()}
     panel_lines = tuple(Line(c.time, history, name, **looks[name]) for name, history in values.items())
     limits = ends_of(c.covered, *values.values())
     return Panel(f"{quantity}, {unit}", panel_lines, title, limits=limits, zero=limits is None)
 
 
-def moved(comparison: Comparison) -> list[int]:
+def moved_axes(comparison: Comparison) -> list[int]:
     """Axes (0, 1, 2) along which the tip moves in flight or on the machine, the one along which it moves most first."""
     main = comparison.main_axis
-    return [main, *(i for i in moving(comparison.peak_flight, comparison.peak_centrifuge) if i != main)]
+    return [main, *(i for i in moving_axes(comparison.peak_flight, comparison.peak_centrifuge) if i != main)]
 
 
 def _difference_words(c: Comparison) -> str:
@@ -87,10 +98,10 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
     """Describe the shock response spectra along the axes in which they are not small."""
     panels, main = [], comparison.main_axis
     scale, unit = scale_of("m/s^2", spectra.flight, spectra.centrifuge)
-    for axis in sorted(moving(spectra.flight, spectra.centrifuge), key=lambda k: k != main):
+    for axis in sorted(moving_axes(spectra.flight, spectra.centrifuge), key=lambda k: k != main):
         lines = (
             Line(spectra.frequency, scale * spectra.flight[:, axis], comparison.flight, **FLIGHT),
-            Line(spectra.frequency, scale * spectra.centrifuge[:, axis], comparison.centrifuge, **imitating(0)),
+            Line(spectra.frequency, scale * spectra.centrifuge[:, axis], comparison.centrifuge, **imitation_look(0)),
         )
         label = f"largest acceleration along {'xyz'[axis]}, {unit}"
         panels.append(Panel(label, lines, x="frequency of the oscillator, Hz", logarithmic=True, height=1.6))
@@ -101,7 +112,9 @@ def shock(comparison: Comparison, spectra: Shock, title: str = "") -> Figure:
 def placement(result: Placement, title: str = "") -> Figure:
     """Describe the difference of the load that a placement leaves, by each measure, beside other control points."""
     measures = tuple(next(iter(result.values.values()), {}))
-    bars = {place: 100 * np.array([values[name] for name in measures]) for place, values in result.values.items()}
+    bars = {}
+    for place, values in result.values.items():
+        bars[place] = 100 * np.array([values[name] for name in measures])
     panel = Panel(
         "",
         x="difference of the load over flight's peak, %",

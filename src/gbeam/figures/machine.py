@@ -15,15 +15,15 @@ from gbeam.figures.description import (
     Level,
     Line,
     Panel,
-    declared,
     ends_of,
-    imitating,
+    imitation_look,
     largest_size,
     limit_levels,
-    moving,
+    moving_axes,
     of_motion,
     scale_of,
     stretches,
+    words_and_unit,
 )
 from gbeam.printable import raised
 from gbeam.results.machine import AxesResult
@@ -36,15 +36,15 @@ AXES = ("axis 1, the arm", "axis 2, yaw", "axis 3, roll")
 def axes_of(response: PlotHeading, axes: AxesResult, quantity: str, title: str = "") -> Figure:
     """Describe one quantity of a centrifuge's axes, with its limits, in a panel for each axis."""
     history: Floats = getattr(axes, quantity)
-    unit = raised(declared(AxesResult, quantity)[1])
+    unit = raised(words_and_unit(AxesResult, quantity)[1])
     allowed = {use.axis: use.allowed for use in axes.limits if use.quantity == quantity}
     spans, panels = stretches(axes, response.time), []
     for i in range(3):
         limit = allowed.get(f"axis {i + 1}", math.inf)
         levels = limit_levels(limit, history[:, i])
         remark = ", beyond the panel" if math.isfinite(limit) and not levels else ""
-        title_of = f"{AXES[i]}: {_used(history[:, i], limit, unit)}{remark}"
-        lines = (Line(response.time, history[:, i], **imitating(0)),)
+        title_of = f"{AXES[i]}: {_use_words(history[:, i], limit, unit)}{remark}"
+        lines = (Line(response.time, history[:, i], **imitation_look(0)),)
         panels.append(Panel(f"{quantity}, {unit}", lines, title_of, levels=levels, spans=spans, zero=True))
     if quantity == "acceleration":
         panels[0] = _with_power(panels[0], axes)
@@ -67,7 +67,7 @@ def _with_power(panel: Panel, axes: AxesResult) -> Panel:
     return panel
 
 
-def _used(history: Floats, limit: float, unit: str) -> str:
+def _use_words(history: Floats, limit: float, unit: str) -> str:
     """Use of a limit, in words."""
     used = float(np.nanmax(np.abs(history)))
     return (
@@ -85,12 +85,12 @@ def _three_digits(value: float) -> str:
 
 def tracking(response: PlotHeading, axes: AxesResult, title: str = "") -> Figure:
     """Describe the load at the control point over time, size and components: of target, machine and flight."""
-    components = moving(axes.actual, axes.reference)  # those that are not negligible
+    components = moving_axes(axes.actual, axes.reference)  # those that are not negligible
     time = response.time
     scale, unit = scale_of("m/s^2", axes.reference)
     loads: list[tuple[Floats, Floats, str, dict[str, Any]]] = [
         (time, axes.reference, "target", {"colour": REFERENCE, "dash": "dashed"}),
-        (time, axes.actual, "machine", imitating(0)),
+        (time, axes.actual, "machine", imitation_look(0)),
     ]
     if axes.flight is not None:
         slack = 1e-9 * (time[-1] - time[0])
@@ -118,5 +118,5 @@ def _error(time: Floats, axes: AxesResult, scale: float, unit: str) -> Panel:
         max(ends[1] if ends else 1.05 * scale * float(error.max()), 1e-6 * scale * largest_size(axes.reference)) or 1.0
     )
     title = f"size of machine − target{', scaled to the times that are followed' if ends else ''}"
-    line = Line(time, scale * error, "machine − target", **imitating(0))
+    line = Line(time, scale * error, "machine − target", **imitation_look(0))
     return Panel(f"tracking error, {unit}", (line,), title, limits=(0.0, top), named=False, height=0.8)

@@ -26,7 +26,7 @@ def record(summary: RecordSummary, name: str = "", title: str = "") -> Figure:
     assert summary.as_read is not None and summary.as_flown is not None  # it was read from its file
     read = _panels(summary.as_read, "as read", summary.span)
     flown = _panels(summary.as_flown, "flown", summary.span)
-    spans = tuple(_clip(_marked(summary), summary.span))
+    spans = tuple(_clip(_marks(summary), summary.span))
     panels = [replace(panel, spans=spans) for panel in chain(*zip(read, flown, strict=True))]
     section = f", {summary.sections_by} {summary.section}" if summary.section else ""
     subject = of_motion(name, f"{Path(summary.file).name}{section}, as read in its own axes, and as flown in base axes")
@@ -44,7 +44,7 @@ def file(records: Mapping[str, RecordSummary], title: str = "") -> Figure:
     touching = [any(abs(start - end) < gap for start, _ in parts.values()) for _, end in parts.values()]
     ends = [end - gap * touches for (_, end), touches in zip(parts.values(), touching, strict=True)]
     flown = ((start, end, "flown") for (start, _), end in zip(parts.values(), ends, strict=True) if end > start)
-    spans = (*flown, *_marked(summary))
+    spans = (*flown, *_marks(summary))
     first, *other_panels = (replace(panel, spans=spans) for panel in _panels(summary.as_read, "as read", _ALWAYS))
     values = np.concatenate([line.y for line in first.lines])
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
@@ -87,7 +87,7 @@ def _panels(channels: Channels, what: str, span: tuple[float, float]) -> list[Pa
     return panels
 
 
-def _marked(summary: RecordSummary) -> Iterator[Span]:
+def _marks(summary: RecordSummary) -> Iterator[Span]:
     """Yield stretches at rest, that the instrument was levelled by, and samples that were lost."""
     yield from ((stretch.start, stretch.end, "at rest") for stretch in summary.offsets)
     if summary.levelled is not None:

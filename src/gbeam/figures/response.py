@@ -20,16 +20,16 @@ from gbeam.figures.description import (
     Panel,
     Span,
     components,
-    declared,
     ends_of,
-    estimated,
-    imitating,
+    error_note,
+    imitation_look,
     largest_size,
-    moving,
+    moving_axes,
     not_drawn,
     of_motion,
     scale_of,
     stretches,
+    words_and_unit,
 )
 from gbeam.printable import MOST_TURNS, raised
 from gbeam.results.body_response import BodyResponse
@@ -51,7 +51,7 @@ def looks(study: Study) -> dict[str, dict[str, Any]]:
     flights = {comparison.flight for comparison in study.comparisons}
     others = [name for name in study.responses if name not in flights]
     coloured: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(others)}
-    compared = {name: imitating(k) for k, name in enumerate(others)} if flights else coloured
+    compared = {name: imitation_look(k) for k, name in enumerate(others)} if flights else coloured
     return {name: compared.get(name, FLIGHT) for name in study.responses}
 
 
@@ -74,7 +74,7 @@ def tip(study: Study, body: str) -> Figure:
     motions = {name: run.bodies[body] for name, run in responses.items()}
     comparisons = [comparison for comparison in study.comparisons if at_tip(comparison, body)]
     sizes = [motion.peaks.max_abs for motion in motions.values()]
-    axes = sorted(moving(*sizes), key=lambda axis: -max(size[axis] for size in sizes))
+    axes = sorted(moving_axes(*sizes), key=lambda axis: -max(size[axis] for size in sizes))
     spans = [_spans(responses, comparison) for comparison in comparisons]
     shaded = spans[0] if len(comparisons) == 1 else ()
     if not comparisons and len(responses) == 1:
@@ -88,7 +88,7 @@ def tip(study: Study, body: str) -> Figure:
     if len(panels) == 1:
         panels[0] = replace(panels[0], height=2.0)
     errors = {name if len(responses) > 1 else "": _error(run, body) for name, run in responses.items()}
-    notes = (*not_drawn(axes, *sizes), *estimated(errors))
+    notes = (*not_drawn(axes, *sizes), *error_note(errors))
     outcomes = tuple(run.outcome for run in responses.values())
     origin = f"of {body} relative to its root" if len(bodies(study)) > 1 else "relative to the base"
     return Figure(study.title, f"tip displacement {origin}", tuple(panels), notes, outcomes)
@@ -108,8 +108,10 @@ def models(study: ModelStudy, title: str = "") -> Figure:
     for name, axis in study.direction.items():
         rows = [row for row in study.rows if row.motion == name and len(row.time)]
         scale, unit = scale_of("m", *(row.history for row in rows))
-        looks = [FLIGHT if row.model == study.reference else imitating(k) for k, row in enumerate(rows)]
-        lines = [Line(row.time, scale * row.history, row.model, **look) for row, look in zip(rows, looks, strict=True)]
+        lines = []
+        for k, row in enumerate(rows):
+            look = FLIGHT if row.model == study.reference else imitation_look(k)
+            lines.append(Line(row.time, scale * row.history, row.model, **look))
         heading = name if len(study.direction) > 1 else ""
         panels.append(Panel(f"{axis}, {unit}", tuple(lines), heading, zero=True, height=1.6))
     subject = f"tip displacement by every model, {study.reference} broad"
@@ -136,7 +138,7 @@ def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span
     limits = ends_of(covered, scale * difference)
     beyond = limits is not None and largest_size(difference) > 1.05 * largest_size(counted)
     title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")
-    line = Line(compared.time, scale * difference, title, **looks(study).get(compared.centrifuge, imitating(0)))
+    line = Line(compared.time, scale * difference, title, **looks(study).get(compared.centrifuge, imitation_look(0)))
     label = f"difference in {'xyz'[axis]}, {unit}"
     return Panel(label, (line,), title, spans=spans, limits=limits, zero=limits is None, named=False, height=0.9)
 
@@ -182,20 +184,20 @@ def points(response: Response, title: str = "") -> Figure:
     """Describe the displacement of every point from its place at the start, along the axes of the ground."""
     moved = response.place - response.place[0]
     scale, unit = scale_of("m", moved)
-    axes = moving(moved)
+    axes = moving_axes(moved)
     panels = []
     for axis in axes:
         lines = []
-        for n, k in enumerate(_moving(moved)):
+        for n, k in enumerate(_moving_points(moved)):
             look: dict[str, Any] = {"colour": n % COLOURS, "dash": DASHES[n // COLOURS % len(DASHES)]}
             lines.append(Line(response.time, scale * moved[:, k, axis], response.points[k], **look))
         panels.append(Panel(f"{'xyz'[axis]}, {unit}", tuple(lines), zero=True, named=axis == axes[0]))
     subject = of_motion(response.name, "displacement of the points from the start, axes of the ground")
-    notes = (*not_drawn(axes, moved), *estimated({"": response.errors.place.total}))
+    notes = (*not_drawn(axes, moved), *error_note({"": response.errors.place.total}))
     return Figure(title, subject, tuple(panels), notes, (response.outcome,))
 
 
-def _moving(moved: np.ndarray) -> list[int]:
+def _moving_points(moved: np.ndarray) -> list[int]:
     """Indices of the points that move. Of points that move alike only the first is listed."""
     size = np.abs(moved).max(initial=0.0)
     chosen: list[int] = []
@@ -245,7 +247,7 @@ def base(response: Response, motion: Base, title: str = "") -> Figure:
     turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
     for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if turning else ("a_WO_B",):
         values = getattr(motion, name)
-        words, si = declared(Base, name)
+        words, si = words_and_unit(Base, name)
         scale, unit = scale_of(si, values) if name == "a_WO_B" else (1.0, raised(si))
         panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
         panels.append(components(response.time, scale * values, "xyz", panel))
@@ -255,7 +257,7 @@ def base(response: Response, motion: Base, title: str = "") -> Figure:
 
 def sensors(response: Response, readings: Readings, title: str = "") -> Figure:
     """Describe what accelerometers read, a panel for each."""
-    scale, unit = scale_of(declared(Readings, "acceleration")[1], readings.acceleration)
+    scale, unit = scale_of(words_and_unit(Readings, "acceleration")[1], readings.acceleration)
     panels = [
         components(response.time, scale * readings.acceleration[:, k], "xyz", Panel(f"{point}, {unit}", height=1.2))
         for k, point in enumerate(readings.points)

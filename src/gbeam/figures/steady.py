@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gbeam.figures.bodies import carried_along, judged
+from gbeam.figures.bodies import error_notes, load_panels_along
 from gbeam.figures.description import (
     FLIGHT,
     GREY,
@@ -23,14 +23,14 @@ from gbeam.figures.description import (
     Marks,
     Panel,
     Span,
-    declared,
-    estimated,
-    imitating,
-    moving,
+    error_note,
+    imitation_look,
+    moving_axes,
     not_drawn,
     of_motion,
+    readable_scale,
     scale_of,
-    scaled,
+    words_and_unit,
 )
 from gbeam.results.equilibrium import BodyRest, Critical, CriticalMap, Rest
 from gbeam.results.errors import direction_words
@@ -55,16 +55,16 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
     """
     first = rests[0]
     bending = [name for name, body in first.bodies.items() if body.bends]
-    looks = [FLIGHT, *(imitating(k) for k in range(len(rests) - 1))] if len(rests) > 1 else [imitating(0)]
+    looks = [FLIGHT, *(imitation_look(k) for k in range(len(rests) - 1))] if len(rests) > 1 else [imitation_look(0)]
     panels, notes = list[Panel](), list[str]()
     for name in bending:
         bodies = [rest.bodies[name] for rest in rests]
         moved = [_deflection(body) for body in bodies]
-        axes = moving(*(shape for _, shape in moved))
+        axes = moving_axes(*(shape for _, shape in moved))
         notes += not_drawn(axes, *(shape for _, shape in moved))
         x_scale, x_unit = scale_of("m", *(points for points, _ in moved))
         for i in axes:
-            scale, unit = scale_of(declared(BodyRest, "displacement")[1], *(shape[:, i] for _, shape in moved))
+            scale, unit = scale_of(words_and_unit(BodyRest, "displacement")[1], *(shape[:, i] for _, shape in moved))
             lines = tuple(
                 Line(x_scale * points, scale * shape[:, i], rest.motion, marks=_marks(points), **look)
                 for rest, (points, shape), look in zip(rests, moved, looks, strict=True)
@@ -80,7 +80,7 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
     errors = [rest.errors.displacement.total for rest in rests]
     error = {"": max((total for total in errors if math.isfinite(total)), default=math.nan)}
     subject = ", ".join((relative, *_models(first), f"t = {first.time:.4g} s"))
-    return Figure(title, subject, tuple(panels), (*notes, *estimated(error)))
+    return Figure(title, subject, tuple(panels), (*notes, *error_note(error)))
 
 
 def _deflection(body: BodyRest) -> tuple[Floats, Floats]:
@@ -108,7 +108,7 @@ def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
     assert carried is not None
     owner = f" of {body}" if len(rest.bodies) > 1 else ""
     subject = of_motion(rest.motion, f"internal loads at rest{owner}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
-    return Figure(title, subject, carried_along(carried), judged(rest, body, carried))
+    return Figure(title, subject, load_panels_along(carried), error_notes(rest, body, carried))
 
 
 def modes(result: Modes, title: str = "") -> Figure:
@@ -123,7 +123,7 @@ def modes(result: Modes, title: str = "") -> Figure:
         panels.append(Panel("", x="share of the bodies in the kinetic energy", bars=bars, height=2.0))
     subject = ", ".join((f"modes about the equilibrium at {result.time:.4g} s", *_models(result)))
     errors = {"": math.nan if result.errors is None else result.errors.largest}
-    return Figure(title, of_motion(result.motion, subject), tuple(panels), estimated(errors))
+    return Figure(title, of_motion(result.motion, subject), tuple(panels), error_note(errors))
 
 
 def _shapes(result: Modes, name: str) -> Panel:
@@ -173,8 +173,8 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     marks: tuple[Mark, ...] = ()
     if diagram.critical is not None and diagram.critical.value is not None:
         marks = (Mark(factor * diagram.critical.value, diagram.critical.kind),)
-    words, unit_name = declared(Campbell, "frequency")
-    rate = "rate" if diagram.model == "system" else declared(Campbell, "speed")[0]
+    words, unit_name = words_and_unit(Campbell, "frequency")
+    rate = "rate" if diagram.model == "system" else words_and_unit(Campbell, "speed")[0]
     x_label = f"{rate}, {name}"
     spans = tuple((factor * stretch.start, factor * stretch.end, "not stable") for stretch in diagram.unstable)
     panel = Panel(
@@ -185,33 +185,34 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
     subject = of_motion(diagram.motion, f"frequencies about the equilibrium{turning}, {diagram.model}")
     subject += f"; {omitted} higher mode{'s' if omitted > 1 else ''} not drawn" if omitted else ""
     errors = {"": math.nan if diagram.errors is None else diagram.errors.largest}
-    return Figure(title, subject, (panel,), estimated(errors))
+    return Figure(title, subject, (panel,), error_note(errors))
 
 
-def critical(lost: Critical, title: str = "") -> Figure:
+def critical(result: Critical, title: str = "") -> Figure:
     """Describe the lowest frequencies on the way to a critical value, and the value's error to both sides."""
-    end = float(lost.followed[-1])
-    factor, quantity = scaled(lost.quantity, lost.unit if "/" in lost.unit else "", np.array([end]))
-    finite = [k for k in range(lost.frequency.shape[1]) if np.isfinite(lost.frequency[:, k]).any()]
+    end = float(result.followed[-1])
+    factor, quantity = readable_scale(result.quantity, result.unit if "/" in result.unit else "", np.array([end]))
+    finite = [k for k in range(result.frequency.shape[1]) if np.isfinite(result.frequency[:, k]).any()]
     # Frequencies that stay far above the lowest two are left out.
-    highest = 3 * float(np.nanmax(lost.frequency[:, finite[:2]], initial=0.0))
-    drawn = [k for k in finite if np.nanmin(lost.frequency[:, k]) <= highest]
-    dots: Marks = "dots" if len(lost.followed) == 1 else ""
-    lines = tuple(
-        Line(factor * lost.followed, lost.frequency[:, k], f"frequency {k + 1}", colour=k, marks=dots) for k in drawn
-    )
+    highest = 3 * float(np.nanmax(result.frequency[:, finite[:2]], initial=0.0))
+    drawn = [k for k in finite if np.nanmin(result.frequency[:, k]) <= highest]
+    dots: Marks = "dots" if len(result.followed) == 1 else ""
+    lines = []
+    for k in drawn:
+        label = f"frequency {k + 1}"
+        lines.append(Line(factor * result.followed, result.frequency[:, k], label, colour=k, marks=dots))
     marks: tuple[Mark, ...] = ()
     spans: tuple[Span, ...] = ()
-    error = lost.errors.total  # not finite where the exact model loses nothing, or it is not known
-    if lost.value is not None:
-        direction = f" {direction_words(lost.direction)}" if lost.direction else ""
-        marks = (Mark(factor * lost.value, f"{lost.kind}{direction}"),)
+    error = result.errors.total  # not finite where the exact model loses nothing, or it is not known
+    if result.value is not None:
+        direction = f" {direction_words(result.direction)}" if result.direction else ""
+        marks = (Mark(factor * result.value, f"{result.kind}{direction}"),)
         if 0.0 < error < math.inf:
-            value = factor * lost.value
+            value = factor * result.value
             spans = (((1 - min(error, 1.0)) * value, (1 + error) * value, "estimated error"),)
-    frame = " in the turning frame" if lost.frame == "turning" else ""
-    panel = Panel(f"frequency{frame}, Hz", lines, x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
-    return Figure(title, of_motion(lost.motion, lost.reason), (panel,), estimated({"": error}))
+    frame = " in the turning frame" if result.frame == "turning" else ""
+    panel = Panel(f"frequency{frame}, Hz", tuple(lines), x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
+    return Figure(title, of_motion(result.motion, result.reason), (panel,), error_note({"": error}))
 
 
 def critical_map(critical: CriticalMap, title: str = "") -> Figure:

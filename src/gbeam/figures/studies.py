@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.figures.description import GREY, REFERENCE, Area, Bars, Figure, Line, Map, Mark, Panel, scaled
+from gbeam.figures.description import GREY, REFERENCE, Area, Bars, Figure, Line, Map, Mark, Panel, readable_scale
 from gbeam.printable import raised
 from gbeam.results.cases import PROBABILITY, SAMPLE, Parameter, Sensitivity, Sweep
 from gbeam.results.result import Floats
@@ -29,7 +29,7 @@ def sweep(result: Sweep, name: str, title: str = "") -> Figure:
     values = result.measures[name]
     if values.ndim > 2:
         raise InputError("sweep", f"varies {values.ndim} values", "draw one with to_xarray(), or vary two or fewer")
-    factor, label = scaled(name, result.units[name], values)
+    factor, label = readable_scale(name, result.units[name], values)
     not_done = [f"{count} {outcome}" for outcome, count in result.counts.items() if outcome != "done"]
     subject = name + (f" (of {result.outcome.size} cases {', '.join(not_done)})" if not_done else "")
     if values.ndim == 2 and SAMPLE not in result.dimensions:
@@ -117,7 +117,7 @@ def _axis_label(parameter: Parameter) -> str:
 def history(result: Sweep, name: str, title: str = "") -> Figure:
     """Describe a history of all cases: median and band of nine tenths of random draws, or a line for each case."""
     values, time = result.histories[name], result.time
-    factor, label = scaled(name, result.units[name], values)
+    factor, label = readable_scale(name, result.units[name], values)
     lines: list[Line] = []
     areas: list[Area] = []
     note = ""
@@ -188,7 +188,7 @@ def _values(result: Fit | Optimum) -> str:
 
 def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
     """Panels of a column over time: data with the fitted values, and the residual with its standard deviation."""
-    factor, label = scaled(column.name, column.unit, column.measured)
+    factor, label = readable_scale(column.name, column.unit, column.measured)
     stride, x = max(1, len(result.at) // _DOTS), result.at
     lines = (
         Line(x, factor * column.before, "scenario as it was", colour=GREY),
@@ -196,7 +196,7 @@ def _of_time(result: Fit, column: FittedColumn) -> Sequence[Panel]:
         Line(x[::stride], factor * column.measured[::stride], "measured", colour=REFERENCE, marks="dots"),
     )
     data = Panel(label, lines, height=1.2)
-    factor, label = scaled("", column.unit, column.residual)
+    factor, label = readable_scale("", column.unit, column.residual)
     line = Line(x, factor * column.residual, "measured less fitted", colour=REFERENCE, marks="dots")
     half_width = np.full(len(x), _SIGMAS * column.noise * factor)
     band = Area(x, -half_width, half_width, "twice its standard deviation")
@@ -218,7 +218,7 @@ def _of_modes(result: Fit, column: FittedColumn) -> Panel:
 def optimum(result: Optimum, title: str = "") -> Figure:
     """Describe the objective over the tries that improved it, and where their values lie between the bounds."""
     o, x = result, np.arange(len(result.history), dtype=float)
-    factor, label = scaled(o.minimise, o.unit, o.history)
+    factor, label = readable_scale(o.minimise, o.unit, o.history)
     line = Line(x, factor * o.history, o.minimise, colour=REFERENCE, marks="joined")
     low, high = o.bounds.T
     shares = 100 * (o.path - low) / (high - low)
@@ -259,7 +259,7 @@ def shaping(command: ShapedCommand, title: str = "") -> Figure:
     """
     c = command
     axis = int(np.nan_to_num(np.abs(c.runs[-1].tip)).max(axis=0).argmax())
-    factor, label = scaled(f"tip {'xyz'[axis]}", "m", c.runs[-1].tip[:, axis])
+    factor, label = readable_scale(f"tip {'xyz'[axis]}", "m", c.runs[-1].tip[:, axis])
     commands = tuple(Line(c.time, run.command, run.name, colour=k) for k, run in enumerate(c.runs))
     tips = tuple(
         Line(run.time, factor * run.tip[:, axis], f"{run.name}: {1e3 * run.residual:.3g} mm left", colour=k)

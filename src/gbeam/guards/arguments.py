@@ -128,7 +128,7 @@ def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) 
         for name, value in pairs:
             refuse_units(name, value)
             if name in tests and not tests[name](value):
-                refused = _refused(name, value, _hints(function, method_owner)[name], texts)
+                refused = _type_error(name, value, _hints(function, method_owner)[name], texts)
                 refused.of_type = True
                 raise refused
 
@@ -292,30 +292,30 @@ def _first_wrong(kind: Any, texts: bool) -> Callable[[Any], int | None]:
     return find
 
 
-def _refused(name: str, value: Any, hint: Any, texts: bool) -> InputError:
+def _type_error(name: str, value: Any, hint: Any, texts: bool) -> InputError:
     """Error of an argument, or of its first wrong element."""
     for kind in alternatives(hint):
         if is_typeddict(kind) and isinstance(value, Mapping):
             for key, entry in get_type_hints(kind).items():
                 if key in value and not _test(entry, texts)(value[key]):
-                    return _refused(f"{name}.{key}", value[key], entry, texts)
+                    return _type_error(f"{name}.{key}", value[key], entry, texts)
         origin = get_origin(kind)
         if origin not in _SEQUENCES or not _has_elements(value, origin):
             continue
         parts, wrong = get_args(kind), _first_wrong(kind, texts)(value)
         if wrong is not None and wrong < len(value):
             part = parts[wrong] if origin is tuple and Ellipsis not in parts else parts[0]
-            return _refused(f"{name}[{wrong}]", list(value)[wrong], part, texts)
+            return _type_error(f"{name}[{wrong}]", list(value)[wrong], part, texts)
     if isinstance(value, type):
         value_words = f"the class {value.__name__} itself"
     else:
         value_words = shortened(repr(value), 60) if isinstance(value, _PLAIN) else f"of type {type(value).__name__}"
-    expected = _described(hint)
+    expected = _type_words(hint)
     in_si = " in SI" if isinstance(value, str) and BEGINNING.match(value) and "whole" not in expected else ""
     return InputError(name, f"is {value_words}", f"give {expected}{in_si}")
 
 
-def _described(hint: Any) -> str:
+def _type_words(hint: Any) -> str:
     kinds = [alternative for alternative in alternatives(hint) if alternative is not type(None)]
     words = dict.fromkeys(_word(kind) for kind in kinds)
     listed = any(word.endswith(" numbers") for word in words)
@@ -342,7 +342,7 @@ def _word(kind: Any) -> str:
     if is_typeddict(kind):
         return "a mapping from text"
     if origin in _MAPPINGS:
-        return f"a mapping from text to {_described(parts[1])}"
+        return f"a mapping from text to {_type_words(parts[1])}"
     name = getattr(origin, "__name__", str(origin))
     if getattr(origin, "_is_protocol", False):  # such as Motion, whose docstring begins with the classes that fit
         line = str(origin.__doc__ or name).splitlines()[0].rstrip(".")

@@ -60,7 +60,7 @@ def array(where: str, value: Any) -> Any:
 
 
 def refuse_traced(where: str, value: Any, reason: str) -> None:
-    """Raise InputError, with the reason `why`, if JAX traces a number."""
+    """Raise InputError, with the reason, if JAX traces a number."""
     if is_traced(value):
         raise InputError(where, f"is traced by JAX, and {reason}", "give a number")
 

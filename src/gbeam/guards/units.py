@@ -163,7 +163,7 @@ def argument(text: str, kind: str) -> float:
 
 
 def read_quantity(where: str, text: str, kind: str, prefix: str = "") -> float:
-    """Read a quantity of the command line in SI; the problem of an InputError at `where` begins with `of`."""
+    """Read a quantity of the command line in SI; the problem of an InputError at `where` begins with `prefix`."""
     try:
         return argument(text, kind)
     except UnitError as error:

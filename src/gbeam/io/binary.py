@@ -34,14 +34,14 @@ def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     matrix is one column per vector, ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and
     `_FillValue` are applied.
     """
-    with _refused(path, "cannot be read", "give an HDF5 or netCDF file"):
+    with _naming_problem(path, "cannot be read", "give an HDF5 or netCDF file"):
         with open(path, "rb") as file:
-            old = file.read(3) == _NETCDF_3
-        return Table(tuple(_netcdf_3(path))) if old else hdf5_table(path)
+            netcdf_3 = file.read(3) == _NETCDF_3
+        return Table(tuple(_netcdf_3(path))) if netcdf_3 else hdf5_table(path)
 
 
 @contextmanager
-def _refused(path: str | os.PathLike[str], problem: str, fix: str) -> Iterator[None]:
+def _naming_problem(path: str | os.PathLike[str], problem: str, fix: str) -> Iterator[None]:
     """Turn any exception of a damaged file's library into an InputError with this problem and fix."""
     try:
         yield
@@ -56,13 +56,14 @@ def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
     import h5py  # 0.2 s to import
 
     columns, stated = list[Column](), list[Stated]()
-    between = "." if matlab else "/"
+    separator = "." if matlab else "/"
 
     def add(path_inside: str, item: h5py.Dataset | h5py.Group) -> None:
         for name in filter(states_rate, item.attrs):
-            stated.extend(_stated(f"{path_inside}/{name}".lstrip("/").replace("/", between), item.attrs[name], between))
+            place = f"{path_inside}/{name}".lstrip("/").replace("/", separator)
+            stated.extend(_stated(place, item.attrs[name], separator))
         if isinstance(item, h5py.Dataset) and item.size == 1 and item.dtype.kind in "iuf":
-            stated.extend(_stated(path_inside.replace("/", between), item[()], between))
+            stated.extend(_stated(path_inside.replace("/", separator), item[()], separator))
         if not isinstance(item, h5py.Dataset) or item.shape is None or path_inside.startswith("#"):
             return
         name = path_inside.replace("/", ".") if matlab else path_inside
@@ -73,21 +74,23 @@ def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
             return
         units = np.ravel(item.attrs.get("units", ""))
         fields = [*_fields(item.dtype)]
-        for k, (inside, shape) in enumerate(fields):
-            unit = _text(units[k if len(units) == len(fields) else 0]) if len(units) in (1, len(fields)) else ""
-            whole = item.shape[::-1] if matlab else item.shape + shape
-            read = partial(values, path_inside, inside)
-            columns.extend(array_columns("/".join([name, *inside]), whole, read, unit=unit, matlab=matlab))
+        for k, (fields_path, shape) in enumerate(fields):
+            unit = ""
+            if len(units) in (1, len(fields)):
+                unit = _text(units[k if len(units) == len(fields) else 0])
+            full_shape = item.shape[::-1] if matlab else item.shape + shape
+            read = partial(values, path_inside, fields_path)
+            columns.extend(array_columns("/".join([name, *fields_path]), full_shape, read, unit=unit, matlab=matlab))
 
-    def values(path_inside: str, inside: Sequence[str]) -> NDArray[Any]:
+    def values(path_inside: str, fields_path: Sequence[str]) -> NDArray[Any]:
         with h5py.File(path) as file:  # which was looked through
             item = file[path_inside]
             refuse_more("", "numbers", item.size, ELEMENTS, 40.0, "save fewer at a time")
             _refuse_unwritten(item)
-            array = item[inside[0]] if inside else np.asarray(item)
-            for field in inside[1:]:
+            array = item[fields_path[0]] if fields_path else np.asarray(item)
+            for field in fields_path[1:]:
                 array = array[field]
-            array = _unpacked(array, {} if inside else item.attrs)
+            array = _unpacked(array, {} if fields_path else item.attrs)
         return array.T if matlab else array
 
     with open_hdf5(path) as file:
@@ -96,20 +99,20 @@ def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
     return Table(tuple(columns), stated=tuple(stated))
 
 
-def _stated(path: str, value: Any, between: str) -> Iterator[Stated]:
+def _stated(path: str, value: Any, separator: str) -> Iterator[Stated]:
     """Yield the sample rate that a value of a file is by its name."""
     number = np.asarray(value)
     if number.size == 1 and number.dtype.kind in "iuf":
-        yield from Stated.read(path, float(number.item()), between)
+        yield from Stated.read(path, float(number.item()), separator)
 
 
-def _fields(kind: np.dtype[Any], inside: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
+def _fields(kind: np.dtype[Any], path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], tuple[int, ...]]]:
     """Yield path and shape of the numbers in one element of a type: of itself, or of the fields of a compound."""
     base, shape = kind.base, kind.shape
     if base.kind in "iuf":
-        yield inside, shape
+        yield path, shape
     for name in base.names or () if not shape else ():
-        yield from _fields(base[name], (*inside, name))
+        yield from _fields(base[name], (*path, name))
 
 
 def _object(name: str, kind: str) -> Column:
@@ -127,9 +130,9 @@ def _refuse_unwritten(item: h5py.Dataset) -> None:
     if item.is_virtual or item.external or not item.size:
         return
     parts = math.prod(-(-size // chunk) for size, chunk in zip(item.shape, item.chunks or item.shape, strict=True))
-    written = int(item.id.get_storage_size() > 0) if item.chunks is None else item.id.get_num_chunks()
-    if written < parts:
-        problem = f"has room for {item.size} numbers, of which {written} of {parts} parts were written"
+    count = int(item.id.get_storage_size() > 0) if item.chunks is None else item.id.get_num_chunks()
+    if count < parts:
+        problem = f"has room for {item.size} numbers, of which {count} of {parts} parts were written"
         raise InputError("", problem, "cut it to what was recorded, and save it again")
 
 
@@ -150,12 +153,12 @@ def _netcdf_3(path: str | os.PathLike[str]) -> list[Column]:
 
 def _unpacked(array: NDArray[Any], attributes: Mapping[str, Any]) -> NDArray[np.float64]:
     """Undo the packing of the CF conventions. Missing samples are NaN."""
-    missing = [np.ravel(attributes[name])[0] for name in ("_FillValue", "missing_value") if name in attributes]
-    empty = np.isin(array, missing) if missing else False
+    fill_values = [np.ravel(attributes[name])[0] for name in ("_FillValue", "missing_value") if name in attributes]
+    missing_samples = np.isin(array, fill_values) if fill_values else False
     scale, offset = (np.ravel(attributes.get(name, default))[0] for name, default in _PACKING.items())
     with np.errstate(all="ignore"):  # what is no number is refused where its sample is used
         values = array.astype(np.float64) * np.float64(scale) + np.float64(offset)
-    return np.where(empty, np.nan, values) if missing else values
+    return np.where(missing_samples, np.nan, values) if fill_values else values
 
 
 _PACKING = {"scale_factor": 1.0, "add_offset": 0.0}
@@ -164,9 +167,9 @@ _ATTRIBUTES = "units", "_FillValue", "missing_value", *_PACKING
 
 def _text(attribute: Any) -> str:
     value = np.ravel(attribute)[0] if np.size(attribute) else ""
-    return (
-        value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value) if isinstance(value, str) else ""
-    )
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return str(value) if isinstance(value, str) else ""
 
 
 _STRUCTURES = ("struct", "object")
@@ -180,7 +183,7 @@ def read_mat(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     A vector is a column by its name, ``az``, or a structure's field by its path, ``rec.az``, or the path's last word; a
     matrix is one column per vector, ``acc(:,1)``.
     """
-    with _refused(path, "is not a MAT file", "save the record by MATLAB"), warnings.catch_warnings():
+    with _naming_problem(path, "is not a MAT file", "save the record by MATLAB"), warnings.catch_warnings():
         warnings.filterwarnings("error", ".*may be corrupt")  # numbers of a VAX or a Cray, which SciPy misreads
         warnings.filterwarnings("ignore", "Duplicate variable name")  # of objects, which SciPy calls None
         table = _any_version(path, words)
@@ -206,32 +209,32 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
         columns = [column for name, value in loaded.items() for column in _columns(name, value)]
         return Table(tuple(columns), stated=tuple(_numbers_stated(loaded)))
     columns = list[Column]()
-    numbers = {
-        name: _loaded(path, name) for name, shape, kind in variables if kind in _NUMBERS and math.prod(shape) == 1
-    }
+    numbers: dict[str, Any] = {}
     for name, shape, kind in variables:
         if kind in _NUMBERS:
+            if math.prod(shape) == 1:
+                numbers[name] = _loaded(path, name)
             squeezed = tuple(size for size in shape if size != 1)
             columns += array_columns(name, squeezed, partial(_array, path, name, shape), matlab=True)
     structures = [name for name, _, kind in variables if kind in _STRUCTURES]
-    missing = {word.removeprefix("-").strip() for word in words} - {column.name for column in columns} - {"0"}
-    named = [name for name in structures if any(word.startswith(f"{name}.") for word in missing)]
-    read_structures = {name: _loaded(path, name) for name in named}
+    unfound = {word.removeprefix("-").strip() for word in words} - {column.name for column in columns} - {"0"}
+    named_structures = [name for name in structures if any(word.startswith(f"{name}.") for word in unfound)]
+    read_structures = {name: _loaded(path, name) for name in named_structures}
     columns += [column for name, value in read_structures.items() for column in _columns(name, value)]
-    if not words or missing - {column.name for column in columns}:  # a part's last word, or a mistake
-        others = {name: _loaded(path, name) for name in structures if name not in named}
+    if not words or unfound - {column.name for column in columns}:  # a part's last word, or a mistake
+        others = {name: _loaded(path, name) for name in structures if name not in named_structures}
         columns += [column for name, value in others.items() for column in _columns(name, value)]
         read_structures |= others
     return Table(tuple(columns), stated=tuple(_numbers_stated(numbers | read_structures)))
 
 
-def _numbers_stated(values: Mapping[str, Any], of: str = "") -> Iterator[Stated]:
+def _numbers_stated(values: Mapping[str, Any], prefix: str = "") -> Iterator[Stated]:
     """Yield the sample rates among values by name, and among the fields of structures."""
     for name, value in values.items():
         if isinstance(value, dict):
-            yield from _numbers_stated(value, f"{of}{name}.")
+            yield from _numbers_stated(value, f"{prefix}{name}.")
         elif np.ndim(value) == 0:
-            yield from _stated(f"{of}{name}", value, ".")
+            yield from _stated(f"{prefix}{name}", value, ".")
 
 
 def _loaded(path: str | os.PathLike[str], name: str) -> Any:
@@ -276,7 +279,7 @@ def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """
     import pyuff  # 0.2 s to import
 
-    with _refused(path, "is not a universal file", "export it as UFF 58"):
+    with _naming_problem(path, "is not a universal file", "export it as UFF 58"):
         file = pyuff.UFF(os.fspath(path))
         sets = [file.read_sets(i) for i, kind in enumerate(file.get_set_types()) if int(kind) == 58]
     sets = [data_set for data_set in sets if data_set["func_type"] in _RESPONSES and np.isrealobj(data_set["data"])]
@@ -366,13 +369,13 @@ def parts_of(path: str, words: list[str]) -> dict[str, Any]:
     Columns that `words` name also have their samples.
     """
     table = READERS[Path(path).suffix.lower()](path, words)
-    needed = set()
+    needed_columns = set()
     for word in words:
         with suppress(InputError):  # no column, or several: refused where it is looked for
-            needed.add(table.column("", table.signed(word)[1] or ""))
+            needed_columns.add(table.column("", table.signed(word)[1] or ""))
     columns = []
     for column in table.columns:
-        samples = _sampled(column) if column in needed else {}
+        samples = _sampled(column) if column in needed_columns else {}
         columns.append({"name": column.name, "unit": column.unit, "aliases": column.aliases} | samples)
     return {"columns": columns, "stated": [[rate.name, rate.rate, rate.of] for rate in table.stated]}
 

@@ -69,7 +69,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
         f"Gravity {plan.gravity:g} m/s^2 on the machine is a part of the load, which is specific force."
         if plan.gravity
         else "NO GRAVITY: the load is acceleration; a machine on the earth adds its gravity of 9.80665 m/s^2.",
-        _mounted(plan),
+        _mounting_words(plan),
         _limit_words(plan),
         f"Arm {plan.arm:g} m; sample time {commands.sample:g} s; {len(commands.time)} samples.",
         f"Time is the flight's: it lasts from {first:.6g} to {last:.6g} s."
@@ -81,7 +81,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
         *FRAME,
     ]
     lines[1:1] = [
-        f"TARGET OTHER THAN FLIGHT {start:.3f} to {end:.3f} s: {why}" for start, end, why in plan.axes.episodes
+        f"TARGET OTHER THAN FLIGHT {start:.3f} to {end:.3f} s: {reason}" for start, end, reason in plan.axes.episodes
     ]
     if plan.provenance is not None:
         lines += origin_lines(plan.provenance)
@@ -90,7 +90,7 @@ def header(plan: MachinePlan, commands: Commands) -> list[str]:
     return lines
 
 
-def _mounted(plan: MachinePlan) -> str:
+def _mounting_words(plan: MachinePlan) -> str:
     """Place and turn of the specimen in the machine, in words."""
     place, turn = plan.axes.place, plan.axes.turn
     point = f"{plan.axes.control_point:g} m from the root along the beam"
@@ -121,7 +121,7 @@ def _limit_words(plan: MachinePlan) -> str:
 def origin_lines(provenance: Provenance) -> list[str]:
     """Lines on the origin of the numbers: version, command, scenario and records."""
     provenance, environment = provenance.stated()
-    records = [f"Record of {each.motion}: {each.file}, SHA-256 {each.sha256}." for each in provenance.records]
+    records = [f"Record of {record.motion}: {record.file}, SHA-256 {record.sha256}." for record in provenance.records]
     origin = f"Made by gbeam {environment.gbeam}, Python {environment.python}, {environment.platform}"
     lines = [f"{origin}: {provenance.command}", f"Scenario SHA-256 {provenance.sha256}.", *records]
     return [storable(line) for line in lines]

@@ -69,17 +69,17 @@ def contents_of(file: h5py.File) -> dict[str, Any]:
     def visit(name: str, node: h5py.Group | h5py.Dataset) -> None:
         attrs[name] = _attrs(node)
         if isinstance(node, h5py.Dataset) and not bytes(node.attrs.get("NAME", b"")).startswith(_NO_VARIABLE):
-            variables[name] = _present(node.asstr()[()] if node.dtype.kind == "O" else node[()])
+            variables[name] = _non_empty(node.asstr()[()] if node.dtype.kind == "O" else node[()])
 
     file.visititems(visit)
     return {"variables": variables, "attrs": attrs}
 
 
 def _attrs(node: h5py.Group | h5py.Dataset) -> dict[str, Any]:
-    return {name: _present(value) for name, value in node.attrs.items() if name not in _BOOKKEEPING}
+    return {name: _non_empty(value) for name, value in node.attrs.items() if name not in _BOOKKEEPING}
 
 
-def _present(value: Any) -> Any:
+def _non_empty(value: Any) -> Any:
     return "" if isinstance(value, h5py.Empty) else value
 
 
@@ -92,8 +92,8 @@ def _create(place: h5netcdf.Group, name: str, variable: Variable) -> None:
         values = np.array([storable(str(text)) for text in values.flat], dtype=object).reshape(values.shape)
     fill = np.nan if values.dtype.kind == "f" else None  # what xarray takes for a missing number
     zeros = values.size - np.count_nonzero(values) if fill is not None else 0
-    how = _COMPRESSED if values.size >= _MANY and zeros >= _EMPTY * values.size else {}
-    _describe(place.create_variable(name, variable.dims, kind, values, fill, **how), variable.attrs)
+    storage = _COMPRESSED if values.size >= _MANY and zeros >= _EMPTY * values.size else {}
+    _describe(place.create_variable(name, variable.dims, kind, values, fill, **storage), variable.attrs)
 
 
 def _describe(place: h5netcdf.Group | h5netcdf.Variable, attrs: Mapping[str, Any]) -> None:

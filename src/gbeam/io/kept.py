@@ -63,8 +63,8 @@ def kept(what: str, kind: type[T], source: Callable[[], Any], make: Callable[[],
     file = folder and folder / f"{key}{_ENDING}"
     if file:
         with suppress(Exception):  # missing, damaged, of another kind or program: whatever is wrong, it is made again
-            if isinstance(before := _read(file, key), kind):
-                return before
+            if isinstance(earlier := _read(file, key), kind):
+                return earlier
     began = monotonic()
     with Bar(what, patience=PATIENCE):
         value = make()
@@ -87,10 +87,10 @@ def unkept() -> Iterator[None]:
 
 def _folder() -> Path | None:
     """Folder that keeps values. None if it is off, or if other users may write in it, of which a warning says so."""
-    named = os.environ.get(FOLDER, "")
-    if named.strip().lower() in ("off", "0"):
+    choice = os.environ.get(FOLDER, "")
+    if choice.strip().lower() in ("off", "0"):
         return None
-    folder = Path(named) if named else user_cache_path("gbeam") / "models"
+    folder = Path(choice) if choice else user_cache_path("gbeam") / "models"
     status = _status(folder)
     if status is None or _private(status):
         return folder
@@ -142,9 +142,9 @@ def _write(file: Path, key: str, value: Any) -> None:
     write_packed(data, [key, value])
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     write_whole(file, hashlib.sha256(data.getbuffer()).digest(), data.getbuffer(), private=True)
-    others = [(other.stat(), other) for other in file.parent.glob(f"*{_ENDING}") if other != file]
+    others = [(old_file.stat(), old_file) for old_file in file.parent.glob(f"*{_ENDING}") if old_file != file]
     room = MOST - file.stat().st_size
-    for status, other in sorted(others, key=lambda pair: -pair[0].st_mtime):
+    for status, old_file in sorted(others, key=lambda pair: -pair[0].st_mtime):
         room -= status.st_size
         if room < 0:
-            other.unlink(missing_ok=True)
+            old_file.unlink(missing_ok=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -32,10 +31,10 @@ class Group:
     attrs: dict[str, Any] = field(default_factory=dict)
 
 
-def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, **more: Any) -> Variable:
+def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, **attrs: Any) -> Variable:
     """Return a variable; one along the dimension ``axis`` holds components in base axes, and says so."""
     frame = {"frame": BASE_AXES} if "axis" in dims else {}
-    return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | frame | more)
+    return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | frame | attrs)
 
 
 def words(dims: tuple[str, ...], values: Any, long_name: str) -> Variable:
@@ -77,17 +76,17 @@ def thinned(group: Group, every: int) -> Group:
     return Group(variables, coordinates, group.attrs | attrs | {"histories_every": every})
 
 
-def known(variables: dict[str, Variable]) -> dict[str, Variable]:
+def drop_unknown(variables: dict[str, Variable]) -> dict[str, Variable]:
     """Return the variables but those of which no value is known: a file has no column of nothing."""
-    return {name: each for name, each in variables.items() if not _unknown(each.values)}
+    return {name: entry for name, entry in variables.items() if not _is_unknown(entry.values)}
 
 
 def known_attrs(attrs: dict[str, Any]) -> dict[str, Any]:
     """Return the attributes but those of which no value is known."""
-    return {name: value for name, value in attrs.items() if isinstance(value, str) or not _unknown(np.asarray(value))}
+    return {name: fact for name, fact in attrs.items() if isinstance(fact, str) or not _is_unknown(np.asarray(fact))}
 
 
-def _unknown(values: Any) -> bool:
+def _is_unknown(values: Any) -> bool:
     return values.dtype.kind == "f" and values.size > 0 and bool(np.isnan(values).all())
 
 
@@ -122,11 +121,11 @@ def pattern_of(declaration: Declaration, pattern: str) -> str:
     return pattern.replace("*", name if "*" in name else f"{name.removesuffix(INSIDE)}*")
 
 
-def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: str = "") -> Group:
+def group_of(record: Any, outer_dims: tuple[str, ...] = (), pattern: str = "*", unit: str = "") -> Group:
     """Return what a file holds of a record: variables, with the coordinates of their dimensions, and attributes.
 
-    Of a record within another, `over` are the dimensions before its own, `pattern` that of its names, and `unit` that
-    of the fields that have none of their own.
+    Of a record within another, `outer_dims` are the dimensions before its own, `pattern` is that of its names, and
+    `unit` that of the fields that have none of their own.
     """
     group = Group()
     for key, declaration in declarations(type(record)):
@@ -137,15 +136,18 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
             continue
         name = name_of(key, declaration, pattern)
         after = pattern.partition("*")[2]
-        dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*over, *declaration.dims))
+        dims = tuple(dim + after.lstrip("_") if dim.endswith("_") else dim for dim in (*outer_dims, *declaration.dims))
         if isinstance(value, (np.ndarray, np.generic)) and value.ndim < len(dims):
             dims = tuple(dim for dim in dims if dim != "time")  # of one time
         stated = declaration.unit
-        si = unit if stated is BESIDE and unit else stated(record) if callable(stated) else str(stated)
+        if stated is BESIDE and unit:
+            si = unit
+        else:
+            si = stated(record) if callable(stated) else str(stated)
         part_pattern = pattern_of(declaration, pattern)
         if declaration.role == "part":
             inner = group_of(value, dims, part_pattern, si or unit)
-            _merge(group, Group(known(inner.variables), inner.coordinates, inner.attrs))
+            _merge(group, Group(drop_unknown(inner.variables), inner.coordinates, inner.attrs))
         elif declaration.role == "rows" and isinstance(value, Mapping):
             units = declaration.unit if isinstance(declaration.unit, dict) else {}
             for row, part in value.items():
@@ -154,7 +156,7 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
                 inner = _renamed(inner, {dim: f"{row}_{dim}" for dim in dims_of_row})
                 group.attrs.update(inner.attrs)
                 group.coordinates.update({dim: entry for dim, entry in inner.coordinates.items() if dim})
-                for label, entry in known(inner.variables).items():
+                for label, entry in drop_unknown(inner.variables).items():
                     long_name = f"{row.replace('_', ' ')}, {entry.attrs['long_name']}"
                     group.variables[label] = entry._replace(attrs=entry.attrs | {"long_name": long_name})
         elif declaration.role == "rows":
@@ -170,7 +172,7 @@ def group_of(record: Any, over: tuple[str, ...] = (), pattern: str = "*", unit: 
             group.coordinates[dims[-1]] = _variable(dims[-1:], value, declaration, si)
         elif declaration.dims[-1:] == ("ends",):
             for suffix, order, bound in zip(("from", "to"), ("first", "last"), value, strict=True):
-                group.variables[f"{name}_{suffix}"] = _variable(dims[:-1], bound, declaration, si, before=f"{order} ")
+                group.variables[f"{name}_{suffix}"] = _variable(dims[:-1], bound, declaration, si, prefix=f"{order} ")
         elif np.iscomplexobj(value):
             for suffix, values in (("real", value.real), ("imag", value.imag)):
                 group.variables[f"{name}_{suffix}"] = _variable(dims, values, declaration, si, f": {suffix} part")
@@ -205,12 +207,14 @@ def completed(group: Group) -> Group:
 def in_files(unit: str) -> str:
     """Return a unit as the conventions of netCDF write it: ``m s-2`` of ``m/s^2``, ``1`` where there is none."""
     numerator, _, denominator = unit.partition("/")
-    divisor = re.sub(r"\^|$", "-", denominator, count=1) + ("" if "^" in denominator else "1") if denominator else ""
-    return " ".join(filter(None, (numerator if numerator != "1" or not denominator else "", divisor))) or "1"
+    if not denominator:
+        return numerator or "1"
+    divisor = denominator.replace("^", "-", 1) if "^" in denominator else f"{denominator}-1"
+    return divisor if numerator in ("", "1") else f"{numerator} {divisor}"
 
 
 def _variable(
-    dims: tuple[str, ...], value: Any, declaration: Declaration, unit: str, after: str = "", before: str = ""
+    dims: tuple[str, ...], value: Any, declaration: Declaration, unit: str, suffix: str = "", prefix: str = ""
 ) -> Variable:
     """Variable of a field by its declaration: text, flags, or numbers with their unit and frame."""
     values = np.asarray(np.nan if value is None else value)
@@ -221,7 +225,7 @@ def _variable(
     if values.dtype == bool:
         values = values.astype(np.int64)
     frame = {"frame": declaration.frame} if declaration.frame else {}
-    return variable(dims, values, in_files(unit), f"{before}{declaration.words}{after}", **frame)
+    return variable(dims, values, in_files(unit), f"{prefix}{declaration.words}{suffix}", **frame)
 
 
 def _attribute(value: Any) -> Any:
@@ -241,10 +245,12 @@ def _columns(rows: list[Group], dims: tuple[str, ...]) -> Group:
     group = Group()
     for name in dict.fromkeys(name for row in rows for name in row.variables):
         cells = [row.variables.get(name) for row in rows]
-        first, *others = (cell for cell in cells if cell is not None)
-        missing = np.full(np.shape(first.values), "" if np.asarray(first.values).dtype.kind in "UO" else np.nan)
-        values = np.stack([missing if cell is None else cell.values for cell in cells])
-        units = {cell.attrs.get("units") for cell in (first, *others)}
+        known_cells = [cell for cell in cells if cell is not None]
+        first = known_cells[0]
+        missing: Any = "" if np.asarray(first.values).dtype.kind in "UO" else np.nan
+        filler = np.full(np.shape(first.values), missing)
+        values = np.stack([filler if cell is None else cell.values for cell in cells])
+        units = {cell.attrs.get("units") for cell in known_cells}
         mixed = {"units": "mixed"} if len(units) > 1 else {}
         group.variables[name] = Variable((*dims, *first.dims), values, first.attrs | mixed)
     if rows and "" in rows[0].coordinates:
@@ -258,16 +264,16 @@ def _renamed(group: Group, names: Mapping[str, str]) -> Group:
         return group
 
     def renamed(variables: dict[str, Variable]) -> dict[str, Variable]:
-        new = {}
+        entries = {}
         for key, entry in variables.items():
             dims = tuple(names.get(dim, dim) for dim in entry.dims)
-            new[names.get(key, key)] = entry._replace(dims=dims)
-        return new
+            entries[names.get(key, key)] = entry._replace(dims=dims)
+        return entries
 
     return Group(renamed(group.variables), renamed(group.coordinates), group.attrs)
 
 
-def _merge(group: Group, other: Group) -> None:
-    group.variables.update(other.variables)
-    group.coordinates.update(other.coordinates)
-    group.attrs.update(other.attrs)
+def _merge(group: Group, addition: Group) -> None:
+    group.variables.update(addition.variables)
+    group.coordinates.update(addition.coordinates)
+    group.attrs.update(addition.attrs)

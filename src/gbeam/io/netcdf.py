@@ -37,9 +37,9 @@ from gbeam.io.layout import (
     Variable,
     completed,
     coordinate,
+    drop_unknown,
     group_of,
     in_files,
-    known,
     labels,
     thinned,
     variable,
@@ -58,15 +58,15 @@ def response_group(response: Response) -> Group:
     """Return what a file holds of a response."""
     group = whole_group(response)
     limits = {} if response.axes is None else limits_variables(response.axes.limits)
-    return Group(known(group.variables) | limits, group.coordinates, group.attrs)
+    return Group(drop_unknown(group.variables) | limits, group.coordinates, group.attrs)
 
 
 def plan_group(plan: MachinePlan) -> Group:
     """Return what a file holds of a plan."""
     axes, load, group = group_of(plan.axes), group_of(plan.accounting), whole_group(plan)
     # Where the target is not the flight's load, and where the load is not the flight's, are two things.
-    judged = {f"load_{name}" if name in axes.variables else name: each for name, each in load.variables.items()}
-    variables = axes.variables | limits_variables(plan.axes.limits) | known(judged) | group.variables
+    judged = {f"load_{name}" if name in axes.variables else name: entry for name, entry in load.variables.items()}
+    variables = axes.variables | limits_variables(plan.axes.limits) | drop_unknown(judged) | group.variables
     return completed(Group(variables, group.coordinates, group.attrs))
 
 
@@ -99,9 +99,9 @@ def sweep_group(sweep: Sweep) -> Group:
         "message": Variable(dims, sweep.message, {"long_name": "why the case is not done"}),
     }
     if sweep.histories:
-        along = (*dims, "time")
+        history_dims = (*dims, "time")
         data |= {
-            f"{name} history": variable(along, values, sweep.units[name], f"{name} over time")
+            f"{name} history": variable(history_dims, values, sweep.units[name], f"{name} over time")
             for name, values in sweep.histories.items()
         }
     data |= _statistics(sweep)
@@ -142,8 +142,8 @@ def _statistics(sweep: Sweep) -> dict[str, Variable]:
 
 def _coordinate(parameter: Parameter) -> Variable:
     attrs = {"units": parameter.unit or "1"} if parameter.numeric else {}
-    drawn = {"distribution": parameter.drawn} if parameter.drawn else {}
-    return Variable((parameter.dimension,), parameter.values, attrs | {"long_name": parameter.path} | drawn)
+    distribution = {"distribution": parameter.drawn} if parameter.drawn else {}
+    return Variable((parameter.dimension,), parameter.values, attrs | {"long_name": parameter.path} | distribution)
 
 
 FACTS = "facts"  # the variable of the root with the figures as JSON
@@ -245,7 +245,7 @@ class Stored:
     @property
     def provenance(self) -> Provenance:
         """Provenance of the result."""
-        return provenance_of({name: each for name, each in self.variables.items() if "/" not in name}, self.attrs)
+        return provenance_of({name: entry for name, entry in self.variables.items() if "/" not in name}, self.attrs)
 
 
 def stored(result: Result) -> Stored:
@@ -266,7 +266,7 @@ def read_stored(path: str | os.PathLike[str]) -> Stored:
 
 
 def _stored(variables: dict[str, Any], attrs: dict[str, dict[str, Any]]) -> Stored:
-    arrays = {name: each if isinstance(each, str) else np.asarray(each) for name, each in variables.items()}
+    arrays = {name: content if isinstance(content, str) else np.asarray(content) for name, content in variables.items()}
     return Stored(arrays, attrs)
 
 

@@ -44,7 +44,7 @@ class Clock:
     def seconds(self, text: str) -> float | None:
         """Return the seconds from the first time to a text, within a day if a date is missing; None if it is none."""
         first, now = _reading(self.first), _reading(text)
-        return None if first is None or now is None else _since(first, now) / _SECOND
+        return None if first is None or now is None else _nanoseconds(first, now) / _SECOND
 
 
 def is_clock(text: str) -> bool:
@@ -58,14 +58,14 @@ def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None
     if first is None:
         return None
     readings = (_reading(cell) for cell in cells)
-    seconds = np.array([np.nan if reading is None else _since(first, reading) / _SECOND for reading in readings])
+    seconds = np.array([np.nan if reading is None else _nanoseconds(first, reading) / _SECOND for reading in readings])
     if first[0] is None:  # without days, times that jump by more than half a day have passed midnight
         finite = np.isfinite(seconds)
         seconds[finite] = np.unwrap(seconds[finite], period=_DAY / _SECOND)
     return Clock(cells[0]), seconds
 
 
-def _since(first: _Reading, now: _Reading) -> int:
+def _nanoseconds(first: _Reading, now: _Reading) -> int:
     """Nanoseconds from one reading to another, within a day where the day of either is not known."""
     passed = now[1] - first[1]
     return passed % _DAY if first[0] is None or now[0] is None else (now[0] - first[0]) * _DAY + passed
@@ -76,9 +76,11 @@ def _reading(text: str) -> _Reading | None:
     match = _CLOCK.fullmatch(text)
     if match is None:
         return _logged(text)
-    day = _day(match["date"]) if match["date"] else int(match["day"]) if match["day"] else None
-    if match["date"] and day is None:
-        return None
+    day = int(match["day"]) if match["day"] else None
+    if match["date"]:
+        day = _day(match["date"])
+        if day is None:
+            return None
     ahead = match["ahead"] or "+0"
     minutes = int(match["minute"]) - (60 * int(ahead) + int(f"{ahead[0]}{match['also'] or 0}"))
     seconds = 3600 * int(match["hour"]) + 60 * minutes + int(match["second"])
@@ -138,26 +140,26 @@ class Stated:
     of: str = ""
 
     @classmethod
-    def read(cls, path: str, value: float, between: str) -> Iterator[Stated]:
+    def read(cls, path: str, value: float, separator: str) -> Iterator[Stated]:
         """Yield the rate that a number at a path in a file is by its name: ``imu/fs`` in Hz, ``dt`` in s."""
-        of, _, name = path.rpartition(between)
+        group, _, name = path.rpartition(separator)
         if states_rate(name) and 0 < value < math.inf:
-            yield cls(path, value if _plain(name) in _RATES else 1 / value, of)
+            yield cls(path, value if _letters(name) in _RATES else 1 / value, group)
 
 
 def states_rate(name: str) -> bool:
     """True if a number of this name is a sample rate, or the time between samples."""
-    return _plain(name) in _RATES | _STEPS
+    return _letters(name) in _RATES | _STEPS
 
 
-def _plain(name: str) -> str:
+def _letters(name: str) -> str:
     return re.sub("[^a-z]", "", name.lower())
 
 
 _SAMPLE = ("sample", "sampling")
-_RATES = {"fs", "srate", "sfreq"} | {each + end for each in _SAMPLE for end in ("rate", "freq", "frequency")}
+_RATES = {"fs", "srate", "sfreq"} | {stem + end for stem in _SAMPLE for end in ("rate", "freq", "frequency")}
 _STEPS = {"dt", "ts", "deltat", "deltax", "wfincrement"}
-_STEPS |= {each + end for each in _SAMPLE for end in ("time", "interval", "period")}
+_STEPS |= {stem + end for stem in _SAMPLE for end in ("time", "interval", "period")}
 
 
 @dataclass(frozen=True)
@@ -201,8 +203,8 @@ class Table:
     def cells(self, axis: str, name: str) -> NDArray[np.str_]:
         """Return a column as words (t,), numbers in their shortest form, so that 3, "3" and "3.0" are alike."""
         samples = self._samples(axis, name)
-        known, alike = np.unique(np.asarray(samples), return_inverse=True)
-        return np.array([as_word(str(each)) for each in known], dtype=np.str_)[alike.reshape(-1)]
+        values, alike = np.unique(np.asarray(samples), return_inverse=True)
+        return np.array([as_word(str(value)) for value in values], dtype=np.str_)[alike.reshape(-1)]
 
     def times(self, name: str) -> tuple[Floats, Clock | None, str]:
         """Return the column of times (t,), all finite, the clock of times of day, and the first as the file has it.
@@ -217,8 +219,11 @@ class Table:
 
     def count(self, names: dict[str, str]) -> int:
         """Number of samples of the first column among components, named as in :meth:`vector`."""
-        columns = ((axis, column) for axis, (_, column) in ((a, self.signed(n)) for a, n in names.items()) if column)
-        return next((len(self._samples(axis, column)) for axis, column in columns), 0)
+        for axis, name in names.items():
+            _, column = self.signed(name)
+            if column:
+                return len(self._samples(axis, column))
+        return 0
 
     def _samples(self, axis: str, name: str) -> Sequence[str] | NDArray[Any]:
         column = self.column(axis, name)
@@ -229,24 +234,28 @@ class Table:
 
     def _finite(self, axis: str, name: str, samples: Any, values: Floats, part: slice) -> Floats:
         """Return the values. InputError, with the place in the file, unless they are finite within `part`."""
-        bad = np.flatnonzero(~(np.abs(values[part]) <= LARGEST))
-        if bad.size:
-            i = int(bad[0]) + (part.start or 0)
+        bad_rows = np.flatnonzero(~(np.abs(values[part]) <= LARGEST))
+        if bad_rows.size:
+            i = int(bad_rows[0]) + (part.start or 0)
             cell = samples[i]
             if isinstance(cell, str) and math.isnan(_number(cell)) and cell.lower().lstrip("+-") != "nan":
-                cell_text, wanted = repr(cell) if cell else "empty", "a number"
+                cell_text, expected = repr(cell) if cell else "empty", "a number"
             else:
-                cell_text, wanted = str(cell), "a finite number"
+                cell_text, expected = str(cell), "a finite number"
             raise InputError(
-                f"record.{axis}", f"{self.place(i)}, column {name!r} is {cell_text}", f"put {wanted} there"
+                f"record.{axis}", f"{self.place(i)}, column {name!r} is {cell_text}", f"put {expected} there"
             )
         return values
 
     def rates(self, names: Iterable[str]) -> dict[str, float]:
         """Return the sample rates, Hz, that the file states of columns, named with their signs, by their own names."""
         columns = [column for _, column in map(self.signed, names) if column is not None]
-        of = [self.column("", column).name for column in columns]
-        return {each.name: each.rate for each in self.stated if any(name.startswith(each.of) for name in of)}
+        own_names = [self.column("", column).name for column in columns]
+        rates = {}
+        for stated in self.stated:
+            if any(name.startswith(stated.of) for name in own_names):
+                rates[stated.name] = stated.rate
+        return rates
 
     def vector(self, names: dict[str, str], count: int, part: slice = slice(None)) -> Floats:
         """Stack components by axis, columns with their signs, (count, 3), whose `part` must be finite.
@@ -285,22 +294,22 @@ def array_columns(
     name: str, shape: tuple[int, ...], read: Callable[[], NDArray[Any]], *, unit: str = "", matlab: bool = False
 ) -> list[Column]:
     """Columns of one array of a file: itself if it is a vector, one for each vector if it is a matrix, else none."""
-    short = name.rpartition("." if matlab else "/")[2]
-    long = [size for size in shape if size > 1]
-    if len(long) == 1:
-        return [Column(name, lambda: read().ravel(), unit, (short,))]
-    if len(shape) != 2 or len(long) != 2:
+    last_word = name.rpartition("." if matlab else "/")[2]
+    sizes = [size for size in shape if size > 1]
+    if len(sizes) == 1:
+        return [Column(name, lambda: read().ravel(), unit, (last_word,))]
+    if len(shape) != 2 or len(sizes) != 2:
         return []
-    across = int(shape[1] <= shape[0])  # the axis that counts the vectors
-    if shape[across] > COLUMNS:
+    axis = int(shape[1] <= shape[0])  # the axis that counts the vectors
+    if shape[axis] > COLUMNS:
         return []
 
     def vector(k: int) -> Column:
-        index = f"{k + matlab},:" if across == 0 else f":,{k + matlab}"
+        index = f"{k + matlab},:" if axis == 0 else f":,{k + matlab}"
         index = f"({index})" if matlab else f"[{index}]"
-        return Column(name + index, lambda: np.take(read(), k, axis=across), unit, (short + index,))
+        return Column(name + index, lambda: np.take(read(), k, axis=axis), unit, (last_word + index,))
 
-    return [vector(k) for k in range(shape[across])]
+    return [vector(k) for k in range(shape[axis])]
 
 
 def _numbers(samples: Sequence[str] | NDArray[Any]) -> Floats:

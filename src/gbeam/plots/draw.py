@@ -77,8 +77,10 @@ class _Bins:
     def envelope(self, x: Floats, y: Floats, run: slice) -> tuple[Floats, Floats, Floats]:
         """Times of a stretch, its low and its high edge: it begins and ends on the line, then there is a gap."""
         first, last = self._ends[[run.start, run.stop]]
-        low, high = ([y[first], *edge[run], y[last], np.nan] for edge in (self.low, self.high))
-        return np.array([x[first], *self.centre[run], x[last], np.nan]), np.array(low), np.array(high)
+        times = [x[first], *self.centre[run], x[last], np.nan]
+        low = [y[first], *self.low[run], y[last], np.nan]
+        high = [y[first], *self.high[run], y[last], np.nan]
+        return np.array(times), np.array(low), np.array(high)
 
 
 def _join_runs(fast: Flags) -> Flags:

@@ -32,13 +32,13 @@ def blocks_of(
     """
     module = next((name for name, kinds in _MODULES.items() if kind in kinds), None)
     if module is None:
-        return _unnamed(facts, words)
+        return _plain_quantities(facts, words)
     name = re.sub(r"(?<!^)(?=[A-Z])", "_", kind).lower()
     blocks: Iterable[Block] = getattr(import_module(f"gbeam.report.{module}"), name)(facts, **(options or {}))
     return blocks
 
 
-def _unnamed(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
+def _plain_quantities(facts: Facts, words: Mapping[str, str] | None) -> Iterable[Block]:
     """Yield the quantities of a result as they are, which no module describes."""
     yield Section("View", (Place("viewer"),))
     yield from quantities(facts, words=words)

@@ -51,13 +51,13 @@ def sweep(facts: Facts) -> Blocks:
         yield Section("", tuple(blocks))
     elif facts["measures"]:
         yield Section("", (_cases(facts, outcomes) if few else _quantiles(facts["measures"]),))
-    yield Section("", tuple(_ended(facts, outcomes)))
+    yield Section("", tuple(_outcome_blocks(facts, outcomes)))
     yield Section("Figures", (FIGURES,))
     if not few:
         yield Section("Cases", (_cases(facts, outcomes),))
 
 
-def _ended(facts: Facts, outcomes: Any) -> Blocks:
+def _outcome_blocks(facts: Facts, outcomes: Any) -> Blocks:
     """Number of cases by outcome, and the messages of cases that are not done, each with the number of its cases."""
     failed = int((~np.isin(outcomes.astype(str), ("done", *ANSWERED))).sum())
     if facts["statistics"] and failed:
@@ -73,7 +73,7 @@ def _ended(facts: Facts, outcomes: Any) -> Blocks:
     yield Items((*lines, *(["…"] if len(counts_of) > _FAILURES else [])), "bad")
 
 
-def _titled(name: str, unit: str) -> str:
+def _with_unit(name: str, unit: str) -> str:
     return f"{name}, {raised(unit)}" if unit else name
 
 
@@ -96,8 +96,8 @@ def _cases(facts: Facts, outcomes: Any) -> Block:
         values = (row["values"][place[axis]] for row, axis in zip(parameters, axes, strict=True))
         return [*map(six, values), *(Cell(number(figure[place])) for figure in figures), outcome]
 
-    heads = [_titled(row["path"], row["unit"]) for row in parameters]
-    heads += [_titled(name, measure["unit"]) for name, measure in measures.items()]
+    heads = [_with_unit(row["path"], row["unit"]) for row in parameters]
+    heads += [_with_unit(name, measure["unit"]) for name, measure in measures.items()]
     heads += [] if facts["outcome"] == "done" else ["outcome"]
     places = list(np.ndindex(outcomes.shape))
     caption = f"the first {_LISTED} of {len(places)}" if len(places) > _LISTED else ""
@@ -122,14 +122,14 @@ def _quantiles(measures: Facts) -> Block:
     rows = []
     for name, summary in summaries.items():
         rows.append([name, *(number(summary(array)) if len(array) else "–" for array in finite)])
-    heads = ["", *(_titled(name, measure["unit"]) for name, measure in measures.items())]
+    heads = ["", *(_with_unit(name, measure["unit"]) for name, measure in measures.items())]
     return table(rows, {head: str(k) for k, head in enumerate(heads)})
 
 
 def _estimates(facts: Facts, name: str) -> Blocks:
     """Tables of the statistics of one measure or history, with their intervals of 95 % confidence."""
     estimates, history = facts["statistics"][name], name in facts["histories"]
-    title = _titled(name, facts["histories" if history else "measures"][name]["unit"])
+    title = _with_unit(name, facts["histories" if history else "measures"][name]["unit"])
     if history:
         yield _history(facts["time"], estimates, title)
     elif isinstance(estimates["draws"], int):
@@ -174,17 +174,18 @@ def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:
     """Table with a row for each point of the grid: the first statistic with its 95 % interval, then the others."""
     grid = [parameter for parameter in facts["parameters"] if not parameter["distribution"]]
     names = [name for name in estimates if name in ("mean", "5 %", "95 %", PROBABILITY)]
-    values = {name: {bound: np.array(estimates[name][bound], dtype=float) for bound in BOUNDS} for name in names}
+    values = [np.array(estimates[name]["estimate"], dtype=float) for name in names]
+    bounds = {bound: np.array(estimates[names[0]][bound], dtype=float) for bound in BOUNDS}
 
     def row(place: tuple[int, ...]) -> list[Cell]:
-        first, *others = (Cell(number(values[name]["estimate"][place])) for name in names)
-        interval = _interval_words({bound: values[names[0]][bound][place] for bound in BOUNDS})
         point = [six(parameter["values"][k]) for parameter, k in zip(grid, place, strict=True)]
+        first, *others = [Cell(number(array[place])) for array in values]
+        interval = _interval_words({bound: array[place] for bound, array in bounds.items()})
         return [*point, first, Cell(interval), *others]
 
-    point_heads = [_titled(parameter["path"], parameter["unit"]) for parameter in grid]
+    point_heads = [_with_unit(parameter["path"], parameter["unit"]) for parameter in grid]
     heads = [*point_heads, names[0], "95 % confidence", *names[1:]]
-    places = np.ndindex(values[names[0]]["estimate"].shape)
+    places = np.ndindex(values[0].shape)
     return table(map(row, places), {head: str(k) for k, head in enumerate(heads)}, title)
 
 

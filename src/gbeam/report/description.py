@@ -59,11 +59,18 @@ def _bodies(case: Description) -> list[str]:
     """Lines on the bodies, joints, forces, controllers and gravity. A single body on the base is described in full."""
     if len(case.bodies) == 1 and not case.joints:
         ((name, body),) = case.bodies.items()
-        return [*_listed(name, list(_facts(body))), *_listed("modes", _modes(body, "at rest, Hz: ")), *_acting(case)]
+        return [
+            *_listed(name, list(_facts(body))),
+            *_listed("modes", _modes(body, "at rest, Hz: ")),
+            *_interactions(case),
+        ]
     bodies = []
     for name, body in case.bodies.items():
         bodies.append(f"{name}: {'; '.join((*_facts(body), *_modes(body, 'held at rest, Hz: ')))}")
-    return [*_listed("bodies", [f"{case.mass:.4g} kg, {_centre(case.centre)} at the start", *bodies]), *_acting(case)]
+    return [
+        *_listed("bodies", [f"{case.mass:.4g} kg, {_centre(case.centre)} at the start", *bodies]),
+        *_interactions(case),
+    ]
 
 
 def _facts(body: BodyDescription) -> Iterator[str]:
@@ -90,7 +97,7 @@ def _centre(centre: Any) -> str:
     return f"centre of mass at ({tidied}) mm"
 
 
-def _acting(case: Description) -> list[str]:
+def _interactions(case: Description) -> list[str]:
     """Lines on the joints, forces, controllers and gravity of a case."""
     joints = []
     for name, joint in case.joints.items():

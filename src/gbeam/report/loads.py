@@ -269,7 +269,7 @@ def errors(motions: Facts) -> Blocks:
     rows = []
     for name, motion in motions.items():
         no_steps: Facts = {} if "steps" in motion else {"step": None}  # a state of rest takes none
-        for quantity in _judged(motion):
+        for quantity in _error_quantities(motion):
             estimate = motion["errors"][quantity]
             if estimate["total"] is not None:
                 rows.append({"name": name, "of": quantity, **estimate, **no_steps})
@@ -277,14 +277,14 @@ def errors(motions: Facts) -> Blocks:
     causes = {name.replace("_", " "): f"{name}:%" for name in names}
     cells = {"motion": "name", "of": "of"} | causes
     yield table(rows, cells, "Estimated errors, of the largest value", optional=causes)
-    if not rows and any("displacement" in _judged(motion) for motion in motions.values()):
+    if not rows and any("displacement" in _error_quantities(motion) for motion in motions.values()):
         yield Sentence("no error estimate", "faint")
     for name, motion in motions.items():
         if motion["errors"].get("note"):
             yield Sentence(f"{name}: {motion['errors']['note']}", "faint")
 
 
-def _judged(motion: Facts) -> tuple[str, ...]:
+def _error_quantities(motion: Facts) -> tuple[str, ...]:
     """Quantities whose errors are told: of loads alone where all is rigid and rests on its base."""
     bodies = motion.get("bodies", {}).values()
     if bodies and all("specimen" in body for body in bodies):
@@ -297,7 +297,9 @@ def errors_by_body(errors: Facts) -> Block:
     """Table of the share of each body in the estimated errors, of lists with one entry for each body."""
     count = len(errors.get("beams", ()))
     by_body = {key: values for key, values in errors.items() if isinstance(values, list) and values}
-    rows = [{key: values[k] for key, values in by_body.items()} for k in range(count)]
+    rows = []
+    for k in range(count):
+        rows.append({key: values[k] for key, values in by_body.items()})
     shares = {"deflection": "displacement_by_beam:%", "places: shapes and model": "by_beam:%"}
     shares |= {"root loads": "loads_by_beam:%", "their peaks": "load_peaks_by_beam:%"}
     shares |= {"stress": "stress_by_beam:%", "its peak": "stress_peaks_by_beam:%"}

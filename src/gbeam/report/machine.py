@@ -34,13 +34,13 @@ from gbeam.results.result import Floats
 _EXACT = 1e-9  # of the load: a smaller error is rounding
 
 
-def tracked(driven: Driven) -> str:
+def tracking_words(driven: Driven) -> str:
     """Words for how well a machine follows the load."""
     errors = {"tracking_error": driven.tracking_error, "flight_error": driven.flight_error}
-    return followed({name: None if error is None else asdict(error) for name, error in errors.items()})
+    return error_words({name: None if error is None else asdict(error) for name, error in errors.items()})
 
 
-def followed(facts: Mapping[str, Any]) -> str:
+def error_words(facts: Mapping[str, Any]) -> str:
     """Words for the largest error of the load, beside the flight and beside the smoothed target, from
     the JSON of both.
     """
@@ -168,16 +168,16 @@ def machine_plan(facts: Facts) -> Blocks:
         tone = "good" if plan["state"] in GOOD else "bad"
         message = (Sentence(plan["message"], "bad"),) if plan["message"] else ()
         yield Section(title, message or (Sentence(""),), titled=True, tone=tone)
-        yield Section("Machine", tuple(_planned(plan)), verbose=True)
+        yield Section("Machine", tuple(_plan_blocks(plan)), verbose=True)
         yield from verdict(plan, (level_words(plan["tracks"] or "flight", plan.get("scale")), name))
         yield from verdict_sections(plan)
     yield Section("Histories", (FIGURES,))
 
 
-def _planned(plan: Facts) -> Blocks:
+def _plan_blocks(plan: Facts) -> Blocks:
     """Limits, tracking, stretches in which the target is not the flight's load, and loads out of reach, of one plan."""
     yield limits(plan)
-    yield Sentence(followed(plan))
+    yield Sentence(error_words(plan))
     yield departures_table(plan)
     shortfalls = tuple(str(Shortfall(**row)) for row in plan["shortfalls"])
     yield Items(shortfalls[:SHOWN], "warning")
@@ -221,7 +221,7 @@ def comparison(facts: Facts) -> Blocks:
 
 def verdict(judged: Facts, names: tuple[str, str], title: str = "Verdict") -> Blocks:
     """Section for a page, of the verdict on an imitation and its tables; `names` are those of flight and machine."""
-    tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _not_followed(judged)
+    tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _missed_stretches(judged)
     yield Section(
         title, (Sentence(judged["verdict"], "verdict"), Items(tuple(judged["findings"])), *tables), detail=True
     )
@@ -302,7 +302,7 @@ def _load_peaks(judged: Facts) -> Block:
     return table(judged["accounting"]["peaks"], cells, "Peaks of the load at the control point")
 
 
-def _not_followed(judged: Facts) -> Block:
+def _missed_stretches(judged: Facts) -> Block:
     """Table of the stretches that are not followed. A page folds it if they are many."""
     accounting = judged["accounting"]
     rows, share = accounting["not_followed"], float_of(accounting["followed_share"])

@@ -186,7 +186,7 @@ def placement(facts: Facts) -> Blocks:
         ("With smoothing and tracking", "total_error"),
     ):
         yield _measures(facts[key], places, title)
-    yield from _verified(facts, places)
+    yield from _verification_table(facts, places)
     refused = Items(tuple(f"cannot: {reason}" for reason in facts["refused"]))
     yield Section("Options", (_options(facts["options"], measure), refused))
 
@@ -198,7 +198,7 @@ def _placement_rows(facts: Facts) -> Iterator[tuple[str, Value]]:
     length = f", {length_share:.4f} of the length" if length_share else ""
     yield "control point", f"{_point(facts)} from the root{length} (now {present_point})"
     yield "largest load", _largest_load(best["largest_load"], present and present["largest_load"])
-    yield "mounting", facts["mounting"] + _turned(facts)
+    yield "mounting", facts["mounting"] + _turn_words(facts)
     yield "smoothing", f"{number(1e3 * facts['smoothing'])} ms{_range(facts)}"
 
 
@@ -239,7 +239,7 @@ def _measures(values: Facts, places: dict[str, str], title: str) -> Block:
     return table(values.get("best", ()), cells, title)
 
 
-def _verified(facts: Facts, places: dict[str, str]) -> Blocks:
+def _verification_table(facts: Facts, places: dict[str, str]) -> Blocks:
     """Table of simulated differences at each control point, and the factor by which the best one vibrates less."""
     checks = facts["verifications"]
     cells = {
@@ -270,7 +270,7 @@ def _options(options: Sequence[Facts], measure: str) -> Block:
         return f"{100 * option['share']:.0f} % of a limit" if option["share"] else ""
 
     cells: Columns = {
-        "mounting": lambda option: option["mounting"] + _turned(option),
+        "mounting": lambda option: option["mounting"] + _turn_words(option),
         "smoothing, ms": "smoothing",
         "control point, mm": lambda option: _point(option).removesuffix(" mm"),
         "error": lambda option: _peak_share(option["total_error"]),
@@ -302,7 +302,7 @@ def _point(facts: Facts) -> str:
     return f"({', '.join(words)}) mm" if any([*facts["place"].values()][1:]) else f"{words[0]} mm"
 
 
-def _turned(facts: Facts) -> str:
+def _turn_words(facts: Facts) -> str:
     """A rotation vector, rad; empty where there is none."""
     turn = [*facts["turn"].values()]
     return f", turned by {degrees(turn)}" if any(turn) else ""

@@ -64,14 +64,17 @@ def rest(facts: Facts) -> Blocks:
 
 def _points(motions: Facts) -> Blocks:
     """Tables of the displacements of points and, on a page, of all coordinates and drives."""
-    rows = [{"motion": name, **point} for name, rest in motions.items() for point in name_rows(rest["points"])]
+    points: list[Facts] = []
+    coordinates: list[Facts] = []
+    for name, rest in motions.items():
+        points += [{"motion": name, **point} for point in name_rows(rest["points"])]
+        coordinates += [{"motion": name, **coordinate} for coordinate in name_rows(rest["coordinates"])]
     motion_column: Columns = {"motion": "motion"} if len(motions) > 1 else {}
-    cells: Columns = {**motion_column, "point": "name", **{f"{axis}, mm": f"displacement.{axis}" for axis in "xyz"}}
-    scale = max((abs(component) for row in rows for component in row["place"].values()), default=0.0)
-    yield table(rows, cells, "Displacement of points from the start, axes of the ground", scale=scale)
-    coordinates: Columns = motion_column | {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
-    rows = [{"motion": name, **row} for name, rest in motions.items() for row in name_rows(rest["coordinates"])]
-    yield table(rows, coordinates, "Coordinates", detail=True)
+    cells = motion_column | {"point": "name"} | {f"{axis}, mm": f"displacement.{axis}" for axis in "xyz"}
+    scale = max((abs(component) for point in points for component in point["place"].values()), default=0.0)
+    yield table(points, cells, "Displacement of points from the start, axes of the ground", scale=scale)
+    cells = motion_column | {"coordinate": "name", "at rest, m or rad": "q", "drive, N or N m": "effort"}
+    yield table(coordinates, cells, "Coordinates", detail=True)
 
 
 def _on_ground(motions: Facts) -> Blocks:
@@ -79,7 +82,8 @@ def _on_ground(motions: Facts) -> Blocks:
     for name, motion in motions.items():
         force, moment = [*motion["ground_force"].values()], [*motion["ground_moment"].values()]
         largest = max(map(abs, force + moment))
-        force_words, moment_words = (", ".join(map(number, tidy(vector, largest))) for vector in (force, moment))
+        force_words = ", ".join(map(number, tidy(force, largest)))
+        moment_words = ", ".join(map(number, tidy(moment, largest)))
         prefix = f"motion {name}: " if len(motions) > 1 else ""
         yield Sentence(f"{prefix}on the ground: force ({force_words}) N, moment ({moment_words}) N m")
 
@@ -121,16 +125,15 @@ def subject_sentence(facts: Facts, *words: str) -> Sentence:
     motion = f"motion {facts['motion']}" if facts["motion"] else ""
     modelled = [facts, *facts.get("bodies", {}).values()]  # a rigid body has no model
     models = dict.fromkeys(part["model"] for part in modelled if "model" in part)
-    return Sentence(
-        ", ".join(filter(None, (motion, *(f"model {model}" for model in models if model != SYSTEM), *words)))
-    )
+    model_words = [f"model {model}" for model in models if model != SYSTEM]
+    return Sentence(", ".join(filter(None, (motion, *model_words, *words))))
 
 
 ERROR: Columns = {"estimated error": "error_estimate:%"}
 
 
 def modes_table(facts: Facts, columns: Mapping[str, Column]) -> Block:
-    """Table of the frequency, damping and `more` columns of every mode, and a note on errors that are not estimated."""
+    """Table of the frequency, damping and further `columns` of every mode, and a note on errors not estimated."""
 
     def damping(mode: Facts) -> Value:
         return f"{mode['damping_ratio'] if abs(mode['damping_ratio']) > ROUNDING else 0.0:.4g}"
@@ -138,7 +141,7 @@ def modes_table(facts: Facts, columns: Mapping[str, Column]) -> Block:
     cells: Columns = {"mode": "number", "frequency, Hz": "frequency", GROUND: "ground_frequency"}
     cells |= {"damping ratio": damping, **columns}
     modes_of = table(number_rows(facts["modes"]), cells, optional=(GROUND, *ERROR, "kinetic energy"))
-    return Section("Modes", (modes_of, *framed(facts), *noted(facts)))
+    return Section("Modes", (modes_of, *frame_sentence(facts), *error_notes(facts)))
 
 
 def acceleration_sentence(facts: Facts) -> Blocks:
@@ -161,7 +164,7 @@ def instability_items(facts: Facts, describe: Callable[[Facts], str]) -> Block:
     return Items(tuple(filter(None, (*grows, facts.get("message")))), "bad")
 
 
-def noted(facts: Facts) -> list[Block]:
+def error_notes(facts: Facts) -> list[Block]:
     """Sentence on what the errors of frequencies leave out, or on why there are no errors."""
     note = facts.get("error_note")
     rows = facts.get("modes", facts.get("tracks", facts.get("poles", [])))
@@ -193,7 +196,7 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     if facts["critical_speed"] is not None:
         critical = ", ".join(f"{number(factor * facts['critical_speed'])} {unit}" for unit, factor in speeds.items())
         reason = f" ({facts['critical_speed_reason']})" if facts.get("critical_speed_reason") else ""
-        error = _stated(facts.get("critical_speed_errors", {}))
+        error = _error_clause(facts.get("critical_speed_errors", {}))
         goes_on = high > facts["critical_speed"]
         stability = "; stable beyond" if goes_on and not facts["unstable"] else ""
         event = "critical" if goes_on else "the equilibrium is lost"
@@ -206,7 +209,7 @@ def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:
     ends |= {GROUND: "ground_frequency.-1"}
     cells: Columns = {"mode": "number", "along": "direction", **ends, **ERROR}
     tracks = table(number_rows(facts["tracks"]), cells, optional=(GROUND,))
-    yield Section("Modes", (tracks, *framed(facts), *noted(facts)))
+    yield Section("Modes", (tracks, *frame_sentence(facts), *error_notes(facts)))
     crossings: Columns = {
         "mode": lambda row: row["track"] + 1,
         "multiple": lambda row: f"{row['order']} ×",
@@ -231,7 +234,7 @@ def _stretch(stretch: Facts, speeds: Mapping[str, float]) -> str:
 GROUND = "in the ground frame, Hz"
 
 
-def framed(facts: Facts) -> list[Block]:
+def frame_sentence(facts: Facts) -> list[Block]:
     """Sentence on the frame of frequencies, where it turns."""
     return [Sentence("frequencies in the turning frame", "faint")] if facts["frame"] == "turning" else []
 
@@ -242,7 +245,7 @@ def critical(facts: Facts) -> Blocks:
     unit = f", {raised(facts['unit'])}" if facts["unit"] else ""
     note = f"; {facts['error_note']}" if facts.get("error_note") else ""
     motion = f"motion {facts['motion']}: " if facts["motion"] else ""
-    yield Sentence(f"{motion}{facts['reason']}{_stated(facts['errors'])}{note}", "verdict")
+    yield Sentence(f"{motion}{facts['reason']}{_error_clause(facts['errors'])}{note}", "verdict")
     rows: list[tuple[str, Value]] = [
         (f"{facts['quantity']}{unit}", value if value is not None else "none"),
         (f"searched to{unit}", facts["searched_to"]),
@@ -250,10 +253,10 @@ def critical(facts: Facts) -> Blocks:
         ("along", facts["direction"] or "–"),
         ("model", facts["model"]),
     ]
-    yield Section("", (pairs(rows), *framed(facts)), detail=True)
+    yield Section("", (pairs(rows), *frame_sentence(facts)), detail=True)
 
 
-def _stated(errors: Facts) -> str:
+def _error_clause(errors: Facts) -> str:
     """Clause on the estimated error of a critical value; empty where there is none."""
     if errors.get("total") is not None:
         return f"; estimated error {errors_in_words(errors)}"
@@ -312,7 +315,7 @@ def state_space(facts: Facts) -> Blocks:
     names = {output["name"] for output in facts["outputs"]}
     used = [gauge for gauge in number_rows(facts.get("gauges", ())) if f"strain_{gauge['number']}" in names]
     yield table(used, gauges, "Gauges", optional=("fibre y, mm", "fibre z, mm"))
-    yield from framed(facts)
+    yield from frame_sentence(facts)
     yield from _accuracy(facts)
     if facts["step"]:
         yield from _in_steps(facts)
@@ -332,7 +335,7 @@ def _accuracy(facts: Facts) -> Blocks:
     errors = [pole.get("errors", {}) for pole in facts["poles"]]
     totals = np.array([pole_errors.get("total") for pole_errors in errors], dtype=float)
     if not np.isfinite(totals).any():
-        yield from noted(facts)
+        yield from error_notes(facts)
         return
     accurate = int(np.append(np.flatnonzero(~(totals <= ACCURATE)), len(totals))[0])  # poles before the first other
     words = []
@@ -374,23 +377,27 @@ def _in_steps(facts: Facts) -> Blocks:
     }
     errors = "error", "error "
     yield table(slowest, decays, f"in steps of {1e3 * facts['step']:.4g} ms; slowest to decay", optional=errors)
-    rows = [(loop, kind) for loop in facts.get("margins", ()) for kind in MARGINS]
-    margins: Columns = {
-        "drive": lambda row: row[0]["drive"] if row[1] == "gain" else "",
-        "margin": lambda row: MARGINS[row[1]],
-        "": _margin,
-        "error": lambda row: None if row[0][f"{row[1]}_error"] is None else percent(row[0][f"{row[1]}_error"]),
-        "at, Hz": lambda row: row[0].get(f"{row[1]}_frequency"),
-    }
+    rows = []
+    for loop in facts.get("margins", ()):
+        for kind, words in MARGINS.items():
+            error = loop[f"{kind}_error"]
+            rows.append({
+                "drive": loop["drive"] if kind == "gain" else "",
+                "margin": words,
+                "value": _margin(loop, kind),
+                "error": None if error is None else percent(error),
+                "frequency": loop.get(f"{kind}_frequency"),
+            })  # fmt: skip
+    margins: Columns = {"drive": "drive", "margin": "margin", "": "value", "error": "error"}
+    margins |= {"at, Hz": lambda row: row["frequency"]}
     yield table(rows, margins, "Margins", optional=("error",))
 
 
-def _margin(row: tuple[Facts, str]) -> Value:
-    """Cell of a margin of a drive, by its name."""
-    margin, kind = row
-    if kind in margin["unknown"].split(", "):
+def _margin(loop: Facts, kind: str) -> Value:
+    """Cell of the margin of a drive of this kind."""
+    if kind in loop["unknown"].split(", "):
         return Cell("not known", "bad")
-    return "any" if margin[kind] is None else number(factor(MARGINS[kind]) * margin[kind])
+    return "any" if loop[kind] is None else number(factor(MARGINS[kind]) * loop[kind])
 
 
 def _left_out(facts: Facts, left_out: Facts) -> Blocks:
@@ -416,5 +423,7 @@ def map_csv(critical: CriticalMap) -> str:
     if critical.errors is not None:
         heads += [f"error_with_{m:g}_kg" for m in critical.mass]
         columns += [*critical.errors.total]
-    rows = (",".join(f"{value:.12g}" for value in row) for row in zip(*columns, strict=True))
-    return "\n".join([",".join(heads), *rows, ""])
+    lines = [",".join(heads)]
+    for row in zip(*columns, strict=True):
+        lines.append(",".join(f"{value:.12g}" for value in row))
+    return "\n".join([*lines, ""])

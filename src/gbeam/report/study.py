@@ -40,12 +40,12 @@ from gbeam.report.loads import (
 )
 from gbeam.report.machine import (
     ends_line,
-    followed,
+    error_words,
     judged_lines,
     limits,
     not_followed_stretches,
     peak_lines,
-    tracked,
+    tracking_words,
     verdict,
     verdict_sections,
 )
@@ -114,10 +114,10 @@ def _at_end(response: Response, joints: Mapping[str, tuple[Floats, str, Floats]]
     scale = float(np.abs(response.place).max(initial=0.0))
     ends = tidy(at_end, max(size, float(response.largest.max(initial=0.0))), scale)
     units = [unit for _, unit, _ in joints.values()]
-    words = [
-        angle_words(end) if unit == "rad" else f"{number(end)} {unit}" for end, unit in zip(ends, units, strict=True)
-    ]
-    return ", ".join(f"{name} {end}" for name, end in zip(joints, words, strict=True))
+    words = []
+    for name, end, unit in zip(joints, ends, units, strict=True):
+        words.append(f"{name} {angle_words(end)}" if unit == "rad" else f"{name} {number(end)} {unit}")
+    return ", ".join(words)
 
 
 def _body_lines(body: BodyResponse) -> Iterator[str]:
@@ -175,7 +175,7 @@ def _machine_lines(response: Response) -> Iterator[str]:
     if axes is None:
         return
     yield ends_line(response.time, axes)
-    yield tracked(response)
+    yield tracking_words(response)
     stretches = not_followed_stretches(axes)
     for start, end, reason in stretches[:EPISODES]:
         yield f"target is not the flight's load {start:.3f} to {end:.3f} s: {reason}"
@@ -268,7 +268,7 @@ def study(facts: Facts) -> Blocks:
             yield Section(f"motion {name}", tables, titled=True, verbose=name in compared_in(facts))
     for name, motion in motions.items():
         if "limits" in motion:
-            yield Section(f"Machine: {name}", (limits(motion), Sentence(followed(motion))), titled=True, detail=True)
+            yield Section(f"Machine: {name}", (limits(motion), Sentence(error_words(motion))), titled=True, detail=True)
     yield Section("Accuracy", tuple(errors(motions)), detail=True)
     yield from in_words_of(facts)
 

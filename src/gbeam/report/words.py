@@ -53,7 +53,7 @@ def float_of(value: float | None) -> float:
 
 
 def columns(heads: list[str], rows: list[list[str]], flush_left: Collection[int] = (0,)) -> list[str]:
-    """Return the lines of a table. Columns are flush right, except those of the indices `left`.
+    """Return the lines of a table. Columns are flush right, except those of the indices `flush_left`.
 
     If the terminal is narrow, each cell has a line of its own.
     """
@@ -92,7 +92,8 @@ def errors_in_words(errors: Mapping[str, float | None]) -> str:
     parts = {name.replace("_", " "): float_of(size) for name, size in errors.items() if name not in WHOLE}
     ranked = sorted(((size, name) for name, size in parts.items() if size > rounding(0.0, 1.0)), reverse=True)
     shares = ", ".join(f"{name} {percent(size).removesuffix(' %')}" for size, name in ranked)
-    return f"{percent(float_of(errors['total']))}{f' ({shares})' if len(ranked) > 1 else ''}"
+    total = percent(float_of(errors["total"]))
+    return f"{total} ({shares})" if len(ranked) > 1 else total
 
 
 def rounding(size: float, scale: float = 0.0) -> float:

@@ -199,7 +199,7 @@ def change(ratio: float) -> str:
 
 
 def percent(share: float, *, ceiling: bool = False) -> str:
-    """Write a share with two digits and no exponent; rounded `up` where it is a bound."""
+    """Write a share with two digits and no exponent; rounded up, as `ceiling` asks, where it is a bound."""
     if not math.isfinite(share):
         return "an unknown share"
     value = 100 * share

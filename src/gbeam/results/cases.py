@@ -290,9 +290,16 @@ class Sensitivity(Figured[str]):
 
     def _effect(self, k: int, j: int) -> Effect:
         """Effect of parameter j on measure k."""
-        path, value, unit, method = self.parameters[j], self.values[j], self.parameter_units[j], self.methods[j]
-        slope, relative, error = (float(table[k, j]) for table in (self.derivatives, self.relative, self.errors))
-        return Effect(path, float(value), unit, slope, relative, error, method, bool(self.kinks[k, j]))
+        return Effect(
+            path=self.parameters[j],
+            value=float(self.values[j]),
+            unit=self.parameter_units[j],
+            derivative=float(self.derivatives[k, j]),
+            relative=float(self.relative[k, j]),
+            error=float(self.errors[k, j]),
+            method=self.methods[j],
+            kink=bool(self.kinks[k, j]),
+        )
 
     @declared("", "relative change of the measure over that of the parameter", "measure parameter", key=None)
     def relative(self) -> Floats:

@@ -124,7 +124,7 @@ def state_of(
 ) -> str:
     """Return the verdict on an answer, or its outcome where nothing is decided; only :data:`GOOD` ones are good.
 
-    `exceeded` is True if a limit of a machine is; `kept` are the verdicts on other limits, None where there is none.
+    `exceeded` is True if a limit of a machine is; `verdicts` are those on other limits, None where there is none.
     """
     if outcome not in ("done", BROKEN):
         return outcome
@@ -320,9 +320,13 @@ _SAID = {"peaks": "error of peaks", "srs": "shock spectrum", "spread": "spread o
 
 def judging(accept: Mapping[str, Any], *, response: bool = True) -> dict[str, Any]:
     """Return keyword arguments of :func:`gbeam.compare` from `accept`, or without a response of :func:`gbeam.plan`."""
-    names = [name for name in SETTINGS if response or name not in OF_RESPONSES]
-    settings = {name: value for name, value in accept.items() if name in names}
-    return settings | {"accept": {name: value for name, value in accept.items() if name not in SETTINGS}}
+    keywords: dict[str, Any] = {"accept": {}}
+    for name, value in accept.items():
+        if name not in SETTINGS:
+            keywords["accept"][name] = value
+        elif response or name not in OF_RESPONSES:
+            keywords[name] = value
+    return keywords
 
 
 def refuse_unknown(table: str, limits: Iterable[str]) -> None:
@@ -393,7 +397,7 @@ def _spread(judged: Judged) -> Iterator[Value]:
             yield spread, f"at the {end} at {peak.time_machine:.2f} s"
 
 
-def _followed(judged: Judged) -> Iterator[Value]:
+def _followed_share(judged: Judged) -> Iterator[Value]:
     yield judged.accounting.followed_share, ""
 
 
@@ -436,7 +440,7 @@ class Limits(TypedDict, total=False):
         "most", 0.1, _spread, response=False,
     )]
     followed: Annotated[Share, Rule(
-        "least share of the flight's time that must be followed", "least", 0.7, _followed, response=False
+        "least share of the flight's time that must be followed", "least", 0.7, _followed_share, response=False
     )]
     srs: Annotated[Band, Rule(
         "shock response spectra of the tip, or of control points: largest ratio of machine and flight, either way, "

@@ -78,7 +78,7 @@ def quantity(
     Dimensions are one text, "time point axis"; an `empty` array of them is the default of what may be left out. A key
     that is not given is the field's own name, and none along time: JSON has no histories.
     """
-    dim_names, json_key = _placed(dims, key)
+    dim_names, json_key = _dims_and_key(dims, key)
     declaration = Declaration(words, unit, dim_names, role, name, json_key, note, frame, flags, optional)
     if empty:
         default["default_factory"] = lambda: _empty_array(declaration.dims)
@@ -89,7 +89,7 @@ def quantity(
 internal = partial(quantity, name=None, key=None)
 
 
-def _placed(dims: tuple[str, ...], key: str | EllipsisType | None) -> tuple[tuple[str, ...], str | None]:
+def _dims_and_key(dims: tuple[str, ...], key: str | EllipsisType | None) -> tuple[tuple[str, ...], str | None]:
     """Dimensions one by one, and the key in JSON: if left out "", the field's own name, or None of a history."""
     names = tuple(" ".join(dims).split())
     if not isinstance(key, EllipsisType):
@@ -148,7 +148,7 @@ def declared(
     optional: bool = False,
 ) -> Callable[[Callable[[Any], _T]], Declared[_T]]:
     """Return a decorator that makes a declared property of a getter; see :func:`quantity`."""
-    dim_names, json_key = _placed(dims, key)
+    dim_names, json_key = _dims_and_key(dims, key)
     return lambda getter: Declared(getter, Declaration(words, unit, dim_names, role, name, json_key, optional=optional))
 
 
@@ -205,12 +205,14 @@ def document(kind: type) -> None:
 def _type_words(annotation: str, declaration: Declaration) -> str:
     """Type of a field as docstrings have it: shape, kind and unit."""
     kinds = {"Floats": "", "Complex": "complex", "Flags": "bool", "NDArray[np.int_]": "int"}
-    *parts, final = annotation.split(" | ")
-    parts, optional = (parts, True) if final == "None" else ([*parts, final], False)
-    words = " | ".join(kinds.get(part, _word(part)) for part in parts) + (" or None" if optional else "")
+    parts = annotation.removesuffix(" | None").split(" | ")
+    words = " | ".join(kinds.get(part, _word(part)) for part in parts)
+    if annotation.endswith(" | None"):
+        words += " or None"
+    if parts[0] in kinds:
+        words = f"{_shape(declaration)} {words.strip()}"
     unit = declaration.unit if isinstance(declaration.unit, str) else ""
-    shape = _shape(declaration) if parts[0] in kinds else ""
-    return ", ".join(filter(None, (" ".join(filter(None, (shape, words.strip()))), unit)))
+    return ", ".join(filter(None, (words.strip(), unit)))
 
 
 def _word(annotation: str) -> str:

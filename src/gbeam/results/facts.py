@@ -88,16 +88,16 @@ def tree_of(kind: type) -> dict[str, Any]:
         if declaration.role == "part" and NoneType in types_in(hint) and row_dim is None and not declaration.optional:
             leaf = Nullable(leaf)
         if inner and declaration.unit and isinstance(declaration.unit, str):
-            leaf = _changed(leaf, partial(_united, unit=declaration.unit))
+            leaf = _changed(leaf, partial(_with_unit, unit=declaration.unit))
         if inner and declaration.role == "part" and key != INSIDE and not declaration.words.startswith("of "):
-            leaf = _changed(leaf, partial(_explained, words=declaration.words))
+            leaf = _changed(leaf, partial(_with_words, words=declaration.words))
         if inner and declaration.role == "part" and declaration.dims and row_dim is None:
             leaf = _changed(leaf, lambda entry: replace(entry, ends=entry.ends or ("[i]",)))
         if isinstance(declaration.unit, dict):
             named_unit = {"unit": Entry("", "SI unit", types=("string",))} if inner else {}
             leaf = leaf if inner else replace(leaf, ends=())
             for row, unit in declaration.unit.items():
-                united = _changed(leaf, partial(_united, unit=unit))
+                united = _changed(leaf, partial(_with_unit, unit=unit))
                 _put(tree, f"{key}.{row}" if inner else row, united | named_unit if inner else united)
             continue
         if declaration.role == "rows":
@@ -154,13 +154,13 @@ def _changed(tree: Any, change: Callable[[Entry], Entry]) -> Any:
     return change(tree)
 
 
-def _united(entry: Entry, unit: str) -> Entry:
+def _with_unit(entry: Entry, unit: str) -> Entry:
     if entry.unit != "unit":
         return entry
     return replace(entry, unit="" if unit == "1" else unit)
 
 
-def _explained(entry: Entry, words: str) -> Entry:
+def _with_words(entry: Entry, words: str) -> Entry:
     return replace(entry, words=f"{words}: {entry.words}")
 
 
@@ -191,15 +191,19 @@ def schema_of(tree: Any) -> dict[str, Any]:
     if isinstance(tree, dict):
         properties = {key: schema_of(branch) for key, branch in tree.items() if key != ANY}
         types = ["object", "null"] if isinstance(tree, Nullable) else "object"
-        return {"type": types, "properties": properties} | (
-            {"additionalProperties": schema_of(tree[ANY])} if ANY in tree else {}
-        )
+        schema = {"type": types, "properties": properties}
+        if ANY in tree:
+            schema["additionalProperties"] = schema_of(tree[ANY])
+        return schema
     form: dict[str, Any] = {"type": [*tree.types, "null"]}
     if tree.ends and tree.ends[0] != "[i]":
         form = {"type": ["object", "null"]}
     elif tree.ends:
         form = {"type": ["array", "null"]}
-    return form | {"description": tree.words} | ({"unit": tree.unit} if tree.unit not in ("", "unit") else {})
+    form["description"] = tree.words
+    if tree.unit not in ("", "unit"):
+        form["unit"] = tree.unit
+    return form
 
 
 def unit_at(facts: Any, tree: Any, keys: tuple[str | int, ...]) -> str | None:
@@ -234,14 +238,21 @@ def _parts(value: Any) -> list[tuple[str, Any]]:
 
 def _json_value(value: Any, declaration: Declaration) -> Any:
     """JSON of a value: records as objects, rows as a list or by name, vectors by component."""
-    if value is None or declaration.role == "part":
-        return None if value is None else facts_of(value)
+    if value is None:
+        return None
+    if declaration.role == "part":
+        return facts_of(value)
     if declaration.role == "rows" and isinstance(value, Mapping):
+        rows = {name: facts_of(row) for name, row in value.items()}
         units = declaration.unit if isinstance(declaration.unit, dict) else {}
-        return {name: facts_of(row) | ({"unit": units[name]} if name in units else {}) for name, row in value.items()}
+        for name in rows.keys() & units.keys():
+            rows[name]["unit"] = units[name]
+        return rows
     if declaration.role == "rows":
         label = _label(type(value[0])) if value else ""
-        return {getattr(row, label): facts_of(row) for row in value} if label else [facts_of(row) for row in value]
+        if label:
+            return {getattr(row, label): facts_of(row) for row in value}
+        return [facts_of(row) for row in value]
     if declaration.dims and declaration.dims[-1] in NAMES:
         return dict(zip(NAMES[declaration.dims[-1]], np.asarray(value).T.tolist(), strict=True))
     return _plain_lists(value)
@@ -323,8 +334,10 @@ def _rows(facts: dict[str, Any], key: str, labels: tuple[str, ...] | None, count
 
 def _count(value: Any, axis: int) -> int:
     """Number of places along an axis of an array or a tuple, or of the arrays of a record; zero for None."""
-    if value is None or not dataclasses.is_dataclass(value):
-        return 0 if value is None else np.shape(value)[axis]
+    if value is None:
+        return 0
+    if not dataclasses.is_dataclass(value):
+        return np.shape(value)[axis]
     return max(_count(array, axis) for _, array in _arrays(value))
 
 

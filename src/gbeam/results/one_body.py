@@ -21,11 +21,11 @@ class OneBody:
     def body(self) -> Any:
         """Entry of the only body that deforms."""
         names = [*self.bodies]
-        if len(names) != 1:
-            problem = (
-                f"are {', '.join(names)}, and this is of one" if names else "are rigid, and this is of one that deforms"
-            )
-            raise InputError("bodies", problem, f"ask one of them: bodies[{names[0]!r}]" if names else "ask for points")
+        if not names:
+            raise InputError("bodies", "are rigid, and this is of one that deforms", "ask for points")
+        if len(names) > 1:
+            problem = f"are {', '.join(names)}, and this is of one"
+            raise InputError("bodies", problem, f"ask one of them: bodies[{names[0]!r}]")
         return self.bodies[names[0]]
 
     @property

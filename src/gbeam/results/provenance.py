@@ -66,9 +66,12 @@ class Environment(Part):
     def changes(self, environment: Environment) -> dict[str, tuple[str, str]]:
         """Return what differs in another environment, by name: the values in this one and in the other."""
         mine, theirs = self._facts(), environment._facts()
-        names = [*mine, *(name for name in theirs if name not in mine)]
-        pairs = {name: (mine.get(name, "missing"), theirs.get(name, "missing")) for name in names}
-        return {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
+        changes = {}
+        for name in mine | theirs:
+            pair = mine.get(name, "missing"), theirs.get(name, "missing")
+            if pair[0] != pair[1]:
+                changes[name] = pair
+        return changes
 
     def _facts(self) -> dict[str, str]:
         return {"gbeam": self.gbeam, "python": self.python, "platform": self.platform, **self.dependencies}

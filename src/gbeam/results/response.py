@@ -31,9 +31,9 @@ from gbeam.results.system import (
     Loop,
     Maxima,
     Placed,
+    angular_velocities,
     most_moved,
-    spun,
-    turned,
+    rotation_vectors,
 )
 
 _OF_POINTS = {kind: kind for kind in ("place", "velocity", "attitude", "acceleration")} | {"spin": "angular_velocity"}
@@ -304,14 +304,18 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         of_point, _, axis = kind.rpartition("_")
         if owner in self.points and of_point in _OF_POINTS and axis in tuple("xyz"):
             values = getattr(self, _OF_POINTS[of_point])[:, self.points.index(owner)]
-            return np.asarray((turned(values) if of_point == "attitude" else values)[:, "xyz".index(axis)])
+            if of_point == "attitude":
+                values = rotation_vectors(values)
+            return np.asarray(values[:, "xyz".index(axis)])
         body, _, of_body = owner.partition(".")
         if body in self.bodies and of_body in self.bodies[body].signals and kind in tuple("xyz"):
             return self.bodies[body].signal(f"{of_body}.{kind}")
         if f"{owner}.{EULER[0]}" in self.coordinates and kind in (*TURNS, *SPINS):
             start = self.coordinates.index(f"{owner}.{EULER[0]}")
-            e, rate = (histories[:, start : start + 4] for histories in (self.q, self.qd))
-            return turned(e)[:, TURNS.index(kind)] if kind in TURNS else spun(e, rate)[:, SPINS.index(kind)]
+            e = self.q[:, start : start + 4]  # Euler parameters
+            if kind in TURNS:
+                return rotation_vectors(e)[:, TURNS.index(kind)]
+            return angular_velocities(e, self.qd[:, start : start + 4])[:, SPINS.index(kind)]
         if name.endswith("_rate") and name.removesuffix("_rate") in self.coordinates:
             return self.qd[:, self.coordinates.index(name.removesuffix("_rate"))]
         return self.q[:, self.coordinates.index(name)] if name in self.coordinates else None

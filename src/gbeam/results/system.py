@@ -171,9 +171,11 @@ class Placed:
         InputError
             If there is no such point.
         """
-        candidates = [f"{body}.{name}" for body in self.bodies] if len(self.bodies) == 1 else []
-        existing = [candidate for candidate in candidates if candidate in self.points]
-        return index_of(where, existing[0] if existing else name, self.points)
+        if len(self.bodies) == 1:
+            full_name = f"{next(iter(self.bodies))}.{name}"
+            if full_name in self.points:
+                name = full_name
+        return index_of(where, name, self.points)
 
     @property
     def several(self) -> bool:
@@ -203,7 +205,7 @@ def joint_histories(result: Placed) -> Mapping[str, tuple[Floats, str, Floats]]:
     for k, name in enumerate(result.coordinates):
         joint, _, tail = name.rpartition(".")
         if tail == EULER[0]:
-            turns, efforts = turned(q[:, k : k + 4]), effort[:, k + 1 : k + 4]
+            turns, efforts = rotation_vectors(q[:, k : k + 4]), effort[:, k + 1 : k + 4]
             for i, axis in enumerate("xyz"):
                 histories[f"{joint}.r{axis}"] = turns[:, i], "rad", efforts[:, i]
         elif result.units[k]:
@@ -221,14 +223,14 @@ def most_moved(result: Placed, sizes: Floats, qualifier: str = "") -> str:
     return f"no point moves; {name} reaches {history[np.abs(history).argmax()]:.4g} {unit}"
 
 
-def turned(e: Floats) -> Floats:
+def rotation_vectors(e: Floats) -> Floats:
     """Rotation vectors (t, 3) rad, of half a turn at most, of Euler parameters (t, 4) of any size."""
     from scipy.spatial.transform import Rotation
 
     return Rotation.from_quat(e, scalar_first=True).as_rotvec()
 
 
-def spun(e: Floats, rate: Floats) -> Floats:
+def angular_velocities(e: Floats, rate: Floats) -> Floats:
     """Angular velocities (t, 3) rad/s, turned axes, of Euler parameters (t, 4) and their rates."""
     square = (e * e).sum(axis=1, keepdims=True)
     vector = e[:, :1] * rate[:, 1:] - rate[:, :1] * e[:, 1:] - np.cross(e[:, 1:], rate[:, 1:])

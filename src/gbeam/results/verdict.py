@@ -104,7 +104,7 @@ class Verdict:
         return followed.number if followed else f"{100 * self.judged.accounting.followed_share:.0f} %"
 
     def _loads(self, *, with_flight: bool) -> str:
-        """The machine's largest load, or its largest peak where that is not known; with the flight's `beside` it."""
+        """The machine's largest load, or its largest peak where that is not known; and the flight's, if asked for."""
         load, main = self.judged.peaks.get("largest_load", PeakPair()), self.judged.accounting.main
         if math.isfinite(load.machine):
             flight, machine, quantity = load.flight, load.machine, "load"

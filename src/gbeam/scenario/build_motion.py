@@ -36,7 +36,7 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
             source = table.record.of if isinstance(table.record, PartOfRecord) else name
             recording, part = recordings.get(source), {key: getattr(table.record, key) for key in PART}
             record = recording and parts.attempt(where, recording.flight, **part)
-            built[name] = _recorded(record, table) if record else None
+            built[name] = _flight(record, table) if record else None
             if record and record.summary.is_part:
                 partly[source] = None
         elif table.kind != "centrifuge":
@@ -135,7 +135,7 @@ def _recording(*, time: str | None = None, **columns: Any) -> Recording:
     )
 
 
-def _recorded(record: FlightRecord, table: Any) -> motion.Flight:
+def _flight(record: FlightRecord, table: Any) -> motion.Flight:
     """A flight as it was recorded, its corners rounded."""
     rates = record.rates and body_rates(record.rates, table.smoothing)
     return motion.Flight(acceleration=rounded(record.acceleration, table.smoothing), rates=rates, scale=table.scale)

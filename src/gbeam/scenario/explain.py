@@ -181,7 +181,10 @@ def _choices(field: FieldInfo | None) -> tuple[str, list[str]]:
     """Name of the key that picks among the tables of a union, and its possible values."""
     tables = list(_tables(field.annotation if field else None))
     tag = next(tag for tag in TAGS if tag in tables[0].model_fields)
-    return tag, [name for table in tables for name in _literals(table.model_fields[tag].annotation)]
+    names: list[str] = []
+    for table in tables:
+        names += _literals(table.model_fields[tag].annotation)
+    return tag, names
 
 
 def _quantity(field: FieldInfo | None) -> Quantity | None:

@@ -187,7 +187,9 @@ def _validated(kind: type[T], source: Source) -> T:
 
         details = error.errors(include_url=False, include_input=False)
         # pydantic counts only the entries before a wrong one: such a list is not too short.
-        parents = {detail["loc"][:k] for detail in details for k in range(len(detail["loc"]))}
+        parents = set()
+        for detail in details:
+            parents |= {detail["loc"][:k] for k in range(len(detail["loc"]))}
         details = [detail for detail in details if detail["type"] != "too_short" or detail["loc"] not in parents]
         problems = [explain(source, detail) for detail in details[:PROBLEMS]]
         if len(details) > PROBLEMS:

@@ -109,7 +109,7 @@ class _Page:
         return "\n".join(rows) + "\n"
 
     def _value(self, schema: dict[str, Any], profile_quantity: str) -> str:
-        """Possible values of a schema, in words; `of` is the quantity of the profile whose key it is, or empty."""
+        """Possible values of a schema, in words; of a key of a profile with the profile's quantity, else empty."""
         if "x-quantity" in schema:
             return self._quantity(schema, profile_quantity)
         if "$ref" in schema:

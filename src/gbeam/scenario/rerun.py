@@ -108,7 +108,7 @@ def origin_of(path: str | os.PathLike[str], stored: Stored) -> Provenance:
     except Exception:  # zlib's error for damaged bytes, or of a missing attribute
         fix = "give the file as gbeam wrote it"
         raise InputError(str(path), "does not say where it comes from: it is damaged", fix) from None
-    checked(str(path), origin)
+    check_origin(str(path), origin)
     return origin
 
 
@@ -123,7 +123,7 @@ def run_again(path: str | os.PathLike[str], result: Stored, progress: Progress =
         scenario = loads(origin.scenario, str(path), changes, folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         result_now = stored(answers)
-    values_before, now = computed(result), computed(result_now)
+    values_before, now = computed_values(result), computed_values(result_now)
     holds_a_study = any(name.startswith("motions/") for name in result.variables)
     if not holds_a_study:
         (motion, *others) = facts_of(result).get("motions") or answers.responses
@@ -202,7 +202,7 @@ def _by_rounding(difference: Difference, before: Any, now: Any) -> bool:
     return _WHEN.search(difference.name) is not None and math.isfinite(difference.size)
 
 
-def checked(file: str, origin: Provenance) -> None:
+def check_origin(file: str, origin: Provenance) -> None:
     """Raise InputError unless there is a scenario, the one that was run, by this release of gbeam."""
     assert origin.environment is not None
     version, ours = origin.environment.gbeam, current_environment().gbeam
@@ -237,7 +237,7 @@ def record_changes(origin: Provenance, folder: Path) -> Iterator[str]:
         yield f"{record.path}={file}"
 
 
-def computed(result: Stored) -> dict[str, Any]:
+def computed_values(result: Stored) -> dict[str, Any]:
     """Variables by name and attributes by ``PLACE@NAME``, without those about the computation and the facts."""
     left_out = ("scenario", FACTS)  # the facts repeat the other variables
     values = {

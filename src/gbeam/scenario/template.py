@@ -241,12 +241,12 @@ def _allow_distributions(node: Any) -> None:
 def _distribution_schema() -> dict[str, Any]:
     """Schema of a table with one key, the family, whose value is the list of its numbers."""
     numbers = {"type": "array", "items": {"type": ["number", "string"]}}
-    families = {
-        name: numbers
-        | {"minItems": len(family.arguments), "maxItems": len(family.arguments)}
-        | {"description": ", ".join(family.arguments)}
-        for name, family in FAMILIES.items()
-    }
+    families = {}
+    for name, family in FAMILIES.items():
+        count = len(family.arguments)
+        families[name] = numbers | {
+            "minItems": count, "maxItems": count, "description": ", ".join(family.arguments),
+        }  # fmt: skip
     head = {"title": "Distribution", "description": "what gbeam sweep draws from; other verbs need one value"}
     one = {"type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": False}
     return {**head, **one, "properties": families}

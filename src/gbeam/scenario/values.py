@@ -155,7 +155,8 @@ def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
         arguments = [median, spread]
     else:
         arguments, unit = quantities(parts)
-    if fault := law.fault(*arguments):
+    fault = law.fault(*arguments)
+    if fault:
         raise InputError("", f"has {family}({words})", f"give {fault}")
     return Distribution(family, tuple(arguments), unit, words)
 

@@ -112,7 +112,7 @@ class Neighbourhood:
                 return read(case, self.inquiry.facts(case))
 
             rows.append(_differences(shifted, values, step))
-        return _gathered(values, rows, [DIFFERENCE] * len(rows))
+        return _stack_slopes(values, rows, [DIFFERENCE] * len(rows))
 
     def response(self, name: str) -> Response:
         """The response in one environment; ComputationError if it is not done."""
@@ -177,7 +177,7 @@ class Neighbourhood:
                     sides[0][name], sides[1][name] = next(responses[name])
             ends = [read(case, study_of(case, side)) for case, side in zip(cases[k], sides, strict=True)]
             rows.append((*_slope(ends[0], values, ends[1], steps[k]), np.full(len(values), np.nan)))
-        return _gathered(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
+        return _stack_slopes(values, rows, [DIFFERENCE if k in jumping else EXACT for k in range(len(rows))])
 
     def _neighbours(self, k: int, step: float, rough: bool) -> tuple[Case, Case]:
         """Cases with parameter `k` smaller and larger by `step`.
@@ -305,7 +305,7 @@ class Quantities:
 
 
 def in_model_of(model_case: Case, case: Case) -> Case:
-    """Case whose beams have as many shapes as those of the case `like`, where the numbers are automatic there."""
+    """Return a case whose beams have as many shapes as those of `model_case`, where the numbers are automatic there."""
     changed = {}
     for name, model_body in model_case.automatic_beams.items():
         body = case.system.flexible[name]
@@ -351,6 +351,6 @@ def _differences(shifted: Callable[[float], Floats], middle: Floats, step: float
     return fourth, bend, np.abs(fourth - slope)
 
 
-def _gathered(values: Floats, rows: Sequence[tuple[Floats, Floats, Floats]], methods: Sequence[str]) -> Slopes:
+def _stack_slopes(values: Floats, rows: Sequence[tuple[Floats, Floats, Floats]], methods: Sequence[str]) -> Slopes:
     slopes, bends, errors = (np.stack(column, axis=1) for column in zip(*rows, strict=True))
     return Slopes(values, slopes, errors, tuple(methods), bends)

@@ -109,17 +109,17 @@ class Inquiry:
         """Row of a built case, from the facts of the verb's answer to it."""
         try:
             values = [value_at(facts, keys) for keys in self.keys]
-            function_values, problem = _measured(self.functions, case)
+            function_values, problem = _measure(self.functions, case)
             values += function_values
             for history in self.histories:
                 values += history.interpolate(facts["study"], self.times).tolist()
         except Exception as error:
             return without_figures(number, self.width, error)
-        outcome, message = ended(facts)
+        outcome, message = outcome_of(facts)
         return Row(number, tuple(values), outcome, message or problem)
 
 
-def _measured(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
+def _measure(functions: Sequence[Function], case: Case) -> tuple[list[float], str]:
     """Values of functions of a case, NaN for those that fail, and the reasons. If all fail the last error is raised."""
     values, problems, last_error = [], [], Exception()
     for k, function in enumerate(functions):
@@ -145,7 +145,7 @@ def of_loads(keys: Keys) -> bool:
     return True
 
 
-def ended(facts: Facts) -> tuple[str, str]:
+def outcome_of(facts: Facts) -> tuple[str, str]:
     """Outcome of a case, or the state that its limits put it in, such as not accepted, and its message."""
     state = str(facts.get("state", facts["outcome"]))
     return state if state in ANSWERED else str(facts["outcome"]), str(facts.get("message") or "")
@@ -183,7 +183,7 @@ def may_share(verb: str, paths: Sequence[str]) -> bool:
     return verb == "run" and not any(path.partition(".")[0] in _ALONE for path in paths)
 
 
-def settled(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
+def settle(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
     """Inquiry that stays `together` only if cases like this one gain by being integrated together.
 
     Automatic steps take several runs, which pay only for many cases. Automatic numbers of shapes exclude it.
@@ -219,10 +219,10 @@ def _batch_rows(inquiry: Inquiry, tasks: Iterator[Task]) -> Iterator[Row]:
                 yield without_figures(number, inquiry.width, error)
         # Settings differ where a motion's record ends at another time.
         for _, group in groupby(posed, key=lambda numbered: numbered[1].response):
-            yield from _answered(inquiry, list(group), one_structure=set(systems) == {()})
+            yield from _answer_cases(inquiry, list(group), one_structure=set(systems) == {()})
 
 
-def _answered(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:
+def _answer_cases(inquiry: Inquiry, posed: Sequence[Posed], *, one_structure: bool) -> Iterator[Row]:
     """Rows of cases with the same settings. Each is yielded as soon as all of its motions are answered."""
     settings = reduced(posed[0][1], inquiry.needs).response
     pairs = [(k, name) for k, (_, case) in enumerate(posed) for name in case.environments]

@@ -227,7 +227,7 @@ def node_at(facts: Facts, keys: Keys) -> Any:
     return reduce(getitem, keys, node)
 
 
-def declared(facts: Facts, keys: Keys) -> str | None:
+def declared_unit(facts: Facts, keys: Keys) -> str | None:
     """Unit of the figure at `keys`, empty where it has none; None where no unit is declared for its place."""
     from gbeam.results.facts import unit_at
 
@@ -236,7 +236,7 @@ def declared(facts: Facts, keys: Keys) -> str | None:
 
 def unit_at(facts: Facts, keys: Keys) -> str:
     """SI unit of the figure at `keys`; empty where it has none."""
-    return declared(facts, keys) or ""
+    return declared_unit(facts, keys) or ""
 
 
 def own_keys(keys: Keys) -> Keys:

@@ -20,7 +20,15 @@ from gbeam.results.searches import Fit, FittedColumn
 from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.measurement import Measurement, read_measurement
-from gbeam.studies.parameters import Bounds, PhysicalValue, agreeing, bounds_of, on_bound, searched, select_values
+from gbeam.studies.parameters import (
+    Bounds,
+    PhysicalValue,
+    bounds_of,
+    count_agreeing,
+    on_bound,
+    search_all,
+    select_values,
+)
 from gbeam.studies.template import template_of
 
 OPTION = "--free"
@@ -119,18 +127,18 @@ def fit(
         inquiry, parameters, measurement.read, start, measurement.motions, measurement.parts,
         measurement.instrumented, progress,
     )  # fmt: skip
-    solutions = searched(parameters, limits, starts, lambda x: _search(model, measurement, parameters, x, limits))
+    solutions = search_all(parameters, limits, starts, lambda x: _search(model, measurement, parameters, x, limits))
     likeliest = max(solutions, key=lambda solution: solution.likelihood)
     solution = replace(likeliest, before=solutions[0].before)
-    described = _described(model, measurement, parameters, limits, solution)
-    agreed = agreeing([solution.values for solution in solutions], solution.values, limits)
+    described = _result_of(model, measurement, parameters, limits, solution)
+    agreed = count_agreeing([solution.values for solution in solutions], solution.values, limits)
     return replace(
         described, title=template.title([parameter.path for parameter in parameters]), starts=starts, agreed=agreed,
         notes=template.notes, provenance=template.provenance,
     )  # fmt: skip
 
 
-def _described(
+def _result_of(
     model: Quantities,
     measurement: Measurement,
     parameters: Sequence[PhysicalValue],

@@ -26,7 +26,7 @@ from gbeam.results.study import Study
 from gbeam.studies.derivatives import Neighbourhood, Quantities
 from gbeam.studies.evaluate import Inquiry
 from gbeam.studies.figures import Facts, Keys, check_figures, unit_at
-from gbeam.studies.parameters import Bounds, agreeing, bounds_of, on_bound, searched, select_values
+from gbeam.studies.parameters import Bounds, bounds_of, count_agreeing, on_bound, search_all, select_values
 from gbeam.studies.sensitivity import facts_of, figure, needed_parts, values_at
 from gbeam.studies.template import template_of
 
@@ -115,7 +115,7 @@ def optimise(
         replace(inquiry, keys=goal.keys), parameters, goal.read, first_neighbourhood, motions, parts, progress=progress
     )
     search = Search(model, goal, limits)
-    ends = searched(parameters, limits, starts, search)
+    ends = search_all(parameters, limits, starts, search)
     values = search.tried[-1][0]
     last_neighbourhood = Neighbourhood(inquiry, parameters, values.tolist(), progress=progress)
     before, after = (
@@ -151,7 +151,7 @@ def optimise(
         history=np.array([f for _, f in search.tried]),
         evaluations=model.evaluations,
         starts=starts,
-        agreed=agreeing(ends, values, limits),
+        agreed=count_agreeing(ends, values, limits),
         outcome=BROKEN if broken else "done",
         warnings=search.warnings + (() if not search.flat else (f"{minimise} does not depend on {', '.join(paths)}",)),
         notes=template.notes,
@@ -304,6 +304,8 @@ class Search:
 
     def _sizes(self, figures: Floats) -> Floats:
         """Scales of the figures (1 + r,), none zero: the objective's size, the bounds of the others."""
-        bounds = [abs(low if math.isinf(high) else high) for _, _, low, high in self.goal.required]
-        others = [bound or abs(value) or 1.0 for bound, value in zip(bounds, figures[1:], strict=True)]
-        return np.array([abs(figures[0]) or 1.0, *others])
+        sizes = [abs(figures[0]) or 1.0]
+        for (_, _, low, high), value in zip(self.goal.required, figures[1:], strict=True):
+            bound = low if math.isinf(high) else high
+            sizes.append(abs(bound) or abs(value) or 1.0)
+        return np.array(sizes)

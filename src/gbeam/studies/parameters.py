@@ -70,7 +70,8 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
     chosen: list[PhysicalValue] = []
     for name in names:
         places = _matching(name, possible) or ((name,) if name in quantities else ())
-        repeated = [path for path in places if any(path in value.places for value in chosen)]
+        taken = {path for value in chosen for path in value.places}
+        repeated = [path for path in places if path in taken]
         if repeated:
             raise InputError("--with", f"names {repeated[0]} twice", "name each value once")
         if not places:
@@ -202,7 +203,7 @@ _SAME = 1e-2  # of the bounds' width: values that are nearer to each other count
 _WIDE = 10.0  # ratio of bounds above which starting points are spread in equal ratios
 
 
-def searched(
+def search_all(
     parameters: Sequence[PhysicalValue], limits: Floats, count: int, search: Callable[[Floats], Answer]
 ) -> list[Answer]:
     """Answers of searches from the scenario's values and from further points. Searches from further points may fail."""
@@ -244,7 +245,7 @@ def _starting_points(start: Floats, limits: Floats, count: int) -> list[Floats]:
     return [start, *points]
 
 
-def agreeing(ends: Sequence[Floats], solution: Floats, limits: Floats) -> int:
+def count_agreeing(ends: Sequence[Floats], solution: Floats, limits: Floats) -> int:
     """Number of searches that ended at the best values."""
     width = limits[:, 1] - limits[:, 0]
     return sum(bool((np.abs(end - solution) <= _SAME * width).all()) for end in ends)

@@ -15,7 +15,7 @@ import numpy as np
 from gbeam.analysis.case import Case
 from gbeam.errors import GbeamError, InputError
 from gbeam.studies.cases import Cases
-from gbeam.studies.evaluate import NO_FACTS, Inquiry, Row, ended, settled, width, without_figures
+from gbeam.studies.evaluate import NO_FACTS, Inquiry, Row, outcome_of, settle, width, without_figures
 from gbeam.studies.evaluate import rows as computed
 from gbeam.studies.figures import find, node_at, read_history, unit_at
 from gbeam.studies.template import Template
@@ -93,12 +93,12 @@ def start(
                 if facts["outcome"] == "done":
                     raise
                 reason = reason or error
-                rows.append(Row(number, (math.nan,) * figures, *ended(facts)))
+                rows.append(Row(number, (math.nan,) * figures, *outcome_of(facts)))
                 continue
             inquiry = replace(inquiry, keys=keys)
             units = tuple(unit_at(facts, figure_keys) for figure_keys in keys)
             truths = tuple(isinstance(node_at(facts, figure_keys), bool) for figure_keys in keys)
-        inquiry = settled(histories.add_to(inquiry, case), case, len(cases))
+        inquiry = settle(histories.add_to(inquiry, case), case, len(cases))
         task = (number, cases.overrides(number))
         rows += computed(inquiry, [task]) if inquiry.together else (inquiry.measured(number, case, facts),)
         seconds = time.perf_counter() - begin
@@ -129,7 +129,7 @@ def go_on(
     example = inquiry.template.changed(cases.overrides(possible[0].case))
     if histories.names or inquiry.together:
         case = example.built()
-        inquiry = settled(histories.add_to(inquiry, case), case, len(cases))
+        inquiry = settle(histories.add_to(inquiry, case), case, len(cases))
     rows: list[Row] = []
     seconds = 0.0
     count = min(_FEW, width(inquiry))

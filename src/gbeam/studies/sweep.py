@@ -185,7 +185,7 @@ def sweep(
             with journal.writing(resume=resume):
                 journal.add(begun.rows)
                 rows += _collected(computed, rows, len(cases), progress, journal)
-    answer = assembled(
+    answer = assemble_sweep(
         template.title([variation.path for variation in cases.variations]), cases, names, begun, rows, seed
     )
     warnings = () if journal is None else journal.warnings
@@ -261,7 +261,9 @@ def _collected(
     return rows
 
 
-def assembled(title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int) -> Sweep:
+def assemble_sweep(
+    title: str, cases: Cases, names: Sequence[str], begun: Start, rows: Iterable[Row], seed: int
+) -> Sweep:
     """Return the sweep of rows in any order. Cases without a row are pending."""
     inquiry = begun.inquiry
     values = np.full((inquiry.width, len(cases)), math.nan)

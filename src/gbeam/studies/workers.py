@@ -140,7 +140,7 @@ class Workers:
                     if half:
                         retries += [batch[:half], batch[half:]]
                     elif number in suspects:
-                        yield [died(inquiry, batch[0])]
+                        yield [row_of_death(inquiry, batch[0])]
                     else:
                         suspects.add(number)
                         retries.append(batch)
@@ -256,7 +256,7 @@ def _begin() -> None:
     threading.Thread(target=wait_for_end, daemon=True).start()
 
 
-def died(inquiry: Inquiry, task: Task) -> Row:
+def row_of_death(inquiry: Inquiry, task: Task) -> Row:
     """Row of a case whose computation ends every process that tries it."""
     return Row(task[0], (math.nan,) * inquiry.width, "failed", "the process that computed it died")
 
@@ -388,7 +388,7 @@ class _Dispatch:
             return list(future.result())
         except KilledWorker:
             if future in self.alone:
-                return [died(self.inquiry, batch[0])]
+                return [row_of_death(self.inquiry, batch[0])]
             self.again.extend(batch)
             return []
         except OtherVersion as error:

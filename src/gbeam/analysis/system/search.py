@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.system.point import Point, refuse_massless
-from gbeam.arrays.tree import together
+from gbeam.arrays.tree import stack_trees
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.integrate.equations import slopes
@@ -124,7 +124,7 @@ def rested_together(
 
     One that Newton's method does not find near its start is None.
     """
-    inputs, sliding, sloped = together(drives), tree.sliding, tree.frictionless
+    inputs, sliding, sloped = stack_trees(drives), tree.sliding, tree.frictionless
     y, begun = starts[:, tree.free], starts[:, tree.free]
     still, ydd, before = np.zeros_like(y), np.zeros_like(y), np.full(len(y), np.inf)
     converged, lost = np.zeros((2, len(y)), dtype=bool)

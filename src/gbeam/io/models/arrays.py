@@ -156,17 +156,17 @@ def read_state_space(path: str | os.PathLike[str]) -> SimpleNamespace:
     else:
         refuse_large_file("file", path, BINARY_BYTES, "reduce the law before it is saved")
         arrays = read_confined(_numbers, os.fspath(path), refuse=refuse)
-    named = {key.lower(): value for key, value in arrays.items()}
-    lacking = ", ".join(name.upper() for name in NAMES if name not in named)
+    by_name = {key.lower(): value for key, value in arrays.items()}
+    lacking = ", ".join(name.upper() for name in NAMES if name not in by_name)
     if lacking:
         raise refuse(f"holds no {lacking}")
     try:
-        parts = {name: np.atleast_2d(np.asarray(named[name], dtype=float)) for name in NAMES}
+        parts = {name: np.atleast_2d(np.asarray(by_name[name], dtype=float)) for name in NAMES}
     except (TypeError, ValueError):
         raise refuse("holds what are no numbers") from None
     if not all(np.isfinite(value).all() for value in parts.values()):
         raise refuse("holds numbers that are not finite")
-    steps = {key: _step(key, named[key]) for key in STEPS if key in named}
+    steps = {key: _step(key, by_name[key]) for key in STEPS if key in by_name}
     if len(set(steps.values())) > 1:
         raise refuse(f"says {' and '.join(f'{key} = {value:g}' for key, value in steps.items())}")
     return SimpleNamespace(**parts, dt=next(iter(steps.values()), 0.0))

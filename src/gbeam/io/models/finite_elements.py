@@ -35,7 +35,7 @@ def read_op4(path: str) -> Contents:
 def read_op2(path: str) -> Contents:
     """Read matrices of an OUTPUT2 file."""
     _, _, op2, _ = _pyyeti()
-    return {"matrices": {name.upper(): _parts(each) for name, each in op2.rdmats(path).items()}}
+    return {"matrices": {name.upper(): _parts(matrix) for name, matrix in op2.rdmats(path).items()}}
 
 
 def _parts(matrix: Any) -> Any:
@@ -101,20 +101,20 @@ def read_rows(path: str) -> Contents:
 def read_nodes(path: str) -> Contents:
     """Read the numbers and places of the nodes of an input file."""
     place_of: dict[int, list[float]] = {}
-    inside = False
+    in_nodes = False
     for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines():
         if line.startswith("**") or not line.strip():
             continue
         if line.startswith("*"):
-            inside = line.split(",")[0].strip().upper() == "*NODE"
-        elif inside:
+            in_nodes = line.split(",")[0].strip().upper() == "*NODE"
+        elif in_nodes:
             number, *place = _numbers(line)
             place_of[int(number)] = [*place, 0.0, 0.0, 0.0][:3]
     return {"numbers": np.array(list(place_of), dtype=int), "places": np.array(list(place_of.values())).reshape(-1, 3)}
 
 
 def _numbers(line: str) -> list[float]:
-    return [float(each) for each in line.replace("D", "E").replace(",", " ").split()]
+    return [float(word) for word in line.replace("D", "E").replace(",", " ").split()]
 
 
 def _entries(rows: np.ndarray, name: str) -> Contents:

@@ -41,8 +41,8 @@ def read_universal(path: str) -> Contents:
     for i, data_set in sets.items():
         if kinds[i] in NODES:
             node_numbers, node_places = _nodes(path, data_set, length)
-            new = ~np.isin(node_numbers, numbers)
-            numbers, places = np.append(numbers, node_numbers[new]), np.concatenate([places, node_places[new]])
+            unseen = ~np.isin(node_numbers, numbers)
+            numbers, places = np.append(numbers, node_numbers[unseen]), np.concatenate([places, node_places[unseen]])
             contents |= {"numbers": numbers, "places": places}
     # Results are of many kinds, as of stress beside displacements.
     results = [_as_mode(sets[i]) for i, kind in enumerate(kinds) if kind == RESULTS and _moves(sets[i])]
@@ -74,10 +74,10 @@ def _nodes(path: str, data_set: dict[str, Any], length: float) -> tuple[Any, Any
     return np.asarray(data_set["node_nums"], dtype=int), places
 
 
-def _moves(each: dict[str, Any]) -> bool:
+def _moves(data_set: dict[str, Any]) -> bool:
     """Tell whether a data set of results has a motion of the nodes in a mode."""
-    moves = each["data_characteristic"] in MOVES and each["result_type"] in DERIVATIVES
-    return moves and each["dataset_location"] == AT_NODES and each["analysis_type"] in (NORMAL, *COMPLEX)
+    moves = data_set["data_characteristic"] in MOVES and data_set["result_type"] in DERIVATIVES
+    return moves and data_set["dataset_location"] == AT_NODES and data_set["analysis_type"] in (NORMAL, *COMPLEX)
 
 
 def _as_mode(data_set: dict[str, Any]) -> dict[str, Any]:
@@ -110,10 +110,11 @@ def _mode(path: str, data_set: dict[str, Any]) -> dict[str, Any]:
         problem = f"{path} has mode {data_set['mode_n']} in data of type {kind}, characteristic {data_set['data_ch']}"
         raise InputError("path", problem, "export displacements along x, y and z: type 8, characteristic 2")
     shape = np.column_stack([data_set[f"r{i}"] for i in (1, 2, 3)])
-    root = 2j * np.pi * float(data_set["freq"]) if data_set["analysis_type"] == NORMAL else complex(data_set["eig"])
+    normal = data_set["analysis_type"] == NORMAL
+    root = 2j * np.pi * float(data_set["freq"]) if normal else complex(data_set["eig"])
     if DERIVATIVES[kind] and root:
         shape = shape / root ** DERIVATIVES[kind]
-    if data_set["analysis_type"] == NORMAL:
+    if normal:
         mass = float(data_set["modal_m"]) or np.nan
         ratio = float(data_set["modal_damp_vis"]) or float(data_set["modal_damp_his"]) / 2
         return {"frequency": float(data_set["freq"]), "damping_ratio": ratio, "modal_mass": mass, "shape": shape}
@@ -156,9 +157,9 @@ def read_standard_input(path: str) -> Contents:
             block[f"m{match[1]}"][index] = _number(match[3])
         elif match := _SIZE.match(line):
             (body if block is None else block)[match[1].lower()] = _number(match[2])
-    missing = [name for name in OF_BODY if name not in body and name not in ("ksigma", "Gr", "De")]
-    if missing:
-        raise InputError("path", f"{path} lacks {', '.join(missing)}", "export the whole body, after Wallrapp")
+    lacking = [name for name in OF_BODY if name not in body and name not in ("ksigma", "Gr", "De")]
+    if lacking:
+        raise InputError("path", f"{path} lacks {', '.join(lacking)}", "export the whole body, after Wallrapp")
     blocks = [(name, block) for name, block in body.items() if name in OF_BODY]
     blocks += [pair for node in body["nodes"] for pair in node.items()]
     # The standard writes m1(row, coordinate, column); some programs swap the last two.

@@ -184,8 +184,8 @@ def _joined(first: dict[str, Any], then: Any) -> dict[str, Any]:
     """
     if not ("numbers" in first and "numbers" in then):
         raise InputError("nodes", "are in two of the files", "give them once")
-    new = ~np.isin(then["numbers"], first["numbers"])
-    nodes = {key: np.concatenate([first[key], then[key][new]]) for key in ("numbers", "places")}
+    unseen = ~np.isin(then["numbers"], first["numbers"])
+    nodes = {key: np.concatenate([first[key], then[key][unseen]]) for key in ("numbers", "places")}
     if "axes" in first or "axes" in then:
         nodes["axes"] = np.tile(np.eye(3), (len(nodes["numbers"]), 1, 1))
         index_of = {number: i for i, number in enumerate(nodes["numbers"].tolist())}

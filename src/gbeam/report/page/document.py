@@ -65,10 +65,12 @@ def html(
     warnings, notes = remarks_of(facts)
     blocks = [Section("Warnings", (warnings,)), Section("Notes", (notes,)), *blocks_of(kind, facts)]
     state, title = facts.get("state", facts["outcome"]), facts.get("title") or _title(origin) or f"gbeam {verb}"
-    return assembled(title, state, verb, blocks, origin, descriptions, partial(viewer, kind, facts, variables or {}))
+    return assemble_page(
+        title, state, verb, blocks, origin, descriptions, partial(viewer, kind, facts, variables or {})
+    )
 
 
-def assembled(
+def assemble_page(
     title: str,
     state: str,
     verb: str,
@@ -94,7 +96,7 @@ def description_page(words: str, origin: Mapping[str, Any], figures: Mapping[str
     """Return the page of what a scenario means, in the words of `gbeam check`, with the figures of its records."""
     title, _, meaning = words.partition("\n")
     blocks = Section("Meaning", (Verbatim(meaning),)), Section("Records", (FIGURES,))
-    return assembled(title, VALID, "check", blocks, origin, figures)
+    return assemble_page(title, VALID, "check", blocks, origin, figures)
 
 
 def viewer(

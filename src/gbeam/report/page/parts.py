@@ -75,10 +75,10 @@ def table(block: Table) -> str:
     if not block.rows:
         return ""
     numeric = [block.numeric(k) for k in range(len(block.heads))]
-    top = "".join(
-        f'<th scope="col"{_class("number" if is_number else "")}>{_breaking(head)}</th>' if head else "<td></td>"
-        for head, is_number in zip(block.heads, numeric, strict=True)
-    )
+    top = ""
+    for head, is_number in zip(block.heads, numeric, strict=True):
+        style = _class("number" if is_number else "")
+        top += f'<th scope="col"{style}>{_breaking(head)}</th>' if head else "<td></td>"
     body = "".join(f"<tr>{''.join(map(_cell, row, numeric))}</tr>" for row in block.rows)
     title = f"<caption>{escaped(block.caption)}</caption>" if block.caption else ""
     top = f"<thead><tr>{top}</tr></thead>" if any(block.heads) else ""
@@ -155,14 +155,16 @@ def draw_figures(figures: Iterable[Figure], numbers: Numbers, header: dict[str, 
 
 def _figure(figure: Figure, numbers: Numbers, header: dict[str, Any]) -> str:
     """HTML of a figure, with places for its plots and maps. Their data are added to `header` and `numbers`."""
+    notes = list(figure.notes)
     reasons = dict.fromkeys(reason for panel in figure.panels for *_, reason in panel.spans)
-    notes = [*figure.notes, *([f"grey: {', '.join(reasons)}"] if reasons else [])]
+    if reasons:
+        notes.append(f"grey: {', '.join(reasons)}")
     parts = [heading(figure.subject, 3), *(paragraph(note, "faint") for note in notes)]
-    plots = [panel for panel in figure.panels if panel.bars is None and panel.map is None]
-    places = "".join(
-        f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
-        for name, title in (_plot(panel, figure.subject, numbers, header["plots"]) for panel in plots)
-    )
+    places = ""
+    for panel in figure.panels:
+        if panel.bars is None and panel.map is None:
+            name, title = _plot(panel, figure.subject, numbers, header["plots"])
+            places += f'<figure><figcaption>{escaped(title)}</figcaption><div id="{escaped(name)}"></div></figure>'
     parts.append(f'<div class="gbeam-plots">{places}</div>' if places else "")
     parts += [_table(panel, panel.bars) for panel in figure.panels if panel.bars is not None]
     parts += [_map(panel, panel.map, numbers, header["maps"]) for panel in figure.panels if panel.map is not None]
@@ -246,10 +248,8 @@ def _map(panel: Panel, cells: Map, numbers: Numbers, maps: list[dict[str, Any]])
     """Add the data of a heat map to `maps` and `numbers`, and return its place in the page."""
     place = f"map-{len(maps)}"
     title, _, unit = cells.label.rpartition(", ")
-    x, y = (
-        {"label": label, "ticks": [f"{value:.6g}" for value in values]}
-        for label, values in ((panel.x, cells.x), (panel.y, cells.y))
-    )
+    x = {"label": panel.x, "ticks": [f"{value:.6g}" for value in cells.x]}
+    y = {"label": panel.y, "ticks": [f"{value:.6g}" for value in cells.y]}
     maps.append(
         {"id": place, "title": title or unit, "x": x, "y": y, "unit": unit if title else "",
          "values": numbers.add(cells.values), "outcomes": list(cells.outcome)}

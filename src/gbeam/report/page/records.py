@@ -75,7 +75,7 @@ def read(kind: type[_R], facts: Facts, v: Facts | None = None, pattern: str = "*
     for name, declaration in declarations(kind):
         if name in more or name not in by_name:
             continue
-        value = None if declaration.name is None or not v else _stored(kind, name, declaration, facts, v, pattern)
+        value = None if declaration.name is None or not v else _stored_value(kind, name, declaration, facts, v, pattern)
         if value is not None and declaration.role == "variable":
             sizes |= dict(zip(declaration.dims, np.shape(value), strict=False))
         if value is None:
@@ -99,7 +99,7 @@ def _is_needed(field: Any) -> bool:
     return field.default is MISSING and field.default_factory is MISSING
 
 
-def _stored(kind: type, name: str, declaration: Declaration, facts: Facts, v: Facts, pattern: str) -> Any:
+def _stored_value(kind: type, name: str, declaration: Declaration, facts: Facts, v: Facts, pattern: str) -> Any:
     """Value of a field from the variables of a file; None if the file does not have it.
 
     A field may be a record or rows of records, a complex variable stored in two parts, a plain variable or coordinate,
@@ -317,10 +317,10 @@ def _fit(facts: Facts, v: Facts) -> Facts:
     """Fields of a Fit. The columns' values and their abscissa, time or mode, come from the file's variables."""
     abscissa = "time" if "time" in v else "mode"
     names = ("measured", "fitted", "computed_before")
-    columns = [
-        read(FittedColumn, column, {key: v[key][k] for key in names}, name=name)
-        for k, (name, column) in enumerate(facts["columns"].items())
-    ]
+    columns = []
+    for k, (name, column) in enumerate(facts["columns"].items()):
+        histories = {key: v[key][k] for key in names}
+        columns.append(read(FittedColumn, column, histories, name=name))
     return {"columns": tuple(columns), "at": v[abscissa], "modal": abscissa == "mode"}
 
 

@@ -35,7 +35,7 @@ def report_of(
 ) -> str:
     """Return the page of a result, or of several of one kind.
 
-    Its JSON `known` and figures are computed unless they are given.
+    Its JSON and its figures are computed unless they are given.
     """
     if facts_json is None:
         facts_json = facts(result) | {"provenance": origin_json(result.provenance or Provenance())}
@@ -109,11 +109,15 @@ def _page_of(file: Path) -> str:
 
 def file_in(folder: Path) -> Path:
     """Return the file of the only result in a folder; InputError if there is none, or several."""
-    candidates = [folder / "result.nc"] if (folder / "result.nc").is_file() else sorted(folder.glob("*.json"))
-    if len(candidates) != 1:
-        names = ", ".join(candidate.name for candidate in candidates[:4])
-        raise InputError(str(folder), f"holds several results, {names}" if candidates else "holds no result", _FIX)
-    return candidates[0]
+    if (folder / "result.nc").is_file():
+        return folder / "result.nc"
+    files = sorted(folder.glob("*.json"))
+    if not files:
+        raise InputError(str(folder), "holds no result", _FIX)
+    if len(files) > 1:
+        names = ", ".join(file.name for file in files[:4])
+        raise InputError(str(folder), f"holds several results, {names}", _FIX)
+    return files[0]
 
 
 def widget(result: Result) -> Any:

@@ -54,7 +54,7 @@ def _header(name: str, environment: str, parts: list[Any], time: Ref, largest: f
 
 
 def _indices(time: Floats, chosen_times: Floats) -> Any:
-    """Indices of `some` of the times in `time`."""
+    """Indices in `time` of the chosen times."""
     return np.searchsorted(time, chosen_times - 1e-12).clip(max=len(time) - 1)
 
 
@@ -75,7 +75,7 @@ def _surface(surface: Variables, stress: Floats | None, numbers: Numbers) -> tup
     return header, np.einsum("ts,sa->ta", surface["sizes"], surface["shapes"][:, vertex])[:, None]
 
 
-def _carried(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
+def _load_header(v: Variables, index: Any, places: Floats, numbers: Numbers) -> dict[str, Any]:
     """Header of the loads around a specimen over `places` (p, 3): of the base and, if there is one, of the machine."""
     actual = v.get("load_actual")
     load = v.get(GROUND) if actual is None else actual
@@ -177,7 +177,7 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
     if len(parts) > 1 or corners or moved:  # more than one straight beam on its base
         header |= {"middle": numbers.add(middle), "radiusShown": radius}
     at_start = np.concatenate([np.zeros((1, 3)), v["undeformed"], *(corner[0] for corner in corners)])
-    header |= carrier | _carried(v, index, at_start, numbers)
+    header |= carrier | _load_header(v, index, at_start, numbers)
     if GROUND in v and not deflected.any():
         deflected = v[GROUND][index, None]
     return header, times, deflected

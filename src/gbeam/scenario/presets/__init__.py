@@ -37,7 +37,7 @@ class Preset:
         return self.arm.get("directions", {})
 
     def words(self, name: str, keys: Iterable[str]) -> str:
-        """Words for results on the standard, the clauses of the keys that are `taken` from the preset, at second hand
+        """Words for results on the standard, the clauses of the keys that are `keys` from the preset, at second hand
         where they are, and where the standard has those that a scenario gives.
         """
         sources = {key: clause.partition(":")[0] for key, clause in self.source.items() if key in keys}

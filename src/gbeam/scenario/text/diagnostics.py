@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from gbeam.errors import InputError
@@ -76,7 +76,8 @@ class ScenarioError(InputError):
 
     def as_json(self) -> list[dict[str, str | int | None]]:
         """Return the diagnostics as objects for JSON; without the line of the file where that is very long."""
-        brief = (
-            replace(d, source_line=None) if len(d.source_line or "") > LONGEST_MESSAGE else d for d in self.diagnostics
-        )
-        return [asdict(d) for d in brief]
+        objects = [asdict(diagnostic) for diagnostic in self.diagnostics]
+        for facts in objects:
+            if len(facts["source_line"] or "") > LONGEST_MESSAGE:
+                facts["source_line"] = None
+        return objects

@@ -176,7 +176,10 @@ class Source:
         while nearest and nearest not in self.places:
             nearest = nearest[:-1]
         place = self.places.get(nearest)
-        span = Span(1, 1, 2) if place is None else place.key if mark == "key" or nearest != path else place.value
+        if place is None:
+            span = Span(1, 1, 2)
+        else:
+            span = place.key if mark == "key" or nearest != path else place.value
         return at_span(self.name, self.text, span, path_text(path), message, hint)
 
     def _override_of(self, path: Path) -> Override | None:
