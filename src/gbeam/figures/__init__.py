@@ -243,7 +243,8 @@ def _of_comparisons(study: Study, title: str) -> dict[str, Describe]:
     for comparison in study.comparisons:
         pair_figures = _of_comparison(comparison, title, "comparison", "comparison_", f" {comparison.centrifuge}")
         has_parts = comparison.root or comparison.stations or comparison.load_difference
-        # Without parts a comparison is the difference that a tip's figure shows already.
-        is_new = has_parts or not any(response.at_tip(comparison, body) for body in response.bodies(study))
-        described |= {name: describe for name, describe in pair_figures.items() if is_new or name.startswith("shock")}
+        at_tip = any(response.at_tip(comparison, body) for body in response.bodies(study))
+        if at_tip and not has_parts:  # it is the difference that the tip's figure shows already
+            pair_figures = {name: describe for name, describe in pair_figures.items() if name.startswith("shock")}
+        described |= pair_figures
     return described

@@ -367,13 +367,14 @@ MARGINS = {
 def _in_steps(facts: Facts) -> Blocks:
     """Tables of a loop in steps: its slowest decays, and its margins of gain, phase and delay, with their errors."""
     keys = "eigenvalue", "eigenvalue_imaginary", "decay_error", "oscillation_error"
-    poles = zip_longest(*(facts.get(key, ()) for key in keys))
-    slowest = [pole for pole in poles if pole[1] >= 0 and pole[0] > -math.pi / facts["step"]][:SLOWEST]
+    poles = [dict(zip(keys, values, strict=True)) for values in zip_longest(*(facts.get(key, ()) for key in keys))]
+    upper = [pole for pole in poles if pole["eigenvalue_imaginary"] >= 0]  # the others are their conjugates
+    slowest = [pole for pole in upper if pole["eigenvalue"] > -math.pi / facts["step"]][:SLOWEST]
     decays: Columns = {
-        "decay, 1/s": "0",
-        "error": "2:%",
-        "frequency, Hz": lambda pole: pole[1] / (2 * math.pi),
-        "error ": "3:%",
+        "decay, 1/s": "eigenvalue",
+        "error": "decay_error:%",
+        "frequency, Hz": lambda pole: pole["eigenvalue_imaginary"] / (2 * math.pi),
+        "error ": "oscillation_error:%",
     }
     errors = "error", "error "
     yield table(slowest, decays, f"in steps of {1e3 * facts['step']:.4g} ms; slowest to decay", optional=errors)

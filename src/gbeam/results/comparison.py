@@ -197,7 +197,8 @@ class MachinePlan(Worded, Driven, Figured[AxesFigure]):
         lines = [f"MachinePlan{name} (arm {self.arm:g} m{tracks}): {self.state}"]
         lines += [self.message] if self.message else []
         lines.append(self.verdict)
-        rate, acceleration = (np.abs(history).max(axis=0) for history in (self.axes.rate, self.axes.acceleration))
+        rate = np.abs(self.axes.rate).max(axis=0)
+        acceleration = np.abs(self.axes.acceleration).max(axis=0)
         lines.append(f"axis rates up to {_listed(rate)} rad/s, accelerations {_listed(acceleration)} rad/s²")
         error = self.axes.tracking_error[~self.axes.not_followed]
         if error.size:

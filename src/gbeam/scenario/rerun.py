@@ -123,15 +123,15 @@ def run_again(path: str | os.PathLike[str], result: Stored, progress: Progress =
         scenario = loads(origin.scenario, str(path), changes, folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         result_now = stored(answers)
-    values_before, now = computed_values(result), computed_values(result_now)
+    before, now = computed_values(result), computed_values(result_now)
     holds_a_study = any(name.startswith("motions/") for name in result.variables)
     if not holds_a_study:
         (motion, *others) = facts_of(result).get("motions") or answers.responses
         if others:
             fix = "give the result.nc of all its motions"
             raise InputError(str(path), "holds one response, and does not say of which motion", fix)
-        now = _of_one_motion(now, motion, values_before)
-    return reproduction(os.fspath(path), values_before, now, origin, units_in(result))
+        now = _of_one_motion(now, motion, before)
+    return reproduction(os.fspath(path), before, now, origin, units_in(result))
 
 
 def _of_one_motion(study: Mapping[str, Any], motion: str, names: Collection[str]) -> dict[str, Any]:
@@ -152,7 +152,7 @@ def units_in(stored: Stored) -> Callable[[str], str]:
 
 def reproduction(
     file: str,
-    values_before: Mapping[str, Any],
+    before: Mapping[str, Any],
     now: Mapping[str, Any],
     origin: Provenance,
     unit_of: Callable[[str], str],
@@ -163,31 +163,26 @@ def reproduction(
     """
     assert origin.environment is not None
     changed = origin.environment.changes(current_environment())
-    names = [*values_before, *(name for name in now if name not in values_before)]
-    scales = _scales(values_before, [name for name in values_before if name in now], unit_of) if changed else {}
+    names = [*before, *(name for name in now if name not in before)]
+    scales = _scales(before, [name for name in before if name in now], unit_of) if changed else {}
 
     def scale_of(name: str) -> float:
         """Size against which rounding of a variable is measured; zero in the same environment."""
         is_share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
         return 1.0 if is_share else scales.get(unit_of(name), 0.0)
 
-    compared = [
-        _difference(name, values_before.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names
-    ]
+    compared = [_difference(name, before.get(name), now.get(name), unit_of(name), scale_of(name)) for name in names]
     unequal = [difference for difference in compared if difference is not None]
-    differences = sorted(
-        (difference for difference in unequal if difference.size), key=lambda difference: -difference.size
-    )
-    moved = [
-        difference
-        for difference in differences
-        if changed and _by_rounding(difference, values_before.get(difference.name), now.get(difference.name))
-    ]
+    differences = []
+    for difference in sorted(unequal, key=lambda difference: -difference.size):
+        values = before.get(difference.name), now.get(difference.name)
+        if difference.size and not (changed and _by_rounding(difference, *values)):
+            differences.append(difference)
     return Reproduction(
         file=file,
         compared=len(names),
-        differences=tuple(difference for difference in differences if difference not in moved),
-        rounded=len(moved) + len(unequal) - len(differences),
+        differences=tuple(differences),
+        rounded=len(unequal) - len(differences),
         changed=changed,
     )
 
@@ -240,9 +235,8 @@ def record_changes(origin: Provenance, folder: Path) -> Iterator[str]:
 def computed_values(result: Stored) -> dict[str, Any]:
     """Variables by name and attributes by ``PLACE@NAME``, without those about the computation and the facts."""
     left_out = ("scenario", FACTS)  # the facts repeat the other variables
-    values = {
-        name: value for name, value in result.variables.items() if name not in left_out and not name.startswith(RECORD)
-    }
+    values = {name: value for name, value in result.variables.items() if name not in left_out}
+    values = {name: value for name, value in values.items() if not name.startswith(RECORD)}
     for place, attrs in result.attrs.items():
         if place not in result.variables:  # attributes of variables only describe them
             values |= {f"{place}@{name}": value for name, value in attrs.items() if place or name not in _ABOUT}
@@ -272,26 +266,18 @@ def _difference(name: str, before: Any, now: Any, unit: str, scale: float) -> Di
     """Difference of a value then and now; of size zero if it is within rounding at the scale of its unit."""
     if before is None or now is None:
         return Difference(name, math.inf, "is not there any more" if now is None else "is lacking in the file")
-    values_before, values_now = np.asarray(before), np.asarray(now)
-    if values_before.shape != values_now.shape:
-        return Difference(name, math.inf, f"had the shape {values_before.shape}, has {values_now.shape}")
-    if values_before.dtype.kind != "f" or values_now.dtype.kind != "f":
-        return (
-            None
-            if np.array_equal(values_before, values_now)
-            else Difference(name, math.inf, f"was {_shorten(before)}, is {_shorten(now)}")
-        )
-    if np.array_equal(values_before, values_now, equal_nan=True):
+    x, y = np.asarray(before), np.asarray(now)
+    if x.shape != y.shape:
+        return Difference(name, math.inf, f"had the shape {x.shape}, has {y.shape}")
+    numbers = x.dtype.kind == "f" and y.dtype.kind == "f"
+    if np.array_equal(x, y, equal_nan=numbers):
         return None
-    finite = np.isfinite(values_before) & np.isfinite(values_now)
-    if not np.array_equal(values_before[~finite], values_now[~finite], equal_nan=True):
+    finite = np.isfinite(x) & np.isfinite(y) if numbers else None
+    if finite is None or not np.array_equal(x[~finite], y[~finite], equal_nan=True):
         return Difference(name, math.inf, f"was {_shorten(before)}, is {_shorten(now)}")
-    values_before, values_now = values_before[finite], values_now[finite]
-    largest, largest_change = (
-        float(np.abs(values_before).max(initial=0.0)),
-        float(np.abs(values_before - values_now).max()),
-    )
-    size = 0.0 if largest_change <= ROUNDING * scale else largest_change / max(largest, float(np.finfo(float).tiny))
+    largest = float(np.abs(x[finite]).max(initial=0.0))
+    change = float(np.abs(x[finite] - y[finite]).max())
+    size = 0.0 if change <= ROUNDING * scale else change / max(largest, float(np.finfo(float).tiny))
     words = f"differs by up to {size:.2g} of its largest value, {largest:.4g}"
     return Difference(name, size, f"{words} {unit}" if unit not in ("", "1") else words)
 

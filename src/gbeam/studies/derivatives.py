@@ -114,7 +114,7 @@ class Neighbourhood:
             rows.append(_differences(shifted, values, step))
         return _stack_slopes(values, rows, [DIFFERENCE] * len(rows))
 
-    def response(self, name: str) -> Response:
+    def require_response(self, name: str) -> Response:
         """The response in one environment; ComputationError if it is not done."""
         end = self.answer.failures.get(name) or self.answer.responses[name]
         if end.outcome != "done":
@@ -125,7 +125,7 @@ class Neighbourhood:
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
         case = self.case
-        return Grid.of(case.system, case.environments[name], case.settings_of(name), self.response(name))
+        return Grid.of(case.system, case.environments[name], case.settings_of(name), self.require_response(name))
 
     def _differentiated(self, name: str, grid: Grid) -> Differentiated:
         motion, settings = self.case.environments[name], self.case.settings_of(name)
@@ -134,7 +134,7 @@ class Neighbourhood:
 
     def _of_runs(self, read: Read, motions: Sequence[str], rough: bool) -> Slopes:
         """Slopes of runs: all parameters along which the jumps stay are right-hand sides of one solution."""
-        originals = {name: self.response(name) for name in motions}
+        originals = {name: self.require_response(name) for name in motions}
         for name in motions:
             if name not in self._by_motion:
                 self._differentiated(name, self.grid(name))
@@ -292,7 +292,7 @@ class Quantities:
                 problem = f"allow {', '.join(tried)}, which the scenario refuses: {error.where} {error.problem}"
                 raise InputError("--bounds", problem, "give narrower ones") from None
             for name in self._motions if self._grids is not None else ():
-                nearby.response(name)
+                nearby.require_response(name)
             quantities = self._read(nearby.case, nearby.answer)
             if not np.isfinite(quantities).all():
                 raise ComputationError("not converged", "a figure of the search has no value")

@@ -197,16 +197,12 @@ def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int
     ends = np.cumsum([len(column.values) for column in measurement.columns])[:-1]
     share = 1 - size / len(fitted)  # of the degrees of freedom that the parameters leave
     columns = []
-    for column, values_now, values_before in zip(
-        measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True
-    ):
-        r = column.values - values_now
+    for column, now, start in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
+        r = column.values - now
         power = float(np.sum(r**2))
         correlation = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
         noise = float(np.sqrt(power / (len(r) * share)))
-        columns.append(
-            FittedColumn(column.name, column.unit, column.values, values_now, values_before, noise, correlation)
-        )
+        columns.append(FittedColumn(column.name, column.unit, column.values, now, start, noise, correlation))
     return tuple(columns)
 
 

@@ -168,8 +168,10 @@ def _line(values: Mapping[str, Any], seed: int = 0) -> bytes:
 def _parsed(data: bytes) -> list[tuple[bytes, Line]]:
     """Lines with their values, None if damaged; only the first line if that is damaged."""
     lines = data.splitlines(keepends=True)
-    parsed = [(line, _read(line, 0)) for line in lines[:1]]
-    first_line = parsed[0][1] if parsed else None
+    if not lines:
+        return []
+    first_line = _read(lines[0], 0)
+    parsed = [(lines[0], first_line)]
     if first_line:
         parsed += [(line, _read(line, first_line["crc32"])) for line in lines[1:]]
     return parsed

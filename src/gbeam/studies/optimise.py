@@ -124,7 +124,7 @@ def optimise(
     )
     if last_neighbourhood.runs:
         for name in needed_parts(goal.keys, last_neighbourhood.case.tracks)[0]:
-            last_neighbourhood.response(name)
+            last_neighbourhood.require_response(name)
     requirements = tuple(
         Requirement(
             name, unit_at(facts_of(last_neighbourhood.answer), keys), low, high, float(before[k]), float(after[k])
