@@ -17,14 +17,16 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import record, static
-from gbeam.mechanics.fields.strains import StrainField
+from gbeam.mechanics.fields.strains import StrainField, Tangents
 from gbeam.mechanics.fields.taylor import Places, Turns
-from gbeam.mechanics.fields.vectors import NONE, Vector
+from gbeam.mechanics.fields.vectors import NONE, Vector, absent, add, cross, joined, mapped
 from gbeam.numerics.series import STEP
 
 CORRECTIONS, AS_LONG = 24, 4  # of Newton's method at most, and with the same slopes
+NEAR = 1e-10  # likewise: a larger last correction has found nothing
 TRACED = 8  # corrections under JAX
 CLOSE = 1e-14  # of a length or rad: a smaller correction is rounding
+DIFFERENCE = 1e-4  # m or rad: step of the rows' second difference along a motion
 SMALL = 1e-2  # rad²: squares of smaller angles have series
 
 
@@ -45,13 +47,22 @@ class Measures:
 
     def values(self, q: Array) -> Array:
         """Measures (..., m) at coordinates (..., n)."""
-        moved = self.sections.positions(q) - self.rest
-        angle = moved
-        if any(direction > 2 for _, direction in self.which):
-            angle = rotation_vectors(self.sections.rotation(q))
-        return self.chosen(moved[..., None], angle[..., None])[..., 0]
+        return self.values_at(self.sections.tangents(q, points=True), q)
 
     def rows(self, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
+        return self.rows_at(self.sections.tangents(q, points=True), q)
+
+    def values_at(self, tangents: Tangents, q: Array) -> Array:
+        """Measures (..., m) by the tangents at coordinates (..., n)."""
+        place = mapped(tangents.t, self.sections.cumulative)
+        moved = joined(namespace(q), place, (*q.shape[:-1], len(self.rest))) - self.rest
+        angle = moved
+        if any(direction > 2 for _, direction in self.which):
+            angle = rotation_vectors(self._rotation(tangents, q))
+        return self.chosen(moved[..., None], angle[..., None])[..., 0]
+
+    def rows_at(self, tangents: Tangents, q: Array) -> Array:
         """Derivatives (..., m, n) of the measures by the coordinates (..., n): what unit loads on them do."""
         xp, count = namespace(q), len(self.rest)
         force = np.zeros((3, len(self.which), count))
@@ -62,24 +73,64 @@ class Measures:
         push: Any = tuple(force)
         turn: Any = NONE
         if turning:
-            vector_rate, _ = _vector_rates(rotation_vectors(self.sections.rotation(q)))
+            vector_rate, _ = _vector_rates(rotation_vectors(self._rotation(tangents, q)))
             moment = xp.zeros((*q.shape[:-1], 3, len(self.which), count))
             for k, section, axis in turning:
                 unit = np.zeros((len(self.which), count))
                 unit[k, section] = 1.0
                 moment = moment + vector_rate[..., section, axis, :, None, None] * unit
             turn = tuple(moment[..., axis, :, :] for axis in range(3))
-        return self.sections.along(q[..., None, :], push, turn)
+        alike = _for_each_row(tangents)
+        return self.sections.pulled(alike, *self.sections.at_nodes(alike, push, turn))
 
-    def drift(self, q: Array, qd: Array) -> Array:
+    def bent_rows(self, q: Array) -> Array:
+        """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
+        field, count = self.sections, len(self.rest)
+        tangents = field.tangents(q[..., None, :], points=True)  # components (..., 1, G)
+        fixed = Tangents(tangents.rotation, tangents.t)
+        columns = field.columns(fixed)
+        (place, angle), outboard = (columns.place[0], columns.angle[0]), field.node_cumulative.T
+        turned_points = joined(
+            np, field.columns_of_points(fixed, columns).angle[0], (*q.shape[:-1], q.shape[-1], count)
+        )
+        bent = list[Array]()
+        for section, direction in self.which:
+            reach = field.cumulative[section]
+            if direction < 3:
+                x, y, z = (reach if axis == direction else 0 for axis in range(3))
+                push: Vector = (x, y, z)
+                carried = mapped(cross(tangents.t, push), outboard)
+                moment = add(cross(carried, angle), mapped(cross(place, push), outboard))
+                bent.append(field.inward(tangents, cross(push, angle), moment))
+                continue
+            at = self._rotation(tangents, q[..., None, :])[..., 0, section, :, :]
+            vector_rate, by_vector = _vector_rates(rotation_vectors(at))
+            unit, along = (
+                vector_rate[..., direction - 3, :],
+                turned_points[..., section, :] @ np.swapaxes(vector_rate, -1, -2),
+            )
+            change = sum(along[..., k, None] * by_vector(np.eye(3)[k])[..., None, direction - 3, :] for k in range(3))
+            spin: Any = tuple(unit[..., k, None, None] * reach for k in range(3))
+            grown: Any = tuple(change[..., k, None] * reach for k in range(3))
+            bent.append(field.inward(tangents, NONE, add(cross(spin, angle), grown)))
+        return np.stack(bent, axis=-3)
+
+    def drift_at(self, tangents: Tangents, q: Array, qd: Array) -> Array:
         """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
-        _, _, change = self.sections.paths(q, qd, 0 * qd)
-        rotation, w, alpha = self.sections.turning(q, qd, 0 * qd)
-        phi = rotation_vectors(rotation)
-        vector_rate, by_vector = _vector_rates(phi)
+        xp = namespace(q, qd)
+        moving = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=tangents)
+        shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.rest))
+        vectors = moving.tdd, moving.turn, moving.turnd
+        change, w, alpha = (joined(xp, mapped(each, self.sections.cumulative), shape) for each in vectors)
+        vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(tangents, q)))
         phi_rate = (vector_rate @ w[..., None])[..., 0]
         turned = vector_rate @ alpha[..., None] + by_vector(phi_rate) @ w[..., None]
         return self.chosen(change[..., None], turned)[..., 0]
+
+    def _rotation(self, tangents: Tangents, q: Array) -> Array:
+        """Rotations (..., k, 3, 3) of the sections."""
+        shape = (*q.shape[:-1], len(self.rest))
+        return namespace(q).stack([joined(namespace(q), row, shape) for row in tangents.at_points], axis=-2)
 
 
 @record
@@ -110,14 +161,18 @@ class Conditions:
             return q - xp.linalg.solve(slope, self.measures.values(q)[..., None])[..., 0] @ onto
         q = _alike(np.real(p)) @ spread
         for k in range(CORRECTIONS):
+            tangents = self.measures.sections.tangents(q, points=True)
             if k % AS_LONG == 0:
-                slope = self.measures.rows(q)[..., held]
-            correction = np.linalg.solve(slope, self.measures.values(q)[..., None])[..., 0]
+                slope = self.measures.rows_at(tangents, q)[..., held]
+            correction = np.linalg.solve(slope, self.measures.values_at(tangents, q)[..., None])[..., 0]
             q = q - correction @ onto
             if not np.abs(correction).max(initial=0.0) > CLOSE * (1 + np.abs(q).max(initial=0.0)):
                 break
+        else:
+            lost = np.abs(correction).max(axis=-1, keepdims=True) > NEAR * (1 + np.abs(q).max(axis=-1, keepdims=True))
+            q = np.where(lost, np.nan, q)  # no motion near by meets the conditions
         if not np.iscomplexobj(p):
-            return q
+            return np.broadcast_to(q, (*p.shape[:-1], self.size))
         # One more correction carries the complex step.
         rows, step = self.measures.rows(q), np.imag(p) @ spread
         follow = np.linalg.solve(rows[..., held], rows @ step[..., None])[..., 0]
@@ -143,14 +198,61 @@ class Conditions:
         return self.moving(p, pd, pdd)[:3]
 
     def moving(self, p: Array, pd: Array, pdd: Array) -> tuple[Array, Array, Array, Array]:
-        """Coordinates, rates and accelerations (..., n) of the free beam, and Φ there."""
-        q = self.lifted(p)
-        rows, held = self.measures.rows(q), np.array(self.dependent, dtype=int)
+        """Coordinates, rates and accelerations (..., n) of the free beam, and Φ there.
+
+        Complex steps from one real motion follow from the derivatives there.
+        """
+        if any(map(np.iscomplexobj, (p, pd, pdd))):
+            stepped = self._stepped(p, pd, pdd)
+            if stepped is not None:
+                return stepped
+        q, held = self.lifted(p), np.array(self.dependent, dtype=int)
+        tangents = self.measures.sections.tangents(q, points=True)
+        rows = self.measures.rows_at(tangents, q)
         phi = self._basis(rows)
         qd, qdd = ((phi @ each[..., None])[..., 0] for each in (pd, pdd))
-        drift = self.measures.drift(*namespace(q, qd).broadcast_arrays(q, qd))
+        drift = self.measures.drift_at(tangents, q, qd)
         fallen = namespace(rows, drift).linalg.solve(rows[..., held], drift[..., None])[..., 0]
         return q, qd, qdd - fallen @ np.eye(self.size)[held], phi
+
+    def _stepped(self, p: Array, pd: Array, pdd: Array) -> tuple[Array, Array, Array, Array] | None:
+        """What :meth:`moving` returns, for complex steps along the first axis from one real motion; else None."""
+        axes = max(values.ndim for values in (p, pd, pdd))
+        motion = [values if values.ndim == axes else values[None] for values in (p, pd, pdd)]
+        real = [_alike(np.real(values)) for values in motion]
+        if axes < 2 or any(len(values) > 1 for values in real):
+            return None
+        q, qd, qdd, phi = self.moving(*real)
+        step_p, step_pd, step_pdd = (np.imag(values) for values in motion)
+        held, onto = np.array(self.dependent, dtype=int), np.eye(self.size)[np.array(self.dependent, dtype=int)]
+        rows, bent = self.measures.rows(q), self.measures.bent_rows(q)
+        inverse = np.linalg.inv(rows[..., held])
+
+        def follow(measures: Array) -> Array:
+            """Coordinates (..., n) of which the dependent ones take back changes of measures (..., m)."""
+            return -(inverse @ measures[..., None])[..., 0] @ onto
+
+        def free(steps: Array) -> Array:
+            """Motion (..., n) of the free beam by steps (..., k) of the independent coordinates."""
+            return (phi @ steps[..., None])[..., 0]
+
+        def along(vector: Array) -> Array:
+            """Change (..., m, n) of the rows along a vector (..., n)."""
+            return np.einsum("...mji,...j->...mi", bent, vector)
+
+        by_rate, by_change = along(qd), along(qdd)
+        dq = free(step_p)
+        dqd = free(step_pd) + follow((by_rate @ dq[..., None])[..., 0])
+        drift = 2 * (by_rate @ dqd[..., None])[..., 0] + (by_change @ dq[..., None])[..., 0]
+        size = np.abs(qd).max(initial=0.0)
+        if size > 0:
+            h = DIFFERENCE / size
+            ahead, behind = (self.measures.rows(q + sign * h * qd) for sign in (1, -1))
+            drift = drift + (((ahead - 2 * rows + behind) / h**2) @ dq[..., None])[..., 0]
+        dqdd = free(step_pdd) + follow(drift)
+        turned_phi = np.einsum("...mji,...j->...mi", bent, dq) @ phi
+        dphi = -np.swapaxes(onto, 0, 1) @ (inverse @ turned_phi)
+        return q + 1j * dq, qd + 1j * dqd, qdd + 1j * dqdd, phi + 1j * dphi
 
     def projected(self, q: Array, forces: Array) -> Array:
         """Forces (..., k) on the independent coordinates that do the work of forces (..., n)."""
@@ -273,6 +375,19 @@ def projection(basis: Array, forces: Array) -> Array:
 def _alike(real: Array) -> Array:
     """Values (..., n), one along the first axis where they are alike there, as those of complex steps are."""
     return real[:1] if real.ndim > 1 and len(real) > 1 and (real == real[:1]).all() else real
+
+
+def _for_each_row(tangents: Tangents) -> Tangents:
+    """Tangents (..., 1, G) for forces (..., m, G) that act one row after the other."""
+
+    def wider(part: Any) -> Any:
+        return part if absent(part) else part[..., None, :]
+
+    x, y, z = (wider(part) for part in tangents.t)
+    rotation: Any = tuple(
+        tuple(part if isinstance(part, int) else wider(part) for part in row) for row in tangents.rotation
+    )
+    return Tangents(rotation, (x, y, z))
 
 
 def rotation_vectors(R: Array) -> Array:

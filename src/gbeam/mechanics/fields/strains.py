@@ -151,14 +151,21 @@ class StrainField:
         return Tangents(rotation, turned(rotation, strain[:3]), arm, at_points=at_points)
 
     def moving(
-        self, q: Array, qd: Array, qdd: Array, base: tuple[Vector, Vector] = (NONE, NONE), *, points: bool = False
+        self,
+        q: Array,
+        qd: Array,
+        qdd: Array,
+        base: tuple[Vector, Vector] = (NONE, NONE),
+        *,
+        points: bool = False,
+        at_rest: Tangents | None = None,
     ) -> Tangents:
         """Motion of tangents and sections at coordinates and rates (..., n), on a base with angular rate ω and
         acceleration α.
 
-        Rotations at the points are returned if `points`.
+        Rotations at the points are returned if `points`. The tangents `at_rest` are computed unless they are given.
         """
-        at_rest = self.tangents(q, points=points)
+        at_rest = self.tangents(q, points=points) if at_rest is None else at_rest
         rotation, t = at_rest.rotation, at_rest.t
         rate, change = (tuple(self.sums(x)) for x in (qd, qdd))
         stretching, turn = turned(rotation, rate[:3]), turned(rotation, rate[3:])
