@@ -8,7 +8,7 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.accuracy import looks
 from gbeam.analysis.accuracy.looks import Looks, highest, times_of_peaks
-from gbeam.numerics.peaks import peaks_apart
+from gbeam.numerics.peaks import peak_difference
 
 TIME = np.linspace(0.0, 10.0, 2001)
 
@@ -27,7 +27,7 @@ def test_peaks_and_differences_are_those_of_all_times() -> None:
     assert len(chosen.at) < 0.3 * len(TIME)
     other, size = force + departure, np.linalg.norm(departure, axis=1)
     assert size[chosen.at].max() == size.max()
-    expected = peaks_apart(TIME, force, other)
+    expected = peak_difference(TIME, force, other)
     assert chosen.peaks_apart(force[chosen.at], other[chosen.at]) == pytest.approx(expected, rel=1e-6)
 
 

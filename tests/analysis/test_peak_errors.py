@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 import gbeam as gb
-from gbeam.numerics.peaks import extremes, peaks_apart
+from gbeam.numerics.peaks import extremes, peak_difference
 
 LENGTH, WIDTH, DENSITY, MODULUS = 0.5, 0.004, 2700.0, 70e9
 MASS = DENSITY * WIDTH**2 * LENGTH
@@ -97,7 +97,7 @@ def test_extremes_are_those_between_samples_and_of_every_component() -> None:
     np.testing.assert_allclose(extremes(time, 3.0 + history[:, :1]), [3.8, -1.8, 3.8], atol=1e-5)
     later = np.stack([np.sin(3.6 * time) - 0.2, 0.5 * np.cos(2.9 * time + 0.3), 0.0 * time], axis=1)
     assert np.abs(later - history).max() > 0.8
-    assert peaks_apart(time, history[:, 0], later[:, 0]) < 1e-5
+    assert peak_difference(time, history[:, 0], later[:, 0]) < 1e-5
     # Sizes that agree hide no component: of a load turned about, each is known.
-    assert peaks_apart(time, history, history[:, [1, 0, 2]]) == pytest.approx(0.7, abs=1e-4)
-    assert peaks_apart(time, history, -history) == pytest.approx(0.4, abs=1e-4)
+    assert peak_difference(time, history, history[:, [1, 0, 2]]) == pytest.approx(0.7, abs=1e-4)
+    assert peak_difference(time, history, -history) == pytest.approx(0.4, abs=1e-4)

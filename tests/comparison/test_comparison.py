@@ -12,7 +12,7 @@ import scipy.signal
 from scipy.linalg import expm
 
 from gbeam import Comparison, Flight, InputError, Joint, SmoothStep, System, compare, simulate, tabulated
-from gbeam.numerics.samples import displacement, largest_riding_acceleration, low_pass, riding_acceleration
+from gbeam.numerics.samples import displacement, largest_oscillator_acceleration, low_pass, oscillator_acceleration
 from gbeam.report.study import comparison_lines as lines
 
 from ..analysis.helpers import with_body
@@ -184,7 +184,7 @@ def test_oscillators_against_closed_forms() -> None:
     t = np.arange(0, 0.2, h)
     pulse = np.where(t < width, np.sin(np.pi * t / width), 0.0)
     fn = 0.8 / width
-    assert np.abs(riding_acceleration(pulse, 2 * np.pi * fn, 0.0, h)).max() == pytest.approx(1.768, abs=0.002)
+    assert np.abs(oscillator_acceleration(pulse, 2 * np.pi * fn, 0.0, h)).max() == pytest.approx(1.768, abs=0.002)
     ramp = 3.0 * t
     w = 2 * np.pi * 30
     np.testing.assert_allclose(displacement(ramp, w, 0.0, h), 3 * (t - np.sin(w * t) / w) / w**2, atol=1e-10)
@@ -205,7 +205,7 @@ def test_filters_are_the_recurrences_they_stand_for() -> None:
     step, damping = 1e-3, 0.05
     load = np.cumsum(np.random.default_rng(0).standard_normal((200, 2)), axis=0)
     frequencies = np.array([0.7, 40.0, 900.0, 1100.0, 5000.0])
-    together, riding = (f(load, frequencies, damping, step) for f in (displacement, riding_acceleration))
+    together, riding = (f(load, frequencies, damping, step) for f in (displacement, oscillator_acceleration))
     for omega, eta, riders in zip(frequencies, together, riding, strict=True):
         a = np.zeros((4, 4))  # η, η̇, the load and its slope
         a[0, 1], a[1], a[2, 3] = 1, [-(omega**2), -2 * damping * omega, 1, 0], 1
@@ -221,7 +221,7 @@ def test_filters_are_the_recurrences_they_stand_for() -> None:
         np.testing.assert_allclose(riders, acceleration, rtol=1e-11, atol=1e-12 * np.abs(riders).max())
         np.testing.assert_allclose(displacement(load[:, 0], omega, damping, step), eta[:, 0], rtol=1e-12)
     covered = np.arange(200) % 3 > 0
-    largest = largest_riding_acceleration(load, frequencies, damping, step, covered)
+    largest = largest_oscillator_acceleration(load, frequencies, damping, step, covered)
     np.testing.assert_allclose(largest, np.abs(riding[:, covered]).max(axis=1), rtol=1e-12)
 
 

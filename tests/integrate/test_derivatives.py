@@ -47,7 +47,7 @@ def test_one_state_serves_all_steps_until_corrections_shrink_slowly() -> None:
     built.renew(stages(soft))
     built.grow_old(np.full(30, 0.5), np.zeros(30, dtype=bool), fast=False)
     built.renew(stages(soft))
-    assert spring.derived == [1] and built.single and built.even and built.trusted.all()
+    assert spring.derived == [1] and built.single and built.constant and built.trusted.all()
     slow = np.arange(30) == 20
     built.grow_old(np.full(30, 0.1), slow, fast=False)
     built.renew(stages(soft))
@@ -66,7 +66,7 @@ def test_derivatives_come_closer_where_corrections_shrink_slowly_and_go_apart_wh
     assert spacings == [APART, NEAR, NEAR, NEAR + 1, NEAR + 2]
     for _ in range(FAR):
         built.grow_old(np.zeros(2), np.zeros(2, dtype=bool), fast=True)
-    assert built.even
+    assert built.constant
 
 
 def test_steps_leave_and_are_cut_with_their_derivatives() -> None:

@@ -181,7 +181,7 @@ def test_corners_and_jumps_between_steps_leave_the_order(kind: str, name: str) -
     """Steps that pass over them leave every scheme of first order here."""
     system: Any = linear_duffing() if kind == "linear" else NonlinearEquations(Duffing(), cornered)
     scheme, exact = {**SCHEMES, "Gauss": gauss()}[name], duffing_at(3.0, 0.0 if kind == "linear" else 5.0)
-    corners = Corners.of(CORNERS, cornered, 0.0, 3.0)
+    corners = Corners.from_times(CORNERS, cornered, 0.0, 3.0)
     np.testing.assert_array_equal(corners.jump, [True, False, True])
 
     def error(count: int, known: Corners | None) -> float:
@@ -199,7 +199,7 @@ def test_results_at_a_jump_are_those_of_the_time_itself() -> None:
     kick = lambda t: namespace(t).where(t < 1.0, 0.0, 1.0)  # noqa: E731
     for scheme in (newmark(), generalized_alpha(0.8), gauss()):
         for system in (driven(1.0, kick), NonlinearEquations(Pushed(), kick)):
-            corners = Corners.of([1.0], kick, 0.0, 2.0)
+            corners = Corners.from_times([1.0], kick, 0.0, 2.0)
             run = integrate(system, scheme, np.zeros(1), np.zeros(1), step=0.1, count=20, corners=corners)
             after = np.maximum(run.time - 1, 0)
             np.testing.assert_allclose(run.q[:, 0], after**2 / 2, atol=1e-8)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate.driver import through
+from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
 from gbeam.integrate.steps import Corners, fitted
@@ -43,7 +43,7 @@ def test_tangent_is_the_derivative_of_the_discrete_solution(make: Callable[[], S
     assert len(steps) == 31  # one is split
 
     def run(p: Any) -> Any:
-        return through(forced(*p), scheme, *start, steps)
+        return integrate_steps(forced(*p), scheme, *start, steps)
 
     equations = forced(*p)
 

@@ -43,7 +43,7 @@ def load(t: Any) -> Any:
 
 SWING = NonlinearEquations(Swing(), load)
 START = np.array([1.2, -0.7]), np.array([0.5, 3.0])
-KNOWN = {"step": 0.01, "count": 300, "corners": Corners.of([PUSH], load, 0.0, 3.0)}
+KNOWN = {"step": 0.01, "count": 300, "corners": Corners.from_times([PUSH], load, 0.0, 3.0)}
 
 
 @record
@@ -70,7 +70,7 @@ def constant_terms(force: Any) -> Any:
 )
 def test_accelerations_are_renewed_where_a_load_jumps(make: Any, equations: Any) -> None:
     """A mass that a force pushes from 1.3 s on, within a step: every scheme finds its parabola to rounding."""
-    known = {"step": 0.04, "count": 100, "corners": Corners.of([PUSH], push, 0.0, 4.0)}
+    known = {"step": 0.04, "count": 100, "corners": Corners.from_times([PUSH], push, 0.0, 4.0)}
     built = integrate(equations, make(), np.zeros(1), np.zeros(1), **known)
     pushed = np.maximum(built.time - PUSH, 0.0)
     np.testing.assert_allclose(built.qd[:, 0], 8 * pushed, atol=1e-9)
@@ -209,7 +209,7 @@ def test_accelerations_are_found_where_they_are_asked_for() -> None:
 
     run = integrate(NonlinearEquations(counted, load), gauss(), *START, **KNOWN)
     states.clear()
-    some = run.at(slice(None, None, 50)).at([1, 3, 5])
+    some = run.select(slice(None, None, 50)).select([1, 3, 5])
     for _ in range(2):
         np.testing.assert_allclose(Swing()(some.q, some.qd, some.qdd, load(some.time)), 0.0, atol=1e-11)
     assert states == [3]  # once

@@ -7,7 +7,7 @@ import pytest
 import scipy.optimize
 import scipy.sparse
 
-from gbeam.numerics.minimise import minimise, nearest_within, solve_quadratic
+from gbeam.numerics.minimise import minimise, nearest_point, solve_quadratic
 
 RANDOM = np.random.default_rng(7)
 
@@ -48,13 +48,13 @@ class Rosenbrock:
 class Hyperbola:
     """x y <= 1 of positive numbers by its tangents, y <= (2 − x/a)/a, like the power of an arm."""
 
-    def at(self, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
+    def linearise(self, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
         rows = scipy.sparse.csr_array([[1 / x[0], x[0]], [1.0, 0.0]])
         return rows, np.array([-np.inf, 0.1]), np.array([2.0, 10.0])
 
 
 class Halfplane:
-    def at(self, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
+    def linearise(self, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
         return scipy.sparse.csr_array([[1.0, 1.0]]), np.array([-np.inf]), np.array([1.0])
 
 
@@ -83,5 +83,5 @@ def test_a_curved_limit_is_kept_by_every_step() -> None:
 
 
 def test_the_nearest_point_within_limits_is_the_foot_of_the_perpendicular() -> None:
-    x = nearest_within(Halfplane(), np.array([2.0, 1.0]))
+    x = nearest_point(Halfplane(), np.array([2.0, 1.0]))
     np.testing.assert_allclose(x, [1.0, 0.0], atol=1e-6)

@@ -57,7 +57,7 @@ class Derivatives:
         self.slope, self.maps, self.age = None, None, np.zeros(0)
 
     @property
-    def even(self) -> bool:
+    def constant(self) -> bool:
         """True if the derivatives at its first state serve a whole window."""
         return self.spacing > FAR
 
@@ -82,11 +82,11 @@ class Derivatives:
         """Append steps with the derivatives of the last one, or of the stage whose derivatives serve all."""
         count = len(self.age)
         by_step = self.slope is not None and len(self.slope) == count > 1
-        if not count and self.even:
+        if not count and self.constant:
             self.slope = None  # a new window computes its own
-        elif by_step and not self.even:
-            of_last = np.broadcast_to(self.slope[-1:, -1:], (added, *self.slope.shape[1:]))
-            self.slope = np.concatenate([self.slope, of_last])
+        elif by_step and not self.constant:
+            repeated = np.broadcast_to(self.slope[-1:, -1:], (added, *self.slope.shape[1:]))
+            self.slope = np.concatenate([self.slope, repeated])
         elif self.slope is not None:
             self.slope, self.maps = self.slope[-1:, -1:], None
         self.age = np.append(self.age, np.zeros(added))
@@ -114,7 +114,7 @@ class Derivatives:
         """
         self.age = np.where(slow, np.inf, self.age + shares)
         if slow.any():
-            self.spacing = APART if self.even else max(self.spacing // 2, NEAR)
+            self.spacing = APART if self.constant else max(self.spacing // 2, NEAR)
         elif fast:
             self.spacing += 1
 
@@ -133,7 +133,7 @@ class Derivatives:
             self.reached = self.slope[0, 0]
         if count == 1:
             valid = self.age <= STALE_ALONE
-        elif self.even:
+        elif self.constant:
             valid = self.age < np.inf
         else:
             valid = self.age <= STALE
@@ -160,7 +160,7 @@ class Derivatives:
         unit = np.broadcast_to(np.eye(size), jacobian.shape)
         inverse, answer = np.split(solved(jacobian, np.concatenate([unit, by_state], axis=-1)), [size], axis=-1)
         if held is not None:
-            held.push(inverse, t, self._interpolate(held.sampling.onto, stages, 0))
+            held.push(inverse, t, self._interpolate(held.sampling.residual_slopes, stages, 0))
         # S = g − d J⁻¹ L
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         by_stages = t.d @ answer.reshape(-1, per_step, n * m * n)

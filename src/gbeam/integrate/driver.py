@@ -40,10 +40,10 @@ def integrate(
     trajectory; where JAX traces the equations, it leaves NaN.
     """
     steps = fitted(start, step, count, None if corners is None else corners.felt_by(scheme))
-    return through(equations, scheme, q, qd, steps, stop=stop, progress=progress)
+    return integrate_steps(equations, scheme, q, qd, steps, stop=stop, progress=progress)
 
 
-def through(
+def integrate_steps(
     equations: LinearEquations | NonlinearEquations,
     scheme: Scheme,
     q: Any,

@@ -23,19 +23,19 @@ Drive = Callable[[Array], Any]  # times (t,) -> what drives the equations there,
 
 @record
 class LinearTerms:
-    """C, K (k, n, n) and F (k, n) as sums over features φ of the inputs, such as C = Σ φ_k C_k."""
+    """Terms of C, K (k, n, n) and F (k, n), which are sums over features φ of the inputs, such as C = Σ φ_k C_k."""
 
     velocity: Array
     stiffness: Array
     force: Array
 
     @property
-    def each(self) -> tuple[Array, Array, Array]:
+    def arrays(self) -> tuple[Array, Array, Array]:
         """Terms of C, of K and of F."""
         return self.velocity, self.stiffness, self.force
 
-    def at(self, features: Array) -> tuple[Array, Array, Array]:
-        """C, K (..., n, n) and F (..., n) at features (..., k). Features that are missing at the end count as zero."""
+    def evaluate(self, features: Array) -> tuple[Array, Array, Array]:
+        """Return C, K (..., n, n) and F (..., n) at features (..., k). Missing ones at the end count as zero."""
         xp, count = namespace(features, self.force), features.shape[-1]
 
         def combined(terms: Array) -> Array:
@@ -47,7 +47,7 @@ class LinearTerms:
     @property
     def nonzero(self) -> tuple[Array, Array, Array]:
         """Flags of the terms of C, K and F that are not zero, (k,) each."""
-        c, k, f = (np.any(np.reshape(part, (len(part), -1)), axis=1) for part in self.each)
+        c, k, f = (np.any(np.reshape(part, (len(part), -1)), axis=1) for part in self.arrays)
         return c, k, f
 
 
@@ -139,8 +139,8 @@ class Trajectory:
         """Accelerations (t, n)."""
         return self.known(np.arange(len(self.time))) if callable(self.known) else self.known
 
-    def at(self, steps: Any) -> Trajectory:
-        """The trajectory at the times that `steps`, indices or a slice, chooses."""
+    def select(self, steps: Any) -> Trajectory:
+        """Return the trajectory at the times that `steps`, indices or a slice, chooses."""
         known, index = self.known, np.arange(len(self.time))[steps]
         chosen = (lambda part: known(index[part])) if callable(known) else known[steps]
         return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=chosen)
@@ -228,14 +228,15 @@ def _pieces(numbers: int, *parts: Any) -> list[Any]:
     count, size = len(parts[0]), max(FEWEST, AT_ONCE // max(numbers, 1))
     if count <= size or is_jax(parts[0]):
         return [parts]
-    return [each_leaf(lambda leaf: leaf[first : first + size], parts) for first in range(0, count, size)]  # noqa: B023
+    pieces = [slice(first, first + size) for first in range(0, count, size)]
+    return [each_leaf(lambda leaf, piece=piece: leaf[piece], parts) for piece in pieces]  # type: ignore[misc]
 
 
-def solved(left: Array, right: Array) -> Array:
+def solved(matrix: Array, right: Array) -> Array:
     """Solutions of linear systems. They are NaN where a matrix is singular, for which NumPy would refuse all."""
     try:
-        return namespace(left, right).linalg.solve(left, right)
+        return namespace(matrix, right).linalg.solve(matrix, right)
     except np.linalg.LinAlgError:
-        if left.ndim == 2:
+        if matrix.ndim == 2:
             return np.full_like(right, np.nan)
-        return np.stack([solved(*pair) for pair in zip(left, right, strict=True)])
+        return np.stack([solved(*pair) for pair in zip(matrix, right, strict=True)])

@@ -29,8 +29,10 @@ _AT_ONCE = 20  # chunks whose inputs are computed at once
 
 @dataclass(frozen=True)
 class Chunk:
-    """Steps of one compiled call in groups of equal size, filled up by repetition: `last` (groups,) is the index of a
-    group's last step that counts, −1 of none; `inputs` (groups, steps, s, ...), `at_ends` without the stages.
+    """Steps of one compiled call, in groups of equal size that are filled up by repeated steps.
+
+    `last` (groups,) is the index, within a group, of its last step that counts, −1 if none does. `inputs` (groups,
+    steps, s, ...) are those at the stages, `at_ends` (groups, steps, ...) those at the ends of steps.
     """
 
     steps: Steps
@@ -40,7 +42,7 @@ class Chunk:
     at_ends: Any
 
     @cached_property
-    def inside(self) -> Any:
+    def counted(self) -> Any:
         """Flags (steps,) of the steps that count."""
         return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
 
@@ -52,7 +54,7 @@ class Chunk:
     @property
     def end(self) -> Steps:
         """The last step that counts."""
-        return self.steps[np.flatnonzero(self.inside)[-1]]
+        return self.steps[np.flatnonzero(self.counted)[-1]]
 
 
 @dataclass(frozen=True)
@@ -103,23 +105,27 @@ def chunks(drive: Drive, scheme: Scheme, all_stretches: Iterable[Stretch]) -> It
 
 def _groups(steps: Steps, size: int, *, restart: bool) -> Iterator[tuple[Any, Any]]:
     """Yield the groups of each chunk: indices (groups, size) of their steps, and the place (groups,) of the last step
-    that counts in each group, −1 if none does. With `restart` a chunk ends where the scheme starts anew.
+    that counts in each group, −1 if none does.
+
+    A group ends where the scheme starts anew; with `restart`, the chunk does, too. A group of fewer steps repeats its
+    last one. Groups without a step that counts fill the last chunk, so that one program serves every duration.
     """
-    ends = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)
-    begins = np.append(0, ends[:-1] + 1)
-    # Of each run between restarts: the first steps of its groups, and the run's last step.
-    spans = []
-    for begin, end in zip(begins, ends, strict=True):
+    restarts = np.append(np.flatnonzero(steps.anew[:-1]), len(steps) - 1)  # last steps of the stretches between them
+    stretch_begins = np.append(0, restarts[:-1] + 1)
+    stretches = []  # of each stretch: the first steps of its groups, and its last step for each of them
+    for begin, end in zip(stretch_begins, restarts, strict=True):
         firsts = np.arange(begin, end + 1, size)
-        spans.append(np.stack([firsts, np.full(len(firsts), end)]))
-    in_chunk = CHUNK // size
-    for span in spans if restart else [np.concatenate(spans, axis=1)]:
-        for done in range(0, span.shape[1], in_chunk):
-            first, end = span[:, done : done + in_chunk]
-            # Groups beyond the last fill the chunk, so that one program serves every duration.
-            fill = in_chunk - len(first)
-            last = np.append(np.minimum(end - first, size - 1), np.full(fill, -1))
-            first, end = (np.append(x, np.full(fill, end[-1])) for x in (first, end))
+        stretches.append(np.stack([firsts, np.full(len(firsts), end)]))
+    if not restart:
+        stretches = [np.concatenate(stretches, axis=1)]
+    groups_per_chunk = CHUNK // size
+    for stretch in stretches:
+        for done in range(0, stretch.shape[1], groups_per_chunk):
+            first, end = stretch[:, done : done + groups_per_chunk]
+            missing = groups_per_chunk - len(first)
+            last = np.append(np.minimum(end - first, size - 1), np.full(missing, -1))
+            first = np.append(first, np.full(missing, end[-1]))
+            end = np.append(end, np.full(missing, end[-1]))
             yield np.minimum(first[:, None] + np.arange(size), end[:, None]), last
 
 
@@ -188,7 +194,7 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     return jax.vmap(lambda *state: mass_and_acceleration(exact(residual), *state)[1])(q, qd, inputs)
 
 
-def _next(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:
+def _advance(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:
     """The next carry, and q, q̇ at the end of the step."""
     q, qd = t.end_z @ carry.z + t.end_x @ x
     return Carry(t.g @ carry.z + t.d @ x, x, carry.x), q, qd
@@ -231,7 +237,7 @@ def steps(
                 return x, _size(correction, x), size, tries + 1
 
             x, size, before, _ = jax.lax.while_loop(unconverged, corrected, (_guess(t, carry), jnp.inf, jnp.inf, 0))
-            after, q, qd = _next(t, carry, x)
+            after, q, qd = _advance(t, carry, x)
             return after, (q, qd, x[-1], _remaining_error(size, before))
 
         after, (q, qd, qdd, error) = jax.lax.scan(take_step, carry, group_inputs)
@@ -244,11 +250,11 @@ def steps(
         return after, (q, qd, at_end, error)
 
     by_group = tableau, inputs, at_ends, last
-    carry, history = _over_groups(take_group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
+    carry, history = _loop_over_groups(take_group, carry, by_group, count, (*jax.tree.leaves(inputs)[0].shape[:2], n))
     return carry, tuple(x.reshape(-1, *x.shape[2:]) for x in history)
 
 
-def _over_groups(take: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
+def _loop_over_groups(take: Any, carry: Carry, by_group: Any, count: Any, shape: tuple[int, ...]) -> Any:
     """Apply `take` to the first `count` groups in turn, and collect the histories.
 
     Those of q, q̇ and q̈ have the `shape` (groups, steps, n), that of the error is without n. A scan would take all

@@ -30,7 +30,7 @@ def relaxed(t: Tableau, mass: Floats, c: Floats, k: Floats, f: Floats, z: Floats
     for first in range(0, len(c), TOGETHER):
         part = slice(first, first + TOGETHER)
         change = np.concatenate([k[part] - mean.k, c[part] - mean.c], axis=3)
-        settled = mean.settled(change, f[part].reshape(len(change), -1), state)
+        settled = mean.settle(change, f[part].reshape(len(change), -1), state)
         if settled is None:
             return None
         before, x = settled
@@ -57,11 +57,11 @@ class _Mean:
         self.of_state, self.of_stages, self.next = (w_q, w_v), (c_q, c_v), d
         self.powers = _powers(g.T + d.T @ self.per_state, TOGETHER)
 
-    def settled(self, change: Floats, driven: Floats, state: Floats) -> tuple[Floats, Floats] | None:
-        """States (t + 1, m n) from the first, (m n,), and accelerations of stages, under the forces `driven` (t, s n).
+    def settle(self, change: Floats, driven: Floats, state: Floats) -> tuple[Floats, Floats] | None:
+        """Return states (t + 1, m n) from the first, (m n,), and accelerations of stages, (t, s n).
 
-        K and C differ from their means by `change` (t, s, n, 2 n). The forces of these changes are added, and the steps
-        taken again, until the accelerations settle; None where they do not.
+        `driven` (t, s n) are forces; K and C differ from their means by `change` (t, s, n, 2 n). The forces of these
+        changes are added, and the steps taken again, until the accelerations settle; None where they do not.
         """
         count, stages, n, _ = change.shape
         forces, before = driven, np.inf

@@ -57,7 +57,7 @@ class Controllers(Protocol):
         ...
 
     def driven(self, inputs: Any, held: Array) -> Any:
-        """Inputs with the commands `held` (t, m) added."""
+        """Return the inputs with the commands `held` (t, m) added."""
         ...
 
     @property
@@ -73,11 +73,11 @@ class Uncontrolled:
     drives: tuple[()] = ()
 
     def laws(self, times: Any) -> list[Any]:
-        """No laws."""
+        """Return no laws."""
         return []
 
     def driven(self, inputs: Any, held: Array) -> Any:
-        """The inputs themselves."""
+        """Return the inputs themselves."""
         return inputs
 
 
@@ -162,14 +162,12 @@ class Sampling:
         """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
         return tuple(map(np.stack, tuple(zip(*self.samples[c], strict=True))[:3]))
 
-    def onto(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+    def residual_slopes(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
         """Derivatives ∂r/∂u (t, n, m) of the residual with respect to the commands, at states and inputs (t, ...)."""
-        return self._by_command(self.residual, q, qd, qdd, inputs)
+        return self._command_slopes(self.residual, q, qd, qdd, inputs)
 
-    def _by_command(self, function: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Derivatives (t, k, m) of a function (t, k) of states and inputs (t, ...) by the commands, by complex
-        steps.
-        """
+    def _command_slopes(self, function: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+        """Derivatives (t, k, m), by complex steps, of a function (t, k) of states and inputs by the commands."""
         count = self.held.shape[1]
         units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
         values = function(q, qd, qdd, self.controllers.driven(inputs, units))
@@ -195,9 +193,9 @@ class Sampling:
             return slope, None
         # M δq̈ = −(K δq + C δq̇ + the derivatives by what is commanded).
         k, damping, mass = slopes(self.residual, q, qd, qdd, inputs)
-        rest = np.concatenate([k, damping, self.onto(q, qd, qdd, inputs)], axis=-1)
+        rest = np.concatenate([k, damping, self.residual_slopes(q, qd, qdd, inputs)], axis=-1)
         by_state, by_command = np.split(by_change @ solved(mass, -rest), [slope.shape[-1]], axis=-1)
-        direct = self._by_command(measured, q, qd, qdd, inputs)
+        direct = self._command_slopes(measured, q, qd, qdd, inputs)
         return slope + by_state, by_command + direct
 
 
@@ -232,13 +230,13 @@ class Held:
 
     def begin(self, z: Array) -> None:
         """Linearise the measurements about the states z (t, m, n) at the beginnings of steps."""
-        self.slope = self._at_samples(self.sampling.measurement_slopes, z)
+        self.slope = self._evaluate_samples(self.sampling.measurement_slopes, z)
 
     def measure(self, z: Array) -> None:
         """Measure at the states z (t, m, n) of the iterate."""
-        self.values = self._at_samples(self.sampling.measured, z)
+        self.values = self._evaluate_samples(self.sampling.measured, z)
 
-    def _at_samples(self, function: Any, z: Array) -> dict[int, Any]:
+    def _evaluate_samples(self, function: Any, z: Array) -> dict[int, Any]:
         """Evaluate a function of a controller, q, q̇ and inputs at the samples of each controller, under the commands
         that acted before; return the values by the controllers' numbers.
         """

@@ -46,9 +46,10 @@ def taken_together(
     parts: Parts,
     ends: bool,
 ) -> tuple[Array, tuple[Array, ...]]:
-    """Take the first `count` of t steps of b runs from z (m, n, b), with matrices (n, n, b), `lengths` (t, b), and
-    features (t, s, k, b) at the stages and, unless the last one `ends` the step, at its end; `inverse` is that of the
-    true mass. Returns z, and q, q̇, q̈ (b, t, n).
+    """Take the first `count` of t steps of b runs from z (m, n, b); return the next z, and q, q̇, q̈ (b, t, n).
+
+    Matrices are (n, n, b), `lengths` (t, b). Features (t, s, k, b) are those at the stages and, unless the last stage
+    `ends` the step, at its end. `inverse` is that of the true mass.
     """
 
     def step(z: Array, h: Array, phi: Array) -> tuple[Array, tuple[Array, Array, Array]]:
@@ -57,7 +58,7 @@ def taken_together(
         stages, (_, n, b) = len(t.c_q), z.shape
         c, k, f = (
             [_sum(matrix_terms, at_time, chosen) for at_time in phi]
-            for matrix_terms, chosen in zip(terms.each, parts, strict=True)
+            for matrix_terms, chosen in zip(terms.arrays, parts, strict=True)
         )
         # The compiler would compute these anew wherever they are read, and the matrix below for each of its pivots.
         c, k, f = jax.lax.optimization_barrier((c, k, f))
@@ -68,7 +69,7 @@ def taken_together(
             blocks = [t.c_v[i, j] * damped[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
             right = f[i] - _times(damped[i], v0[i]) - _times(k[i], q0[i])
             rows.append(jnp.concatenate([*blocks, right[:, None]], axis=1))
-        x = eliminated(jax.lax.optimization_barrier(jnp.concatenate(rows))).reshape(stages, n, b)
+        x = eliminate(jax.lax.optimization_barrier(jnp.concatenate(rows))).reshape(stages, n, b)
         q, qd = _combined(t.end_z, z) + _combined(t.end_x, x)
         qdd = x[-1] if ends else _times(inverse, f[-1] - _times(k[-1], q) - _times(c[-1], qd))
         return _combined(t.g, z) + _combined(t.d, x), (q, qd, qdd)
@@ -84,7 +85,7 @@ def taken_together(
     return z, tuple(jnp.moveaxis(x, -1, 0) for x in history)
 
 
-def eliminated(rows: Array) -> Array:
+def eliminate(rows: Array) -> Array:
     """Solve b small linear systems at once, by Gauss's elimination without pivoting.
 
     `rows` (n, n + 1, b) has their matrices and right-hand sides; the solutions are (n, b).
@@ -106,7 +107,7 @@ def stage_count(scheme: Scheme) -> int:
 
 def accelerations(inverse: Array, terms: LinearTerms, features: Array, parts: Parts, q: Array, qd: Array) -> Array:
     """Accelerations q̈ (n, b) that satisfy the equations at features (k, b)."""
-    c, k, f = (_sum(matrix_terms, features, chosen) for matrix_terms, chosen in zip(terms.each, parts, strict=True))
+    c, k, f = (_sum(matrix_terms, features, chosen) for matrix_terms, chosen in zip(terms.arrays, parts, strict=True))
     return _times(inverse, f - _times(k, q) - _times(c, qd))
 
 
@@ -204,7 +205,7 @@ class Run:
     def alive(self) -> LinearTerms:
         """The terms of the features in `parts`."""
         assert self.terms is not None
-        return LinearTerms(*(term[list(part)] for term, part in zip(self.terms.each, self.parts, strict=True)))
+        return LinearTerms(*(term[list(part)] for term, part in zip(self.terms.arrays, self.parts, strict=True)))
 
 
 def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
@@ -270,8 +271,8 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     return (histories[0], histories[1], histories[2]), np.ones(len(runs), dtype=bool)
 
 
-def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..., Any]:
-    """Compile `solve(residual, ...)` over many runs at once.
+def _compile_for_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..., Any]:
+    """Compile `solve(residual, ...)` for many runs at once.
 
     The result is a function of the residuals' form, axes and leaves, as in :data:`Residuals`, and of the other
     arguments, whose axes of runs are `more_axes`.
@@ -279,17 +280,17 @@ def _over_runs(solve: Callable[..., Any], *more_axes: int | None) -> Callable[..
 
     @partial(jax.jit, static_argnums=(0, 1))
     def over_runs(form: Any, axes: tuple[int | None, ...], leaves: list[Array], *args: Any) -> Any:
-        def of_one(leaves: list[Array], *args: Any) -> Any:
+        def solve_run(leaves: list[Array], *args: Any) -> Any:
             return solve(jax.tree.unflatten(form, leaves), *args)
 
-        return jax.vmap(of_one, in_axes=(list(axes), *more_axes))(leaves, *args)
+        return jax.vmap(solve_run, in_axes=(list(axes), *more_axes))(leaves, *args)
 
     return over_runs
 
 
-_slopes = _over_runs(newton.slopes, 0, 0, 0, 0)
-_accelerations = _over_runs(newton.accelerations, 0, 0, 0)
-_steps = _over_runs(newton.steps, 0, 0, 0, 0, 0, None)
+_slopes = _compile_for_runs(newton.slopes, 0, 0, 0, 0)
+_accelerations = _compile_for_runs(newton.accelerations, 0, 0, 0)
+_steps = _compile_for_runs(newton.steps, 0, 0, 0, 0, 0, None)
 
 
 Residuals = tuple[Any, tuple[int | None, ...], list[Array]]  # form, axes and arrays: no axis of those that are common
@@ -299,11 +300,11 @@ def _residuals(runs: Sequence[Run]) -> Residuals:
     """The runs' residuals: arrays stacked along a first axis of runs, but for those that all share by `common`."""
     common = {id(leaf) for leaf in jax.tree.leaves(runs[0].common)}
     axes, leaves = list[int | None](), list[Array]()
-    for of_runs in zip(*(run.residual[0] for run in runs), strict=True):
-        first = of_runs[0]
-        shared = id(first) in common and all(leaf is first for leaf in of_runs)
+    for run_leaves in zip(*(run.residual[0] for run in runs), strict=True):
+        first = run_leaves[0]
+        shared = id(first) in common and all(leaf is first for leaf in run_leaves)
         axes.append(None if shared else 0)
-        leaves.append(first if shared else np.asarray(of_runs))
+        leaves.append(first if shared else np.asarray(run_leaves))
     return runs[0].residual[1], tuple(axes), leaves
 
 
@@ -314,7 +315,7 @@ def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
         return residuals
     form, axes, leaves = residuals
     zero = np.zeros((len(runs), len(runs[0].q)))
-    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *(of_run.idle for of_run in equations))
+    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *(run_equations.idle for run_equations in equations))
     k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, idle))
     mass_terms, damping_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
     leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), mass_terms, damping_terms))
@@ -332,39 +333,41 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
         inputs = _stacked([e.drive(np.array([t])) for e, t in zip(equations, times, strict=True)])
         return np.asarray(_accelerations(*residual, q[:, None], qd[:, None], inputs))[:, 0]
 
-    def begun(q: Array, qd: Array, qdd: Array, lengths: Sequence[Any]) -> newton.Carry:
+    def begin_steps(q: Array, qd: Array, qdd: Array, lengths: Sequence[Any]) -> newton.Carry:
         x = np.broadcast_to(qdd[:, None], (len(q), len(scheme.offsets), q.shape[1]))
         return newton.Carry(scheme.tableau(np.array(lengths)).first @ np.stack([q, qd, qdd], axis=1), x, x)
 
     qdd = accelerations([run.steps.first[0] for run in runs], q, qd)
-    carry = begun(q, qd, qdd, [run.steps.length[0] for run in runs])
+    carry = begin_steps(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
     counted = [np.ones((len(runs), 1), dtype=bool)]  # flags of the states that are no fillings
     equal, size = Counter(run.steps for run in runs), newton.PER_JACOBIAN[scheme.order]
     # Most runs have equal steps, which are divided once.
     divided = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}
-    of_runs = [chunks(run.equations.drive, scheme, next(divided[run.steps])) for run in runs]
-    now = [next(run_chunks) for run_chunks in of_runs]
+    runs_chunks = [chunks(run.equations.drive, scheme, next(divided[run.steps])) for run in runs]
+    now = [next(run_chunks) for run_chunks in runs_chunks]
     going = np.ones(len(runs), dtype=bool)
     while going.any():
-        inside, ends = np.stack([chunk.inside for chunk in now]) & going[:, None], [chunk.end for chunk in now]
+        counts = np.stack([chunk.counted for chunk in now]) & going[:, None]  # of the steps, without fillings
+        ends = [chunk.end for chunk in now]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in now])
         last, count = np.stack([chunk.last for chunk in now]), max(chunk.count for chunk in now)
         carry, history = _steps(*residual, tableau, carry, inputs, at_ends, last, count)
         *piece, error = (np.asarray(values) for values in history)
-        sound &= ((error <= newton.ACCEPTED) | ~inside).all(axis=1)  # NaN is not
+        sound &= ((error <= newton.ACCEPTED) | ~counts).all(axis=1)  # NaN is not
         anew = going & [end.anew for end in ends]
         if scheme.ends and anew.any():
-            at_last = np.arange(len(runs)), inside.shape[1] - 1 - inside[:, ::-1].argmax(axis=1)
+            at_last = np.arange(len(runs)), counts.shape[1] - 1 - counts[:, ::-1].argmax(axis=1)
             q, qd = piece[0][at_last], piece[1][at_last]
-            begin, final = (accelerations([getattr(end, time) for end in ends], q, qd) for time in ("resume", "end"))
-            new = begun(q, qd, begin, [end.following for end in ends])
+            begin = accelerations([end.resume for end in ends], q, qd)
+            final = accelerations([end.end for end in ends], q, qd)
+            new = begin_steps(q, qd, begin, [end.following for end in ends])
             carry = newton.Carry(*(np.where(anew[:, None, None], *both) for both in zip(new, carry, strict=True)))
             piece[2] = piece[2].copy()
             piece[2][at_last[0][anew], at_last[1][anew]] = final[anew]
         pieces.append(piece)
-        counted.append(inside)
-        after = [next(run_chunks, None) for run_chunks in of_runs]
+        counted.append(counts)
+        after = [next(run_chunks, None) for run_chunks in runs_chunks]
         going = np.array([chunk is not None for chunk in after])
         now = [new or old for new, old in zip(after, now, strict=True)]  # a run that has ended repeats its last chunk
     flags = np.concatenate(counted, axis=1)

@@ -34,7 +34,7 @@ class Corners:
     jump: Flags
 
     @staticmethod
-    def of(times: Any, drive: Drive, start: float, end: float) -> Corners:
+    def from_times(times: Any, drive: Drive, start: float, end: float) -> Corners:
         """Corners at those `times` (s) in [start, end). One is a jump if the drive differs on its two sides."""
         time = np.unique(np.asarray(times, dtype=np.float64))
         time = time[(time >= start) & (time < end)]

@@ -33,8 +33,10 @@ from gbeam.integrate.windows import windows
 
 class TracedLaw(NamedTuple):
     """A law as a function of its parameters, the references of a sample, its time, its measurements and the state
-    of the law (x,), that gives the command as asked and as limited and the next state; samples are at `times` (s,) s,
-    with references (s, k), and the first state is `start` (x,).
+    of the law (x,).
+
+    The function gives the command as asked and as limited, and the next state. Samples are at `times` (s,) s, with
+    references (s, k), and the first state is `start` (x,).
     """
 
     times: Any
@@ -53,8 +55,8 @@ class TracedControllers(Protocol):
         """Laws sampled at times (s,) s each."""
         ...
 
-    def of(self, residual: Any, laws: list[TracedLaw] | None = None) -> Any:
-        """Controllers that measure by the values of a residual, and command by those of laws."""
+    def rebuild(self, residual: Any, laws: list[TracedLaw] | None = None) -> Any:
+        """Return controllers that measure by the values of a residual, and command by those of laws."""
         ...
 
 
@@ -120,7 +122,7 @@ class TracedLoop:
         """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
         return self.values[c][:3]
 
-    def held(self, samples: list[Samples]) -> Array:
+    def acting_commands(self, samples: list[Samples]) -> Array:
         """Commands that act in the steps, (t, m)."""
         parts = [
             jnp.where(active[:, None] >= 0, sample.limited[np.maximum(active, 0)], 0.0)
@@ -128,34 +130,39 @@ class TracedLoop:
         ]
         return jnp.concatenate([jnp.zeros((len(self.steps), 0)), *parts], axis=1)
 
-    def changes(self, of: Any, by: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]) -> _Changes:
+    def changes(
+        self, primals: Any, tangents: Any, run: Any, inputs: Any, by_inputs: Any, samples: list[Samples]
+    ) -> _Changes:
         """Changes of samples along a run.
 
-        `of` are the residual and its drives where steps begin, `inputs` the laws' values; `by` and `by_inputs` are the
-        tangents of both.
+        `primals` are the residual and its drives where steps begin, `inputs` the laws' values; `tangents` and
+        `by_inputs` are the tangents of both.
         """
-        held = self.held(samples)
+        held = self.acting_commands(samples)
         before = jnp.concatenate([0 * held[:1], held[:-1]])
         laws = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
         parts = []
         for c, (at, law, by_law, values) in enumerate(laws):
-            measured = self._along(c, of, by, [part[at] for part in run[:2]], before[at], at)
-            parts.append(measured + self._through(law, by_law, values))
+            state = [part[at] for part in run[:2]]
+            measured = self._measurement_changes(c, primals, tangents, state, before[at], at)
+            parts.append(measured + self._law_changes(law, by_law, values))
         return _Changes(self, parts)
 
-    def _along(self, c: int, of: Any, by: Any, state: Any, before: Array, at: Array) -> tuple[Array, ...]:
+    def _measurement_changes(
+        self, c: int, primals: Any, tangents: Any, state: Any, before: Array, at: Array
+    ) -> tuple[Array, ...]:
         """Derivatives of a controller's measurements, which are taken at the beginnings of the steps `at`.
 
         They are those by states (s, k, 2 n), those by the commands `before` (s, k, m), and the change (s, k) by the
-        tangents `by` of residual and drives alone.
+        `tangents` of residual and drives alone.
         """
         q, qd = state
-        (residual, driven), (by_residual, by_driven) = of, by
+        (residual, driven), (by_residual, by_driven) = primals, tangents
         driven, by_driven = (jax.tree.map(lambda leaf: leaf[at], tree) for tree in (driven, by_driven))
 
         def measured(residual: Any, driven: Any) -> Array:
             """Measurements (s, k) as a function of what JAX traces; the states of the run are constants."""
-            inputs, controllers = self.controllers.driven(driven, before), self.controllers.of(exact(residual))
+            inputs, controllers = self.controllers.driven(driven, before), self.controllers.rebuild(exact(residual))
             qdd = accelerations(residual, q, qd, inputs) if controllers.accelerates(c) else 0 * q
             return controllers.measured(c, q, qd, qdd, inputs)
 
@@ -165,7 +172,7 @@ class TracedLoop:
         def host(*arguments: Any) -> Any:
             """Derivatives by states and by commands, which NumPy computes outside of JAX's programs."""
             q, qd, before, residual, driven = jax.tree.map(np.asarray, arguments)
-            controllers = self.controllers.of(exact(residual))
+            controllers = self.controllers.rebuild(exact(residual))
             sampling = Sampling(controllers, residual, None, self.steps)
             with np.errstate(all="ignore"):
                 by_state, by_command = sampling.measurement_slopes(c, q, qd, controllers.driven(driven, before))
@@ -175,9 +182,11 @@ class TracedLoop:
         slope = jax.pure_callback(host, result, q, qd, before, residual, driven, vmap_method="sequential")
         return *slope, direct
 
-    def _through(self, law: TracedLaw, by: TracedLaw, values: Samples) -> tuple[Array, ...]:
-        """Derivatives of a law's commands and next states, (s, 2 m + x, ...), by measurements and by states; their
-        change by the tangents `by` of parameters and references alone; and the change of the first state.
+    def _law_changes(self, law: TracedLaw, tangent: TracedLaw, values: Samples) -> tuple[Array, ...]:
+        """Derivatives of a law's commands and next states, (s, 2 m + x, ...), by measurements and by states.
+
+        They are followed by the change of these by the `tangent` of parameters and references alone, and by the change
+        of the first state.
         """
 
         def commands_and_state(parameters: Any, references: Array, y: Array, state: Array, t: Array) -> Array:
@@ -191,8 +200,8 @@ class TracedLoop:
         def direct(parameters: Any, references: Array) -> Array:
             return jax.vmap(commands_and_state, axes)(parameters, references, *sampled)
 
-        _, change = jax.jvp(direct, (law.parameters, law.references), (by.parameters, by.references))
-        return by_y, by_state, change, by.start
+        _, change = jax.jvp(direct, (law.parameters, law.references), (tangent.parameters, tangent.references))
+        return by_y, by_state, change, tangent.start
 
 
 class _Changes:
@@ -265,7 +274,7 @@ def traced(
         untraced, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         laws = loop.laws_of(inputs)
         if laws:
-            untraced = replace(untraced, controllers=loop.controllers.of(exact(residual), laws))
+            untraced = replace(untraced, controllers=loop.controllers.rebuild(exact(residual), laws))
         samples = sampling_of(untraced, steps)
         with np.errstate(all="ignore"):  # of what is no number
             for *piece, _ in windows(untraced, scheme, q, qd, steps, samples):
@@ -293,14 +302,16 @@ def traced(
     return tuple(histories), loop if loop.laws else None
 
 
-def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: Array, dqd: Array, in_loop: Any) -> Any:
+def _changes(
+    scheme: Scheme, steps: Steps, results: Any, primals: Any, tangents: Any, dq: Array, dqd: Array, in_loop: Any
+) -> Any:
     """Changes of a run's `results`: q, q̇, q̈ (t + 1, n) and samples.
 
-    They follow from the tangents `by` of its residual and drives `of`, from dq, dqd (n,) at the start, and from the
-    tangents of its controllers' laws in `in_loop`.
+    They follow from the `tangents` of its residual and drives, the `primals`, from dq, dqd (n,) at the start, and from
+    the tangents of its controllers' laws in `in_loop`.
     """
     (run, samples), (loop, *laws), t = results, in_loop, scheme.tableau(steps.length)
-    (q, qd, qdd), (residual, drives), (by_residual, by_drives) = run, of, by
+    (q, qd, qdd), (residual, drives), (by_residual, by_drives) = run, primals, tangents
     count, n, stages, first = len(steps), q.shape[1], len(scheme.offsets), scheme.tableau(steps.length[0]).first
     x: Array
     z: Array
@@ -321,7 +332,7 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
         [jax.tree.map(lambda leaf, part=part: leaf[part], values) for values in (drives, by_drives)]
         for part in (slice(len(states[0])), slice(len(states[0]), None))
     )
-    held, driven_by = loop.held(samples), loop.controllers.driven
+    held, driven_by = loop.acting_commands(samples), loop.controllers.driven
     commands = jnp.concatenate([0 * held[:1], *[held] * ((len(states[0]) - 1) // count)])
     follow = loop.changes((residual, begun[0]), (by_residual, begun[1]), run, *laws, samples)
 
@@ -329,7 +340,7 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
         (q, qd, qdd), residual, driven, commands = jax.tree.map(np.asarray, arguments)
         inputs = driven_by(driven, commands)
         with np.errstate(all="ignore"):
-            onto = Sampling(loop.controllers, residual, None, steps).onto(q, qd, qdd, inputs)
+            onto = Sampling(loop.controllers, residual, None, steps).residual_slopes(q, qd, qdd, inputs)
             return (*slopes(residual, q, qd, qdd, inputs), onto)
 
     square = (jax.ShapeDtypeStruct((len(states[0]), n, n), float),) * 3
@@ -350,11 +361,11 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
         force = direct[part] + (k @ dq[..., None] + c @ dqd[..., None] + onto[part] @ du[..., None])[..., 0]
         return -jnp.linalg.solve(m, force[..., None])[..., 0]
 
-    def by_stage(values: Array) -> Array:
-        """Values at the stages alone, (t, s, ...), of those at all states."""
+    def select_stages(values: Array) -> Array:
+        """Return the values at the stages alone, (t, s, ...), of those at all states."""
         return jnp.moveaxis(values[1 : 1 + stages * count].reshape(stages, count, *values.shape[1:]), 0, 1)
 
-    jacobian, by_z = t.jacobians(*map(by_stage, slope))
+    jacobian, by_z = t.jacobians(*map(select_stages, slope))
     inverse = jnp.linalg.inv(jacobian)
 
     def step(carried: Any, at: Any) -> Any:
@@ -368,7 +379,7 @@ def _changes(scheme: Scheme, steps: Steps, results: Any, of: Any, by: Any, dq: A
 
     dqdd = accelerated(slice(0, 1), dq[None], dqd[None], jnp.zeros((1, commands.shape[1])))
     begin = first @ jnp.stack([dq, dqd, dqdd[0]]), follow.begin
-    by_step = inverse, by_z, by_stage(onto), by_stage(direct), t.g, t.d, follow.by_step
+    by_step = inverse, by_z, select_stages(onto), select_stages(direct), t.g, t.d, follow.by_step
     _, (dz, dx, du, taken) = jax.lax.scan(step, begin, by_step)
     ends = t.end_z @ dz + t.end_x @ dx
     changes = ends[:, 0], ends[:, 1]

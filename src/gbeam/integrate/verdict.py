@@ -80,7 +80,7 @@ class Verdict:
         self._keep(slice(count, None))
 
     @property
-    def near(self) -> bool:
+    def last_is_near(self) -> bool:
         """True if the last step is near its solution."""
         return bool(self.corrections[1, -1] <= MOVED)
 
@@ -116,11 +116,11 @@ class Verdict:
 
         `arrived` becomes true if the last step has come near its solution by few corrections.
         """
-        self.before, was_near = self.corrections[0].copy(), self.near
+        self.before, was_near = self.corrections[0].copy(), self.last_is_near
         self.reach = reach(x)
         self.corrections[0], self.corrections[1] = size, size / self.reach
         self.corrections[2] += 1
-        self.arrived = not was_near and self.near and bool(self.corrections[2, -1] <= QUICK)
+        self.arrived = not was_near and self.last_is_near and bool(self.corrections[2, -1] <= QUICK)
 
     def set_rounding(self, accelerations: Array) -> None:
         """Set the rounding of the steps from the accelerations (t,) that the forces which cancel there would make

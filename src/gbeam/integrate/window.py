@@ -32,8 +32,9 @@ HALVINGS = 8  # of a correction of a single step
 
 class Window:
     """The steps under way, from number `first` on: states z (t + 1, m, n) and accelerations x (t, s, n) of stages.
-    `residuals` (t, s n) are those of the last iterate, `start` (n,) the accelerations that the first steps begin with,
-    `growth` the number of steps that follow next, `limit` that of a window that has begun anew.
+
+    `residuals` (t, s n) are those of the last iterate, `start` (n,) the accelerations that the first steps begin with.
+    `growth` is the number of steps to append next, `limit` the most steps of a window that has begun anew.
     """
 
     z: Array
@@ -133,7 +134,7 @@ class Window:
         by_residual = products(inverse, self.residuals)
         # g z + d (x − J⁻¹ r) − z₊, the part of δz₊ that is there without a change of the state before
         defect = t.g @ self.z[:-1] + t.d @ (self.x - by_residual.reshape(self.x.shape)) - self.z[1:]
-        by_step = self._moved(step, defect.reshape(count, -1))
+        by_step = self._state_changes(step, defect.reshape(count, -1))
         # −δx = J⁻¹ (r + L δz)
         change = (by_residual + products(answer, by_step[:-1])).reshape(self.x.shape)
         commands = self._commands
@@ -186,7 +187,7 @@ class Window:
             self.held.begin(self.z[:-1])
             self.inputs = self.held.driven(self.free, stages)
 
-    def _moved(self, step: Array, defect: Array) -> Array:
+    def _state_changes(self, step: Array, defect: Array) -> Array:
         """Changes δz (t + 1, m n) of the states by the recurrence δz₊ = S δz + defect, from zero.
 
         `step` S is (1 or t, m n, m n), `defect` (t, m n). Commands of controllers add what they change.
@@ -194,18 +195,18 @@ class Window:
         count, commands = len(defect), self._commands
         if len(step) > 1 and commands is None:
             return recurrence(np, np.concatenate([step, defect[..., None]], axis=-1), np.zeros(defect.shape[1]))
-        moved = np.zeros((count + 1, defect.shape[1]))
+        changes = np.zeros((count + 1, defect.shape[1]))
         if commands is None:  # one map: each pass doubles the number of steps over which defects are summed
-            moved[1:], power, reach = defect, step[0].T, 1
+            changes[1:], power, reach = defect, step[0].T, 1
             while reach < count:
-                moved[1 + reach :] += moved[1:-reach] @ power
+                changes[1 + reach :] += changes[1:-reach] @ power
                 power, reach = power @ power, 2 * reach
-            return moved
+            return changes
         commands.measure(self.z[:-1])
-        by_step = zip(np.broadcast_to(step, (count, *step.shape[1:])), defect, moved[:-1], moved[1:], strict=True)
-        for k, (of_step, gap, before, after) in enumerate(by_step):
-            after[:] = of_step.dot(before) + gap + commands.sampled(k, before)
-        return moved
+        maps = np.broadcast_to(step, (count, *step.shape[1:]))
+        for k in range(count):
+            changes[k + 1] = maps[k].dot(changes[k]) + defect[k] + commands.sampled(k, changes[k])
+        return changes
 
     def _shorten(self, inverse: Array, by_state: Array, change: Array) -> None:
         """Halve a single step's correction until the next one would be smaller. Friction or a stop bends the residual,

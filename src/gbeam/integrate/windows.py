@@ -102,7 +102,7 @@ class _Solver:
 
     def _follow(self, end: int) -> None:
         """Append steps before `end`, if the last one is near its solution."""
-        if len(self.window) and not self.verdict.near:
+        if len(self.window) and not self.verdict.last_is_near:
             return
         added = self.window.room(end, single=self.derivatives.single)
         if added:

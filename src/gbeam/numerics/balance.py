@@ -18,9 +18,11 @@ def loose(stiffness: Floats, velocity: Floats) -> Flags:
     return np.asarray(~(stiffness.any(axis=0) | velocity.any(axis=0)))
 
 
-def turning_on(k: Floats, mass: Floats, faster: Floats, which: Flags, turn: Flags) -> bool:
-    """True if a rotation, whose one or three coordinates `turn` flags, changes nothing, by K and M (n, n), that the
-    accelerations `faster` (n,) of the coordinates `which` do not balance, but their directions as they turn with it.
+def keeps_turning(k: Floats, mass: Floats, faster: Floats, which: Flags, turn: Flags) -> bool:
+    """True if a body can go on turning as the accelerations `faster` (n,) of the coordinates `which` turn with it.
+
+    `turn` flags the one or three coordinates of its rotation. By K and M (n, n), turning may change no force but the
+    directions of these accelerations.
     """
     (held,) = carried(mass, which, k)
     size = np.abs(k) + np.abs(k - held) + np.abs(mass)
@@ -37,7 +39,7 @@ def following(alpha: Floats) -> Floats:
 def carried(mass: Floats, which: Flags, *forces: Floats) -> tuple[Floats, ...]:
     """Forces (n, ...) plus the inertia of the coordinates `which`, so accelerated that the forces on these vanish."""
     inertia = mass[:, which] @ np.linalg.pinv(mass[which][:, which])
-    return tuple(each - inertia @ each[which] for each in forces)
+    return tuple(force - inertia @ force[which] for force in forces)
 
 
 def pulled(residual: Floats, mass: Floats, which: Flags) -> Floats:

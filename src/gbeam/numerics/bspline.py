@@ -56,22 +56,22 @@ class Spline:
 
     def series(self, t: Any, order: int) -> Series:
         """Values and time derivatives up to `order` at times `t` (s, any shape), (..., k)."""
-        xp, piece, powers = self._within(t)
+        xp, piece, powers = self._locate(t)
         # One product for all times and orders, then one for each time.
         flat = _TAYLOR[:, : order + 1].reshape(PIECE, -1)
         weights = xp.reshape(xp.stack(powers, axis=-1) @ flat, (*piece.shape, order + 1, PIECE))
-        taylor = weights @ self._near(piece)
+        taylor = weights @ self._local_coefficients(piece)
         return Series(tuple(taylor[..., j, :] / self.step**j for j in range(order + 1)))
 
     def integral(self, t: Any) -> Any:
         """Integrals from the start to times `t` (s, any shape), (..., k)."""
-        xp, piece, powers = self._within(t)
-        weights = xp.stack([each * powers[1] / (k + 1) for k, each in enumerate(powers)], axis=-1) @ _BASIS
-        whole = xp.einsum("i,pik->pk", _WHOLE, self._near(np.arange(len(self.coefficients) - DEGREE)))
+        xp, piece, powers = self._locate(t)
+        weights = xp.stack([power * powers[1] / (k + 1) for k, power in enumerate(powers)], axis=-1) @ _BASIS
+        whole = xp.einsum("i,pik->pk", _WHOLE, self._local_coefficients(np.arange(len(self.coefficients) - DEGREE)))
         before = xp.cumsum(whole, axis=0) - whole
-        return self.step * (before[piece] + (weights[..., None, :] @ self._near(piece))[..., 0, :])
+        return self.step * (before[piece] + (weights[..., None, :] @ self._local_coefficients(piece))[..., 0, :])
 
-    def _within(self, t: Any) -> tuple[Any, Any, list[Any]]:
+    def _locate(self, t: Any) -> tuple[Any, Any, list[Any]]:
         """Namespace, the pieces (...) where times lie, and powers 0 to 5 of the place in the piece, from 0 to 1."""
         u = (as_array(t) - self.start) / self.step
         xp = namespace(u, self.coefficients)
@@ -81,7 +81,7 @@ class Spline:
             powers.append(powers[-1] * (u - piece))
         return xp, piece, powers
 
-    def _near(self, piece: Any) -> Any:
+    def _local_coefficients(self, piece: Any) -> Any:
         """Coefficients (..., 6, k) on which pieces depend."""
         return namespace(self.coefficients, piece).asarray(self.coefficients)[piece[..., None] + np.arange(PIECE)]
 
@@ -102,7 +102,7 @@ class Grid:
 
     def matrix(self, order: int) -> Any:
         """Basis at every time, a sparse matrix (times, size)."""
-        return self._on_pieces(self.rows(order))
+        return self._repeat_rows(self.rows(order))
 
     def hull(self, order: int) -> Any:
         """Weights of six numbers a piece between which the derivative lies there, sparse (6 · pieces, size).
@@ -110,7 +110,7 @@ class Grid:
         They are its Bernstein coefficients of the fifth degree, whatever the order: a sum of derivatives lies between
         the sums of them.
         """
-        return self._on_pieces(_BERNSTEIN @ self._powers(order))
+        return self._repeat_rows(_BERNSTEIN @ self._powers(order))
 
     def _powers(self, order: int) -> Floats:
         """Row k: coefficient of xᵏ in the derivative over one piece of each of the six basis functions there."""
@@ -119,8 +119,8 @@ class Grid:
             powers[k] = factorial(k + order) / factorial(k) * _BASIS[k + order] / self.step**order
         return powers
 
-    def _on_pieces(self, rows: Floats) -> Any:
-        """Rows (m, 6) on every piece, sparse (m · pieces, size)."""
+    def _repeat_rows(self, rows: Floats) -> Any:
+        """Repeat rows (m, 6) on every piece, sparse (m · pieces, size)."""
         import scipy.sparse
 
         count = len(rows) * self.pieces

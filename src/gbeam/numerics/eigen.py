@@ -54,8 +54,8 @@ def eigenvalues(
 ) -> tuple[Complex, Complex]:
     """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0, matrices (n, n)."""
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
-    free, held = _apart(mass, damping, stiffness)
-    value, mode = _moving(*(held.T @ each @ held for each in (mass, damping, stiffness)))
+    free, held = _separate_free(mass, damping, stiffness)
+    value, mode = _moving(*(held.T @ matrix @ held for matrix in (mass, damping, stiffness)))
     mode = held @ mode
     if free.shape[1]:
         # Free motions N a follow: λ² a + Nᵀ K N a = −Nᵀ (λ C + K) y, with thrust that turns with the body in Nᵀ K N.
@@ -67,7 +67,7 @@ def eigenvalues(
     return value, mode / weight
 
 
-def _apart(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
+def _separate_free(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
     """Bases, in columns, of the free motions (n, d) and of all others, orthogonal to them in M. Forces on the others
     depend neither on free motions nor on their rates, so that the others are a problem of their own. Free motions are
     found one after the other: a body that turns with its thrust is accelerated by it, and by nothing else.
@@ -75,7 +75,7 @@ def _apart(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Floats, Fl
     held: Any = np.linalg.inv(np.linalg.cholesky(symmetric(mass))).T
     free = held[:, :0]
     while held.shape[1]:
-        k, c = (held.T @ each @ held for each in (stiffness, damping))
+        k, c = (held.T @ matrix @ held for matrix in (stiffness, damping))
         size = np.abs(k).max()
         _, sizes, directions = np.linalg.svd(np.concatenate([k / (size or 1.0), c / np.sqrt(size or 1.0)]))
         loose = sizes <= NONE
@@ -163,13 +163,13 @@ def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -
     def chosen(which: Flags) -> tuple[Complex, Complex]:
         order = np.flatnonzero(moving & which)
         order = order[np.argsort(np.abs(value[order]), kind="stable")]
-        return value[order], _told_apart(value[order], mode[:, order], linear.mass)
+        return value[order], _separate_equal(value[order], mode[:, order], linear.mass)
 
     decaying = np.sort(value[moving & real & (value.real < 0)].real)
     return Vibrations(*chosen(~real & (value.imag > 0)), *chosen(real & (value.real > 0)), decaying, size)
 
 
-def _told_apart(value: Complex, modes: Complex, mass: Floats) -> Complex:
+def _separate_equal(value: Complex, modes: Complex, mass: Floats) -> Complex:
     """Modes (n, k), equal eigenvalues side by side, with one reproducible basis for each group of equal ones, such as
     two equal beams have: orthonormal in the mass, along the principal axes of a mass weighted by coordinate number.
     """

@@ -62,9 +62,11 @@ _WORTH = 1e-6  # of the value at the start: a move that gains less is none
 _NOTHING = 1e-9  # a value at the start that is less is rounding
 
 
-def least(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats, x: Floats) -> Floats:
-    """Find the point between bounds (n,) at which a convex function is least, the nearest to `x` if several are, by
-    cutting planes, its tangents (Kelley 1960). `evaluate` gives value and slope (n,); the bounds may be equal.
+def minimise_convex(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats, x: Floats) -> Floats:
+    """Find the point between bounds (n,) at which a convex function is least; of several, the nearest to `x`.
+
+    The method is that of cutting planes, tangents of the function (Kelley 1960). `evaluate` gives value and slope (n,);
+    the bounds may be equal.
     """
     import scipy.optimize
 
@@ -144,7 +146,7 @@ class Cost(Protocol):
 class Limits(Protocol):
     """Limits of unknowns x (n,)."""
 
-    def at(self, x: Floats) -> tuple[Any, Floats, Floats]:
+    def linearise(self, x: Floats) -> tuple[Any, Floats, Floats]:
         """Rows, sparse (m, n), with lower and upper limits (m,): whatever keeps them keeps the true ones."""
 
 
@@ -153,7 +155,7 @@ def minimise(cost: Cost, limits: Limits, x: Floats) -> tuple[Floats, float]:
     value = cost.cost(x)
     for _ in range(_STEPS):
         hessian, slope = cost.model(x)
-        rows, lower, upper = limits.at(x)
+        rows, lower, upper = limits.linearise(x)
         now = rows @ x
         move = solve_quadratic(hessian, slope, rows, lower - now, upper - now)
         if move is None:
@@ -169,11 +171,11 @@ def minimise(cost: Cost, limits: Limits, x: Floats) -> tuple[Floats, float]:
     return x, value
 
 
-def nearest_within(limits: Limits, x: Floats) -> Floats | None:
-    """The point within the limits that is nearest to `x`; None if there is none."""
+def nearest_point(limits: Limits, x: Floats) -> Floats | None:
+    """Find the point within the limits that is nearest to `x`; None if there is none."""
     import scipy.sparse
 
-    rows, lower, upper = limits.at(x)
+    rows, lower, upper = limits.linearise(x)
     now = rows @ x
     move = solve_quadratic(scipy.sparse.eye_array(x.size), 0 * x, rows, lower - now, upper - now)
     return None if move is None else x + move

@@ -141,11 +141,13 @@ def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floa
     run, sample = np.divmod(at, len(time))
     sample, window = np.unique(sample, return_inverse=True)  # runs that peak at one time share its polynomials
     t, n, values = _subdivided(time, sample), max(len(time), FEWEST), values.reshape(-1, values.shape[-1])
-    high, low, parabola = (
-        _lagrange(time[k], t)[window] @ values[run[:, None] * len(time) + k[window]]
-        for m in (7, 5, 3)
-        for k in [np.clip(sample - m // 2, 0, n - m)[:, None] + np.arange(m)]
-    )
+
+    def polynomial(m: int) -> Floats:
+        """Values (u, p, c) of the polynomials through the m nearest samples."""
+        nearest = np.clip(sample - m // 2, 0, n - m)[:, None] + np.arange(m)
+        return _lagrange(time[nearest], t)[window] @ values[run[:, None] * len(time) + nearest[window]]
+
+    high, low, parabola = polynomial(7), polynomial(5), polynomial(3)
     sampled = values[at][:, None]
     change = np.abs(high - low).max(axis=1, keepdims=True)
     rough = change > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(sampled))
@@ -227,7 +229,7 @@ def extremes(time: Floats, values: Floats) -> Floats:
     """Highest values (k,) between the samples of a history (t,); or the highest and lowest of columns (t, c), and the
     largest length of a row.
     """
-    return _of_windows(time, values[None])
+    return _window_extremes(time, values[None])
 
 
 def signed_columns(values: Floats) -> Floats:
@@ -235,7 +237,7 @@ def signed_columns(values: Floats) -> Floats:
     return np.concatenate([values, -values, np.sqrt((values**2).sum(axis=-1, keepdims=True))], axis=-1)
 
 
-def _of_windows(time: Floats, values: Floats) -> Floats:
+def _window_extremes(time: Floats, values: Floats) -> Floats:
     """Highest values (k,), as of :func:`extremes`, of a history in windows (w, t, ...) that have their times alike."""
     columns = values[..., None] if values.ndim == 2 else signed_columns(values)
     columns = columns.reshape(*columns.shape[:2], -1)  # of vectors at several places
@@ -243,16 +245,18 @@ def _of_windows(time: Floats, values: Floats) -> Floats:
     return np.asarray(value[..., 0].max(axis=1))
 
 
-def peaks_apart(time: Floats, values: Floats, others: Floats) -> float:
-    """Largest difference of the highest and lowest values of two histories (t,) or (t, c), whenever each is reached; of
-    more columns than vectors have, those alone that reach half of the largest.
+def peak_difference(time: Floats, values: Floats, others: Floats) -> float:
+    """Largest difference of the highest and lowest values of two histories (t,) or (t, c), whenever each is reached.
+
+    Of histories with more columns than vectors have, only columns that reach half of the largest value count.
     """
     return largest_apart(time, values[None], others[None])
 
 
 def largest_apart(time: Floats, values: Floats, others: Floats) -> float:
-    """Largest difference as of :func:`peaks_apart`, of histories in windows (w, t, ...) that have their times alike."""
+    """Largest :func:`peak_difference` of histories in windows (w, t, ...) that have their times alike."""
     if values.ndim == 3 and values.shape[2] > WIDE:
         most = np.abs(values).max(axis=(0, 1))
-        values, others = (each[..., most >= most.max() / 2] for each in (values, others))
-    return float(np.abs(_of_windows(time, values) - _of_windows(time, others)).max())
+        large = most >= most.max() / 2
+        values, others = values[..., large], others[..., large]
+    return float(np.abs(_window_extremes(time, values) - _window_extremes(time, others)).max())

@@ -44,7 +44,7 @@ def thinned(x: Floats, y: Floats, columns: int) -> tuple[Floats, Floats]:
 def interpolated(time: Floats, known: Floats, values: Floats) -> Floats:
     """Values (t, ...) at the times `known`, at `time` (u,): on straight lines, and constant beyond the ends."""
     columns = np.reshape(values, (len(known), -1)).T
-    return np.stack([np.interp(time, known, each) for each in columns], axis=1).reshape(-1, *np.shape(values)[1:])
+    return np.stack([np.interp(time, known, column) for column in columns], axis=1).reshape(-1, *np.shape(values)[1:])
 
 
 def cumulative(time: Floats, value: Floats, slope: Floats) -> Floats:
@@ -121,17 +121,22 @@ def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float
     return np.reshape(histories, (*np.shape(frequency), *np.shape(load)))
 
 
-def riding_acceleration(base: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
+def oscillator_acceleration(base: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:
     """Absolute accelerations (f, t, ...) of oscillators (f,) rad/s, from rest on a base with acceleration (t, ...)."""
     omegas = np.ravel(frequency)
     histories = [_response(base, omega, damping, step, omega**2, 2 * damping * omega, 1.0) for omega in omegas]
     return np.reshape(histories, (*np.shape(frequency), *np.shape(base)))
 
 
-def largest_riding_acceleration(base: Floats, frequency: Floats, damping: float, step: float, covered: Flags) -> Floats:
-    """Largest :func:`riding_acceleration` at samples `covered` (t,): a shock response spectrum, (f, k)."""
-    one_by_one = (riding_acceleration(base, omega, damping, step)[covered] for omega in frequency)  # all need memory
-    return np.stack([np.abs(each).max(axis=0, initial=0.0) for each in one_by_one])
+def largest_oscillator_acceleration(
+    base: Floats, frequency: Floats, damping: float, step: float, covered: Flags
+) -> Floats:
+    """Largest :func:`oscillator_acceleration` at samples `covered` (t,): a shock response spectrum, (f, k)."""
+    largest = []
+    for omega in frequency:  # one by one: the histories of all need memory
+        history = oscillator_acceleration(base, omega, damping, step)[covered]
+        largest.append(np.abs(history).max(axis=0, initial=0.0))
+    return np.stack(largest)
 
 
 def _response(

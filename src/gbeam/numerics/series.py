@@ -26,10 +26,10 @@ class Series:
         """Time itself at times `t` (s)."""
         now = as_array(t)
         xp = namespace(now)
-        return cls.of([now, xp.ones_like(now)], order)
+        return cls.from_derivatives([now, xp.ones_like(now)], order)
 
     @classmethod
-    def of(cls, derivatives: Sequence[Any], order: int) -> Series:
+    def from_derivatives(cls, derivatives: Sequence[Any], order: int) -> Series:
         """Series of an order by the value and derivatives f, f', f'', …; those that are left out are zero."""
         coefficients = [value / factorial(k) if k > 1 else value for k, value in enumerate(derivatives[: order + 1])]
         if len(coefficients) <= order:
@@ -40,7 +40,7 @@ class Series:
     def in_pieces(cls, function: Callable[[Any], Series], t: Any, count: int) -> Series:
         """A function's series at times `t` (n,), s, computed in `count` pieces one after the other to save memory."""
         pieces = [function(piece).coefficients for piece in np.array_split(t, count)]
-        return cls(tuple(np.concatenate(each) for each in zip(*pieces, strict=True)))
+        return cls(tuple(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
 
     @property
     def order(self) -> int:
@@ -64,15 +64,15 @@ class Series:
         """Series up to a lower order."""
         return Series(self.coefficients[: order + 1])
 
-    def each(self, function: Callable[[Any], Any]) -> Series:
-        """Series of a linear function, the same at all times, of this one."""
+    def map(self, function: Callable[[Any], Any]) -> Series:
+        """Apply a linear function, the same at all times, to each coefficient."""
         return Series(tuple(function(c) for c in self.coefficients))
 
     def __getitem__(self, index: Any) -> Series:
-        return self.each(lambda c: c[index])
+        return self.map(lambda c: c[index])
 
     def __neg__(self) -> Series:
-        return self.each(lambda c: -c)
+        return self.map(lambda c: -c)
 
     def __add__(self, other: Any) -> Series:
         if isinstance(other, Series):
@@ -89,7 +89,7 @@ class Series:
 
     def __mul__(self, other: Any) -> Series:
         if not isinstance(other, Series):
-            return self.each(lambda c: c * other)
+            return self.map(lambda c: c * other)
         a, b = self.coefficients, other.coefficients
         return Series(tuple(_total(a[j] * b[k - j] for j in range(k + 1)) for k in range(min(len(a), len(b)))))
 
@@ -97,7 +97,7 @@ class Series:
 
     def __truediv__(self, other: Any) -> Series:
         if not isinstance(other, Series):
-            return self.each(lambda c: c / other)
+            return self.map(lambda c: c / other)
         a, b, quotient = self.coefficients, other.coefficients, list[Any]()
         for k in range(min(len(a), len(b))):
             quotient.append((a[k] - sum(b[j] * quotient[k - j] for j in range(1, k + 1))) / b[0])
@@ -168,18 +168,18 @@ def stack(parts: Sequence[Series]) -> Series:
     """A vector of its components, along a new last axis."""
     xp = namespace(*(part.value for part in parts))
     orders = zip(*(part.coefficients for part in parts), strict=False)
-    return Series(tuple(xp.stack(xp.broadcast_arrays(*each), axis=-1) for each in orders))
+    return Series(tuple(xp.stack(xp.broadcast_arrays(*coefficients), axis=-1) for coefficients in orders))
 
 
 def square(vector: Series) -> Series:
     """Squared length of a vector, along its last axis."""
-    return (vector * vector).each(lambda c: c.sum(axis=-1))
+    return (vector * vector).map(lambda c: c.sum(axis=-1))
 
 
 def compose(derivatives: Sequence[Any], inner: Series) -> Series:
     """Series of a function f(inner), by f and its derivatives by `inner` at the value of this, up to its order."""
     change = Series((0.0 * inner.value, *inner.coefficients[1:]))
-    result = Series.of([derivatives[inner.order] / factorial(inner.order)], inner.order)
+    result = Series.from_derivatives([derivatives[inner.order] / factorial(inner.order)], inner.order)
     for k in range(inner.order - 1, -1, -1):
         result = result * change + derivatives[k] / factorial(k)
     return result

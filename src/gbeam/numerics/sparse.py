@@ -155,8 +155,9 @@ def lowest_modes(
 def _orthonormal(
     vectors: Floats, weighed: Floats, basis: list[Floats], mass: Any, across: Floats | None = None
 ) -> tuple[Floats, Floats]:
-    """Vectors (n, l), orthonormal in the mass, that span what `vectors` (n, b) have beside a basis (n, m), and their
-    products with the mass; `weighed` (n, b) is M V of the `vectors` V, and `across` (m, b) that of the basis with it.
+    """Vectors W (n, l), orthonormal in the mass M, that span what `vectors` V (n, b) have beside a basis Q; and M W.
+
+    `weighed` (n, b) is M V, and `across` (m, b) Qᵀ M V.
     """
     lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, weighed), 0.0))
     for _ in range(3):  # twice is enough, and once more for what was small

@@ -236,11 +236,11 @@ class Within(NamedTuple):
     def residual(self) -> Floats:
         """Residual (t, n) of the solution in the `richer` equations, minus that in its own."""
         parts = pieces(len(self.of.time), len(self.richer.names))
-        return np.concatenate([self._residual_at(times, self.of.at(times)) for times in parts])
+        return np.concatenate([self._residual_at(times, self.of.select(times)) for times in parts])
 
     def held_residual(self, accelerated: Flags) -> Floats:
         """Residual (n,) at the start if only the unknowns that are `accelerated` had an acceleration."""
-        first = self.of.at(slice(1))
+        first = self.of.select(slice(1))
         return self._residual_at(slice(1), replace(first, known=np.where(accelerated, first.qdd, 0.0)))[0]
 
     def _residual_at(self, times: slice, at: Trajectory) -> Floats:
@@ -265,7 +265,7 @@ class Within(NamedTuple):
         """Linear equations of small departures from the solution, by the `richer` or by other `equations`."""
         richer = equations or self.richer
         chosen = matrix_times(len(self.of.time))
-        at = self.of.at(chosen)
+        at = self.of.select(chosen)
         elastic = np.array([".q" in name for name in self.richer.names], dtype=bool)
         k, c, m = slopes(richer.residual, at.q, at.qd, at.qdd, richer.inputs(chosen))
         balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.richer.names]
@@ -275,10 +275,10 @@ class Within(NamedTuple):
 
     def read(self, times: Indices) -> Reading:
         """Read the solution in the `richer` equations at indices of its times."""
-        return self.richer.read(self.of.at(times), times)
+        return self.richer.read(self.of.select(times), times)
 
     def moved(self, by: Correction, times: Indices) -> Reading:
         """Read the solution with a correction added, at indices of its times."""
-        of, change = self.of.at(times), by.at(times)
+        of, change = self.of.select(times), by.at(times)
         moved = replace(of, q=of.q + change.value, qd=of.qd + change.rate, known=of.qdd + change.acceleration)
         return self.richer.read(moved, times)

@@ -21,7 +21,7 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.checks import choice
-from gbeam.integrate.driver import through
+from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import accelerations, slopes
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.tree.body_terms import stations_of
@@ -266,7 +266,7 @@ class Plant:
         grid = posed.steps(kept)
         # Derivatives need the states at all ends of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
-        run = through(posed.equations, scheme, posed.start.y, posed.start.yd, steps)
+        run = integrate_steps(posed.equations, scheme, posed.start.y, posed.start.yd, steps)
         if len(run.q) <= len(steps):
             raise ComputationError("diverged", f"the run of a command ends at {run.time[-1]:.4g} s, before its time")
 

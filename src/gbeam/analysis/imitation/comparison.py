@@ -15,7 +15,7 @@ from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.kinds import kinds
-from gbeam.numerics.samples import interpolated, largest_riding_acceleration, low_pass
+from gbeam.numerics.samples import interpolated, largest_oscillator_acceleration, low_pass
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison
 from gbeam.results.criteria import KINDS_OF_LIMITS, STRESS_AT, Limits, checked_limits
@@ -381,7 +381,7 @@ def _shock(
     for name, share in (weights or {tip: 1.0}).items():
         point = run.index("point", name)
         pair = np.concatenate([reference[:, point], actual[:, point]], axis=1)
-        mean += share * largest_riding_acceleration(pair, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
+        mean += share * largest_oscillator_acceleration(pair, 2 * np.pi * frequency, 0.5 / QUALITY, step, covered)
     if weights:
         words = {name: ", as its sensor reads" if name in sensors else "" for name in weights}
         control = ", ".join(f"{name} ({100 * share:.3g} %{words[name]})" for name, share in weights.items())

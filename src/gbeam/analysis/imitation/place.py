@@ -32,7 +32,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion import Base, Centrifuge, Flight
 from gbeam.motion.centrifuge.histories import times_between
 from gbeam.motion.centrifuge.limits import exceeded
-from gbeam.numerics.minimise import least, refine
+from gbeam.numerics.minimise import minimise_convex, refine
 from gbeam.numerics.samples import interpolated, low_pass
 from gbeam.printable import advise
 from gbeam.progress import Progress, tell
@@ -372,7 +372,7 @@ class _Trials:
 
         if at is None:
             low, high = (np.where(self.moved, corner, self.start) for corner in self.answers.specimen.extent)
-            at = least(steepest, low, high, self.start)
+            at = minimise_convex(steepest, low, high, self.start)
         uses = machine.usage()
         times = times_between(*(float(end) for end in machine.extent))
         placed = machine.altered(control_point=_written(at))

@@ -22,7 +22,7 @@ from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.arrays.types import Floats
-from gbeam.integrate.driver import through
+from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations, slopes
 from gbeam.integrate.schemes import Scheme, added, stepped
 from gbeam.integrate.steps import Steps
@@ -142,7 +142,7 @@ class Differentiated:
         # Derivatives need the states at all ends of split steps, too.
         every = replace(self.steps, kept=np.ones(len(self.steps), dtype=bool))
         start = self.nominal.start
-        self.run = through(self.nominal.equations, self.scheme, start.y, start.yd, every)
+        self.run = integrate_steps(self.nominal.equations, self.scheme, start.y, start.yd, every)
 
     def pair(self, less: Variant, more: Variant) -> Pair:
         """Pose the problems with a little less and a little more of a parameter."""

@@ -63,7 +63,7 @@ def displacement_peaks(
 def _beside(trajectory: Trajectory, samples: Indices) -> Floats:
     """Accelerations (t, n) at samples (u,) and their neighbours; NaN elsewhere."""
     qdd, near = np.full(trajectory.q.shape, np.nan), np.unique(samples[:, None] + np.arange(-1, 2))
-    qdd[near] = trajectory.at(near).qdd
+    qdd[near] = trajectory.select(near).qdd
     return qdd
 
 

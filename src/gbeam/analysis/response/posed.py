@@ -34,7 +34,7 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
-from gbeam.integrate.driver import through
+from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners, Steps, fitted, joined
 from gbeam.mechanics.structure import Structure
@@ -133,7 +133,7 @@ class Posed:
     @cached_property
     def felt(self) -> Corners:
         """Corners and jumps of the inputs, and jumps of the controllers' commands."""
-        felt = Corners.of(corners(self.subject, self.kept), self.drive, self.begin, self.end)
+        felt = Corners.from_times(corners(self.subject, self.kept), self.drive, self.begin, self.end)
         if self.controllers is None:
             return felt
         commands = self.commands.time
@@ -171,7 +171,7 @@ class Posed:
         """Integrate by steps of a length, s, until the model of a body ceases to hold."""
         y, yd, steps = self.start.y, self.start.yd, self.steps(step, cut)
         scheme = scheme_of(self.settings)
-        return through(self.equations, scheme, y, yd, steps, stop=self.too_far, progress=progress)
+        return integrate_steps(self.equations, scheme, y, yd, steps, stop=self.too_far, progress=progress)
 
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""

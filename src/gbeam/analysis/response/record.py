@@ -197,7 +197,7 @@ class Histories:
             return None
         if base is None:
             angle, rate = (over_time[key][self.kept][:, 0] for key in ("q", "qd"))
-            acceleration = self.run.trajectory.at(self.steps[self.kept]).qdd[:, 0]
+            acceleration = self.run.trajectory.select(self.steps[self.kept]).qdd[:, 0]
             fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
             return HubResult(angle, rate, acceleration, motion.torque(time), fastest=fastest)
         axis = motion.mount.R_HB[2]

@@ -79,7 +79,7 @@ class Run:
     @cached_property
     def flight(self) -> Trajectory:
         """The trajectory over the flight's times."""
-        return self.trajectory.at(self.in_flight)
+        return self.trajectory.select(self.in_flight)
 
     def sampled(self, stride: int) -> Indices:
         """Indices of the steps of spin-up and spin-down, and of every `stride`-th of the flight."""
@@ -316,14 +316,16 @@ class Run:
     def solution(self, stride: int) -> Solution:
         """Solution at every `stride`-th step of the flight."""
         steps = self._flown(stride)
-        return Solution(self.posed.system, self.trajectory.at(steps), lambda of, times: self.inputs(of, steps[times]))
+        return Solution(
+            self.posed.system, self.trajectory.select(steps), lambda of, times: self.inputs(of, steps[times])
+        )
 
     def histories(self, steps: Indices) -> tuple[dict[str, Any], dict[str, Carried]]:
         """Histories by key at indices of the steps, and the state of each flexible body by name."""
         system, inertial = self.posed.system, self.posed.motion is None
         columns, bodies = dict[str, list[Floats]](), {name: list[Carried]() for name in system.flexible}
         for part in pieces(len(steps), system.tree.size):  # for memory: all frames of a part are held at once
-            at, inputs = self.trajectory.at(steps[part]), self.inputs(system, steps[part])
+            at, inputs = self.trajectory.select(steps[part]), self.inputs(system, steps[part])
             values, of_bodies = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
             for key, value in values.items():
                 columns.setdefault(key, []).append(value)

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from gbeam.arrays.types import Floats
-from gbeam.numerics.peaks import peaks_apart
+from gbeam.numerics.peaks import peak_difference
 from gbeam.results.errors import StepErrors
 
 # Limits of the observed order of histories: runs that hardly converge differ by less than their error.
@@ -188,4 +188,4 @@ def _peaks_apart(time: Floats, coarse: Floats, fine: Floats) -> float:
     n, size = min(len(coarse), len(fine)), np.linalg.norm(fine, axis=-1).max()
     if fine.ndim == 3:  # stress at every section
         coarse, fine = (np.abs(stress).max(axis=(1, 2)) for stress in (coarse, fine))
-    return peaks_apart(time[:n], coarse[:n], fine[:n]) / float(size) if size > 0 else 0.0
+    return peak_difference(time[:n], coarse[:n], fine[:n]) / float(size) if size > 0 else 0.0

@@ -106,7 +106,7 @@ class SystemControllers:
         """True if JAX traces a controller."""
         return any(controller.traced for controller in self.every)
 
-    def of(self, residual: Any, laws: list[TracedLaw] | None = None) -> SystemControllers:
+    def rebuild(self, residual: Any, laws: list[TracedLaw] | None = None) -> SystemControllers:
         """The controllers with measurements by the values of another tree, and commands by other laws."""
         return SystemControllers(self.system, residual, laws)
 

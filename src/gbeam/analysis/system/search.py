@@ -22,10 +22,10 @@ from gbeam.numerics.balance import (
     answered,
     balanced,
     carried,
+    keeps_turning,
     loose,
     pulled,
     relaxation,
-    turning_on,
     unheld,
 )
 from gbeam.numerics.eigen import positive_definite
@@ -74,7 +74,7 @@ def adrift(point: Point, residual: Floats, slope: Sequence[Floats]) -> Flags:
     _, k, c, m = local.slopes()
     turns = local.tree.turning
     candidates = np.any([local.tree.sliding & loose(k, c), *turns], axis=0)
-    free = [not c[:, turn].any() and turning_on(k, m, local.ydd, candidates, turn) for turn in turns]
+    free = [not c[:, turn].any() and keeps_turning(k, m, local.ydd, candidates, turn) for turn in turns]
     return np.any([slides, *(turn for turn, turns_on in zip(turning, free, strict=True) if turns_on)], axis=0)
 
 

@@ -64,7 +64,7 @@ class Solution:
 
     def at(self, times: Indices) -> Solution:
         """Return the solution at indices of its times."""
-        return Solution(self.system, self.of.at(times), lambda system, part: self.inputs(system, times[part]))
+        return Solution(self.system, self.of.select(times), lambda system, part: self.inputs(system, times[part]))
 
     def within(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
         """The solution put into another system's equations, by its unknowns' names or their indices `shared`."""
@@ -75,7 +75,7 @@ class Solution:
         tree, of = self.system.tree, self.of
         places, along = list[Floats](), {name: list[Carried]() for name in bodies}
         for times in pieces(len(of.time), tree.size):
-            inputs, at = self.inputs(self.system, times), of.at(times)
+            inputs, at = self.inputs(self.system, times), of.select(times)
             state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, inputs)
             places.append(state.places)
             if along:
@@ -111,7 +111,7 @@ class Solution:
                 radii[k] = float(np.sqrt(about_root))
         places = list[Floats]()
         for times in pieces(len(of.time), tree.size) if radii else ():
-            at = of.at(times)
+            at = of.select(times)
             roots = tree.motion(at.q, at.qd, 0 * at.q, self.inputs(self.system, times)).roots
             axes = [radius * np.swapaxes(roots[k].R, -1, -2) for k, radius in radii.items()]
             places.append(np.concatenate([np.broadcast_to(ends, (len(at.q), 3, 3)) for ends in axes], axis=1))
@@ -120,7 +120,7 @@ class Solution:
     def bases(self, bodies: Iterable[str]) -> dict[str, Base]:
         """Motions (t, 3) of the roots of some bodies by name, at a selection of the times."""
         times = matrix_times(len(self.of.time))
-        at = self.of.at(times)
+        at = self.of.select(times)
         state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, times))
         roots = {name: state.roots[k] for k, name in enumerate(self.system.order)}
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
@@ -139,7 +139,7 @@ class Solution:
                     wanted.append((k, name))
         if wanted:
             times = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
-            at, inputs = self.of.at(times), self.inputs(self.system, times)
+            at, inputs = self.of.select(times), self.inputs(self.system, times)
             state = tree.motion(at.q, at.qd, at.qdd, inputs)
             for k, name in wanted:
                 q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))

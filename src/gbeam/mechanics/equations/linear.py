@@ -133,7 +133,7 @@ class Coefficients:
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array, Array]:
         """C + G, K and F, (..., n, n) and (..., n), at base motions (..., 3) under load components (..., loads, 6)."""
-        return self.terms.at(self.features(a_WO_B, w_WB_B, alpha_WB_B, load_values))
+        return self.terms.evaluate(self.features(a_WO_B, w_WB_B, alpha_WB_B, load_values))
 
     def frozen(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None

@@ -83,7 +83,7 @@ def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
     """
     of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size]
     parts = [c.terms for c in of_bodies]
-    terms = LinearTerms(*(_blocks([part.each[k] for part in parts]) for k in range(3)))
+    terms = LinearTerms(*(_blocks([part.arrays[k] for part in parts]) for k in range(3)))
     mass, damping, stiffness = (_diagonal([getattr(c, name) for c in of_bodies]) for name in _MATRICES)
 
     def features(roots: Roots) -> Array:
@@ -93,7 +93,7 @@ def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
     # No derivative is taken through the modes: those of equal frequencies have none.
     rest = None if any(map(is_jax, (mass, damping, stiffness))) else (damping, stiffness)
     moved = partial(_roots, tree, drive)
-    return LinearEquations(mass, lambda roots: terms.at(features(roots)), moved, terms, features, rest)
+    return LinearEquations(mass, lambda roots: terms.evaluate(features(roots)), moved, terms, features, rest)
 
 
 _MATRICES = "mass", "damping", "stiffness"

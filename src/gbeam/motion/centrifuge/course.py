@@ -63,7 +63,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease
     """
     # scipy.sparse and the solver take longer to import than most commands to run
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking, idle_rate
-    from gbeam.numerics.minimise import minimise, nearest_within
+    from gbeam.numerics.minimise import minimise, nearest_point
 
     idle, fastest = idle_rate(target, geometry), float(limits.axes[0, 0])
     if idle > fastest:
@@ -85,7 +85,7 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease
         splines = AxisSplines(grid, standstill=ramps is not None)
         kept = KeptLimits(splines, geometry, limits, target)
         x = splines.unknowns(c)
-        feasible = x if within_limits else nearest_within(kept, x)
+        feasible = x if within_limits else nearest_point(kept, x)
         if feasible is not None:
             tracking, x = Tracking(splines, geometry, target, ramps), feasible
             for factor in (1.0,) if within_limits else _GENTLER:

@@ -101,7 +101,7 @@ class Turned(Profile):
     matrix: Any
 
     def series(self, t: Any, order: int) -> Series:
-        return self.profile.series(t, order).each(lambda c: c @ self.matrix.T)
+        return self.profile.series(t, order).map(lambda c: c @ self.matrix.T)
 
     @property
     def breaks(self) -> Any:

@@ -105,7 +105,7 @@ def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
     times, values, slopes = (xp.asarray(array) for array in (table.times, table.values, table.slopes))
     start = xp.maximum(segment - 1, 0)  # anchored in its own segment: no sum of slopes to lose digits in
     slope = slopes[segment]
-    return Series.of([values[start] + slope * beside(t - times[start], values.ndim - 1), slope], order)
+    return Series.from_derivatives([values[start] + slope * beside(t - times[start], values.ndim - 1), slope], order)
 
 
 @record
@@ -154,7 +154,7 @@ class SmoothedPiecewiseLinear(Rounded):
         knot_bends = bends[knots]
         subscripts = "...j,...jv->...v" if bends.ndim > 1 else "...j,...j->..."
         rounded = [xp.einsum(subscripts, ramp, knot_bends) * self.width ** (1 - k) for k, ramp in enumerate(ramps)]
-        return _line(self.table, now, first, order) + Series.of(rounded, order)
+        return _line(self.table, now, first, order) + Series.from_derivatives(rounded, order)
 
     @property
     def sharp(self) -> Profile:

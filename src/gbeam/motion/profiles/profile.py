@@ -289,8 +289,8 @@ class Convolved(Rounded):
         values = Series(tuple(beside(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
         orders = hann_orders(2, 2 + order, (now[..., None] - node) / width)
         kernel = Series(tuple(((1 - speed) / width) ** k * h / factorial(k) for k, h in enumerate(orders)))
-        weighted = Series.of([weight / width, widening / width], order) * kernel
-        return (weighted.each(lambda c: beside(c, axes)) * values).each(lambda c: c.sum(axis=now.ndim))
+        weighted = Series.from_derivatives([weight / width, widening / width], order) * kernel
+        return (weighted.map(lambda c: beside(c, axes)) * values).map(lambda c: c.sum(axis=now.ndim))
 
     @property
     def sharp(self) -> Profile:

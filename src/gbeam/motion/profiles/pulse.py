@@ -70,7 +70,7 @@ class SmoothStep(_Pulse):
         phase = (as_array(t) - self.start) / self.duration
         # 2009 (43) is a step rounded by a Hann kernel of width T.
         orders = hann_orders(1, 1 + order, phase - 0.5)
-        return Series.of([self.level * h / self.duration**k for k, h in enumerate(orders)], order)
+        return Series.from_derivatives([self.level * h / self.duration**k for k, h in enumerate(orders)], order)
 
     def integral(self, t: Any) -> Any:
         phase = (as_array(t) - self.start) / self.duration
@@ -112,7 +112,9 @@ class Sine(_Pulse):
         size = xp.where((phase >= 0) & (phase < 1), self.amplitude, 0.0)
         sine, cosine = xp.sin(TURN * phase), xp.cos(TURN * phase) if order else 0.0
         waves = (sine, cosine, -sine, -cosine)
-        return Series.of([size * (TURN / self.duration) ** k * waves[k % 4] for k in range(order + 1)], order)
+        return Series.from_derivatives(
+            [size * (TURN / self.duration) ** k * waves[k % 4] for k in range(order + 1)], order
+        )
 
 
 @typed

@@ -271,7 +271,7 @@ class KeptLimits:
         least[begin : end + DEGREE] = self.idle / _USED
         return least
 
-    def at(self, x: Floats) -> tuple[Any, Floats, Floats]:
+    def linearise(self, x: Floats) -> tuple[Any, Floats, Floats]:
         """Matrix (m, size) and lower and upper limits (m,) of the linear constraints on the unknowns.
 
         The power's limit |rate · acceleration| <= P is not linear; its rows are tangents at `x`.

@@ -84,7 +84,7 @@ def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Seri
     has_across = across.value != 0
     xp = namespace(across.value)
     safe_across = where(has_across, across, xp.ones_like(across.value))
-    gravity = Series.of([geometry.gravity + 0.0 * across.value], across.order)
+    gravity = Series.from_derivatives([geometry.gravity + 0.0 * across.value], across.order)
     safe_fy, safe_fz = where(has_across, fy, safe_across.value), where(has_across, fz, gravity.value)
     roll = arctan2(gravity, safe_across) - arctan2(safe_fz, safe_fy)
     return math.pi - lag - arctan2(across, fx), roll
