@@ -11,7 +11,7 @@ from gbeam import Hub, Structure
 from gbeam.arrays.namespace import namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.tree.equations import Inputs, Tree
-from gbeam.mechanics.tree.one_body import on_hub
+from gbeam.mechanics.tree.one_body import hub_system
 
 Array = Any
 
@@ -36,6 +36,6 @@ class Hinged:
 
 def hinged(structure: Structure, hub: Hub) -> Hinged:
     """Equations of a structure on a hub that turns freely."""
-    system = on_hub(structure, hub)
+    system = hub_system(structure, hub)
     inputs = system.inputs(np.zeros(()))
     return Hinged(system.tree.contracted(inputs.ground), inputs)

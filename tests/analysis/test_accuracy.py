@@ -13,7 +13,7 @@ from gbeam.analysis.accuracy.correction import RESOLVED, Correction, Departures,
 from gbeam.analysis.system.solution import Solution
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.one_body import on_motion
+from gbeam.mechanics.tree.one_body import moving_system
 from gbeam.results.parts import Base
 
 from ..differences import jacobian
@@ -192,7 +192,7 @@ def test_a_complete_residual_at_many_times_is_the_compiled_one() -> None:
     structure = laden("exact")
     q, qd, qdd = (states(structure.size, 2, 0.1, seed) for seed in range(3))
     base, loads = Base(*(states(3, 2, 1.0, seed) for seed in (3, 4, 5))), structure.history(np.zeros(2))
-    system, _ = on_motion(structure, None)
+    system, _ = moving_system(structure, None)
     none = np.zeros((2, 3))
     ground = Frame(np.broadcast_to(np.eye(3), (2, 3, 3)), none, none, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
     inputs = replace(system.inputs(np.zeros(2)), ground=ground, loads=(loads,))
@@ -214,7 +214,7 @@ def test_departures_of_a_beam_on_a_free_hub_are_derivatives_of_its_equations(kin
         np.concatenate([about[:, [k]], states(n, 2, size, k)], axis=1) for k, size in enumerate((0.1, 0.3, 2.0))
     )
     of = Trajectory(np.array([0.0, 0.1]), y, yd, ydd)
-    system, _ = on_motion(structure, hub)
+    system, _ = moving_system(structure, hub)
     posed = Solution(system, of, lambda other, times: other.inputs(of.time[times])).posed(())
     ours = Within.lifted(posed, posed, of).departures()
     for at in range(2):
@@ -281,7 +281,7 @@ def test_coefficients_about_a_bent_beam_are_the_derivatives_of_its_residual() ->
     structure = laden("exact")
     (q,), still = states(structure.size, 1, 0.05, 7), np.zeros(structure.size)
     a, w, al = states(3, 3, 1.0, 8)
-    about, elastic = structure.about(q)
+    about, elastic = structure.linearise(q)
 
     def complete(x: np.ndarray) -> np.ndarray:
         dq, qd, qdd = np.split(x, 3)

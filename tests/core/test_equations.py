@@ -82,9 +82,9 @@ def test_complete_models_are_dalemberts_principle_in_the_world(name: str, seed: 
 def test_sections_and_bodies_have_the_inertia_of_their_particles(name: str) -> None:
     """Sections by their mass and moments of inertia, bodies off the axis as particles."""
     inertia, (a, w, alpha) = laden(name).inertia, states(3, 3, 2.0, seed=8)
-    assert inertia is not None and isinstance(inertia.same, Bodies)
+    assert inertia is not None and isinstance(inertia.reduced, Bodies)
     motion = *states(laden(name).size, 3, 0.3, seed=9), a, w, alpha
-    ours, theirs = inertia.forces(*motion), replace(inertia, same=Particles(inertia.field, inertia.mass))
+    ours, theirs = inertia.forces(*motion), replace(inertia, reduced=Particles(inertia.field, inertia.mass))
     for each, other in zip(ours, theirs.forces(*motion), strict=True):
         np.testing.assert_allclose(each, other, rtol=0, atol=1e-11 * np.abs(other).max())
 
@@ -92,7 +92,7 @@ def test_sections_and_bodies_have_the_inertia_of_their_particles(name: str) -> N
 def test_coefficients_are_the_whole_truth_for_a_truncated_energy() -> None:
     structure, (q, qd, qdd, base) = laden("FOAM"), spatial_state("FOAM", 3, 1.0)
     c = structure.coefficients
-    velocity, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    velocity, stiffness, load = c.evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     linear = c.mass @ qdd + velocity @ qd + stiffness @ q - load
     whole = on_prescribed_base(energy_of(structure), c.damping, q, qd, qdd, base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     np.testing.assert_allclose(linear, whole, atol=IDENTITY * np.abs(stiffness @ q).max())
@@ -103,7 +103,7 @@ def test_coefficients_of_a_complete_model_are_its_linearisation(name: str) -> No
     """Their rest is of second order: a quarter at half the state."""
     structure, (q, qd, qdd, base) = laden(name), spatial_state(name, 5)
     c = structure.coefficients
-    velocity, stiffness, load = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    velocity, stiffness, load = c.evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
     def left(s: float) -> np.ndarray:
         linear = c.mass @ (s * qdd) + velocity @ (s * qd) + stiffness @ (s * q) - load

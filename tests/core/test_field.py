@@ -220,7 +220,7 @@ def test_exact_field_to_second_order_has_foams_kinematics() -> None:
     root = radius * np.array([-(spin @ spin), 0.0, 0.0])
     frequencies = []
     for c in (structure.coefficients for structure in structures):
-        velocity, stiffness, _ = c.at(root, spin, np.zeros(3))
+        velocity, stiffness, _ = c.evaluate(root, spin, np.zeros(3))
         n = len(velocity)
         first_order = np.block(
             [[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(c.mass, np.hstack([stiffness, velocity]))]]
@@ -367,8 +367,8 @@ def test_forces_come_back_as_motion_goes_out(name: str) -> None:
     force, moment = np.random.default_rng(8).normal(size=(2, 4, 3, 3))
     moved, angle = field.jacobians(q)
     wanted = np.einsum("tpa,tpai->ti", force, moved) + np.einsum("tpa,tpai->ti", moment, angle)
-    np.testing.assert_allclose(field.along(q, split(force), split(moment)), wanted, atol=1e-11)
-    np.testing.assert_allclose(field.along(q[2], split(force[2]), split(moment[2])), wanted[2], atol=1e-11)
+    np.testing.assert_allclose(field.generalised_forces(q, split(force), split(moment)), wanted, atol=1e-11)
+    np.testing.assert_allclose(field.generalised_forces(q[2], split(force[2]), split(moment[2])), wanted[2], atol=1e-11)
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])

@@ -156,7 +156,7 @@ def bending_frequencies(kind: str, rate: float, mt: float = 0.0) -> np.ndarray:
 
 def lowest(c: Coefficients, rate: float) -> np.ndarray:
     acceleration, spin = np.array([-HUB_RADIUS * rate**2, 0.0, 0.0]), np.array([0.0, 0.0, rate])
-    _, stiffness, _ = c.at(acceleration, spin, np.zeros(3))
+    _, stiffness, _ = c.evaluate(acceleration, spin, np.zeros(3))
     return scipy.linalg.eigh(stiffness[5:, 5:], c.mass[5:, 5:], eigvals_only=True)
 
 

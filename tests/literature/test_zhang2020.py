@@ -58,7 +58,7 @@ def test_matrices_at_random_base_motions(seed: int) -> None:
     """M, G, K and the missing F, in the paper's normalisation Φ = f/√(mL)."""
     a, w, al = np.random.default_rng(seed).normal(size=(3, 3)) * [[100], [30], [1000]]
     paper = matrices(a, w, al)
-    G, K, F = constants().at(a, w, al)
+    G, K, F = constants().evaluate(a, w, al)
     scale = LINE * LENGTH
     for name, ours, theirs in (
         ("M", constants().mass / scale, paper.M),
@@ -70,7 +70,7 @@ def test_matrices_at_random_base_motions(seed: int) -> None:
     # G is skew and damps nothing (erratum 11); the skew part of K is ½ G with ω replaced by its rate
     np.testing.assert_allclose(G, -G.T, atol=1e-12)
     skew = (K - K.T) / 2
-    np.testing.assert_allclose(skew, constants().at(a, al, w)[0] / 2, atol=EQUATIONS * np.abs(skew).max())
+    np.testing.assert_allclose(skew, constants().evaluate(a, al, w)[0] / 2, atol=EQUATIONS * np.abs(skew).max())
 
 
 def test_geometric_stiffness_with_the_control_point_in_the_middle() -> None:
@@ -151,7 +151,7 @@ def test_variants_of_the_shift() -> None:
 
 
 def matrices_at(base: Base) -> tuple[np.ndarray, ...]:
-    return constants().at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    return constants().evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
 
 def quasi_static(motion: Any, t: np.ndarray) -> np.ndarray:

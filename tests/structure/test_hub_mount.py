@@ -65,7 +65,7 @@ def test_a_setting_angle_mixes_the_planes() -> None:
     """At 90° the section's z lies where y was: the lag and flap stiffnesses change places."""
     both = gb.assemble(BEAM, gb.Model("FOAM", 0, 1, 1)).coefficients
     bases = [gb.Hub(radius=0.5, rate=gb.constant(2.0), setting_angle=angle).base(0.0) for angle in (0.0, np.pi / 2)]
-    flat, edge = (both.at(b.a_WO_B, b.w_WB_B, b.alpha_WB_B)[1] for b in bases)
+    flat, edge = (both.evaluate(b.a_WO_B, b.w_WB_B, b.alpha_WB_B)[1] for b in bases)
     np.testing.assert_allclose(np.diag(flat)[::-1], np.diag(edge), rtol=1e-12)
     assert flat[0, 0] < flat[1, 1]
 

@@ -83,7 +83,7 @@ def stiffness() -> tuple[np.ndarray, ...]:
     thrusts = [gb.Load(1.0, force=(-1.0, 0.0, 0.0), follower=follower) for follower in (False, True)]
     structure = gb.assemble(beam(1.0, 1.0, *thrusts), gb.Model("FOAM", 0, 0, 8)).coefficients
     o, free = np.zeros(3), structure.stiffness
-    under = [structure.at(o, o, o, _unit_thrust(k))[1] for k in (0, 1)]
+    under = [structure.evaluate(o, o, o, _unit_thrust(k))[1] for k in (0, 1)]
     return tuple(np.asarray(m) for m in (structure.mass, free, free - under[0], free - under[1]))
 
 

@@ -10,7 +10,7 @@ import pytest
 import gbeam as gb
 from gbeam.mechanics.tree.equations import Tree
 from gbeam.mechanics.tree.linear import idle_inputs
-from gbeam.mechanics.tree.one_body import on_motion
+from gbeam.mechanics.tree.one_body import moving_system
 from tests.system.trees import BEAM, flexible, tree
 
 HUBS: dict[str, dict[str, Any]] = {
@@ -23,7 +23,7 @@ HUBS: dict[str, dict[str, Any]] = {
 
 def on_hub(kind: str = "FOAM", **more: Any) -> gb.System:
     """A beam on a hub that turns freely."""
-    return on_motion(flexible(kind), gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(3.0), **more))[0]
+    return moving_system(flexible(kind), gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(3.0), **more))[0]
 
 
 def contracted(system: gb.System, *, rests: bool) -> Tree:
@@ -40,7 +40,7 @@ def counts(of: Tree) -> list[int]:
 def apart(system: gb.System, of: Tree, motion: Any = None) -> float:
     """Largest difference of the equations at random states from those that are not contracted, as a share of these."""
     rng, count = np.random.default_rng(5), 30
-    y, yd, ydd = rng.normal(size=(3, count, len(system.tree.free))) * np.array([0.1, 1.0, 1.0])[:, None, None]
+    y, yd, ydd = rng.normal(size=(3, count, len(system.tree.unknowns))) * np.array([0.1, 1.0, 1.0])[:, None, None]
     inputs = system.inputs(np.linspace(0.0, 1.0, count), motion)
     want = system.tree(y, yd, ydd, inputs)
     return float(np.abs(of(y, yd, ydd, inputs) - want).max() / np.abs(want).max())
@@ -63,13 +63,13 @@ def test_a_body_with_loads_is_contracted() -> None:
     loads = [gb.Load(0.7, force=gb.constant((1.0, 2.0, 3.0)), follower=True)]
     beam = gb.Beam(1.0, BEAM.section, BEAM.material, damping_ratio=0.01, loads=loads)
     structure = gb.assemble(beam, "FOAM", axial=1, y=1, z=2)
-    system, _ = on_motion(structure, gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(3.0)))
+    system, _ = moving_system(structure, gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(3.0)))
     assert apart(system, contracted(system, rests=True)) < 1e-13
 
 
 def test_sfoam_on_a_free_hub_feels_no_rates() -> None:
     hub = gb.Hub(radius=0.2, inertia=0.5, torque=gb.constant(3.0))
-    system, _ = on_motion(gb.assemble(BEAM, "SFOAM", y=1, z=2), hub)
+    system, _ = moving_system(gb.assemble(BEAM, "SFOAM", y=1, z=2), hub)
     assert counts(contracted(system, rests=True)) == [2, 2]
     assert apart(system, contracted(system, rests=True)) < 1e-13
 

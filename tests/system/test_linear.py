@@ -61,7 +61,7 @@ def test_linear_equations_are_those_of_the_recursion(kinds: list[tuple[str, str,
     drive = partial(system.inputs, motion=turning(seed) if seed % 3 else None)
     equations = linear_equations(system.tree, drive)
     rng = np.random.default_rng(seed)
-    t, (y, yd, ydd) = rng.uniform(0, 2, size=5), 0.3 * rng.normal(size=(3, 5, len(system.tree.free)))
+    t, (y, yd, ydd) = rng.uniform(0, 2, size=5), 0.3 * rng.normal(size=(3, 5, len(system.tree.unknowns)))
     c, k, f = equations.matrices(equations.drive(t))
     sums = ydd @ equations.mass + (c @ yd[..., None] + k @ y[..., None])[..., 0] - f
     residual = system.tree(y, yd, ydd, drive(t))

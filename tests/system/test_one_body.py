@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.mechanics.tree.one_body import on_motion
+from gbeam.mechanics.tree.one_body import moving_system
 
 STRIP = gb.Section.rectangle(width=0.02, thickness=0.004)
 BEAM = gb.Beam(0.3, STRIP, gb.Material(2700, 70e9), [gb.PointMass(0.3, 0.05)], damping_ratio=0.01)
@@ -28,7 +28,7 @@ def test_a_structure_on_a_free_hub_moves_as_a_body_on_a_hinge(kind: str, hub: st
     structure = gb.assemble(BEAM, kind, axial=1, y=2, z=2)
     motion = gb.Hub(inertia=0.5, torque=PUSH, **HUBS[hub])
     alone = gb.simulate(structure, motion, SETTINGS)
-    system, ground = on_motion(structure, motion)
+    system, ground = moving_system(structure, motion)
     assert ground is None
     of_system = gb.simulate(system, ground, SETTINGS)
     assert alone.hub is not None
@@ -43,7 +43,7 @@ def test_the_root_points_as_the_hub_says() -> None:
     structure = gb.assemble(BEAM, "FOAM", axial=1, y=2, z=2)
     for pointing, angle in (("outward", 0.3), ("inward", 0.3), ("inward", 0.0), ("outward", math.pi)):
         hub = gb.Hub(radius=0.7, inertia=1.0, pointing=pointing, setting_angle=angle)
-        system, _ = on_motion(structure, hub)
+        system, _ = moving_system(structure, hub)
         point = gb.static(system)
         tip, root = (point.at(f"beam.{name}") for name in ("tip", "root"))
         assert root == pytest.approx([0.7, 0, 0])
@@ -55,7 +55,7 @@ def test_sfoam_on_a_free_hub_is_as_printed() -> None:
     structure, like = (gb.assemble(BEAM, kind, axial=0, y=2, z=2) for kind in ("SFOAM", "FOAM"))
     hub = gb.Hub(radius=0.2, inertia=0.5, torque=PUSH)
     y, yd, ydd = np.random.default_rng(0).normal(size=(3, 5)) * [[0.01], [2.0], [5.0]]
-    system, felt = (on_motion(each, hub)[0] for each in (structure, like))
+    system, felt = (moving_system(each, hub)[0] for each in (structure, like))
     ours, printed = (each.tree(y, yd, ydd, each.inputs(np.asarray(0.1))) for each in (system, felt))
     c, q, qd = like.coefficients, y[1:], yd[1:]
     k2 = c.k_ww[2, 2] - hub.radius * c.k_a[0]

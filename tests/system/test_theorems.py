@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import gbeam as gb
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.signals import measurements, signals_of
-from gbeam.mechanics.tree.steps import parameters_of_all, rotation_by_parameters, rotation_by_vector, vector_of
+from gbeam.mechanics.tree.steps import parameters_of_matrices, rotation_by_parameters, rotation_by_vector, vector_of
 from gbeam.numerics.series import STEP
 from tests.system.trees import JOINTS, flexible, tree
 
@@ -179,9 +179,9 @@ def test_rotations() -> None:
     spin = np.swapaxes(R.real, 1, 2) @ R.imag / STEP
     np.testing.assert_allclose(spin[:, [2, 0, 1], [1, 2, 0]], w.real, rtol=1e-11, atol=1e-14)
     np.testing.assert_allclose(w.imag / STEP, alpha.real, rtol=1e-10, atol=1e-14)
-    np.testing.assert_allclose(rotation_by_parameters(parameters_of_all(R.real)), R.real, atol=1e-14)
+    np.testing.assert_allclose(rotation_by_parameters(parameters_of_matrices(R.real)), R.real, atol=1e-14)
     short = np.linalg.norm(phi, axis=1) < 3.0
-    back = vector_of(parameters_of_all(R[short]))
+    back = vector_of(parameters_of_matrices(R[short]))
     np.testing.assert_allclose(back.real, phi[short], rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(back.imag / STEP, rate[short], rtol=1e-10, atol=1e-13)
 

@@ -53,7 +53,7 @@ def test_another_shape_lowers_every_frequency_and_interlaces(beam: Beam, rate: n
 def eigenvalues(beam: Beam, base: Base, along_z: int) -> np.ndarray:
     """Eigenvalues of K in the measure of M, ascending, rad²/s²."""
     c = assemble(beam, Model("FOAM", 1, 2, along_z)).coefficients
-    _, stiffness, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    _, stiffness, _ = c.evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     return np.sort(np.linalg.eigvals(np.linalg.solve(c.mass, stiffness)).real)
 
 

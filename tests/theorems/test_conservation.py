@@ -110,7 +110,7 @@ def test_jacobis_integral(beam: Beam, a: np.ndarray, w: np.ndarray, start: np.nd
     structure = assemble(beam, Model("FOAM", *COUNTS))
     c, scale = structure.coefficients, first_frequency(beam)
     spin = 0.3 * scale * w
-    velocity, stiffness, force = c.at(a, spin, np.zeros(3))
+    velocity, stiffness, force = c.evaluate(a, spin, np.zeros(3))
     np.testing.assert_allclose(stiffness, stiffness.T, atol=1e-12 * np.abs(stiffness).max())
     np.testing.assert_allclose(velocity, -velocity.T, atol=1e-12 * np.abs(velocity).max())
     q, qd = start[:5] * SMALL * beam.length, start[5:] * SMALL * beam.length * scale

@@ -160,7 +160,7 @@ def test_time_reversal(scheme: object, beam: Beam, a: np.ndarray, w: np.ndarray,
 
     def run(q: np.ndarray, qd: np.ndarray, way: float) -> tuple[np.ndarray, np.ndarray]:
         def matrices(base: Base) -> tuple[np.ndarray, ...]:
-            return c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+            return c.evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
 
         equations = LinearEquations(c.mass, matrices, lambda t: drive(t, way))
         answer = integrate(equations, scheme, q, qd, step=end / count, count=count)  # type: ignore[arg-type]

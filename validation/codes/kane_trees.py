@@ -408,7 +408,7 @@ class Compared(NamedTuple):
 def compared(seed: int, count: int | None = None) -> Compared | None:
     """Differences of a random tree from Kane's equations; None of one that cannot move."""
     system, tree = drawn(seed, count)
-    if not len(system.tree.free):
+    if not len(system.tree.unknowns):
         return None
     run = gb.simulate(system, duration=DURATION, tolerance=1e-5, estimate=False)
     assert run.outcome == "done", run.message

@@ -181,7 +181,7 @@ def hanging_chain() -> Iterator[Row]:
                 root=Root(rotation_y=slack), rotary_inertia=False)  # fmt: skip
     structure = assemble(beam, Model("exact", 0, 0, 14)).coefficients
     o = np.zeros(3)
-    _, stiffness, _ = structure.at(np.array([-1.0, 0.0, 0.0]), o, o)
+    _, stiffness, _ = structure.evaluate(np.array([-1.0, 0.0, 0.0]), o, o)
     square = np.linalg.eigvals(np.linalg.solve(structure.mass, stiffness)).real
     ours = np.sqrt(np.sort(square))
     for mode, zero in enumerate(jn_zeros(0, 3)):

@@ -127,7 +127,7 @@ def equations() -> Iterator[Row]:
     a, w, al = np.random.default_rng(0).normal(size=(3, 3)) * [[100], [30], [1000]]
     paper, c = zhang2020.matrices(a, w, al), strip("FOAM", *zhang2020.COUNTS).coefficients
     scale = zhang2020.LINE * zhang2020.LENGTH  # Φ = f/√(mL)
-    G, K, F = c.at(a, w, al)
+    G, K, F = c.evaluate(a, w, al)
     errata = "with the errata beside the equations (validation/published/zhang2020.py), as printed they differ"
     for name, equation, ours, theirs in (
         ("M", "(20)", c.mass / scale, paper.M),

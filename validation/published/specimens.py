@@ -142,7 +142,7 @@ def spinning(rate: float, axis: int, radius: float = 0.0) -> Base:
 
 def frequencies(c: Coefficients, base: Base, count: int) -> np.ndarray:
     """Lowest circular frequencies of M q̈ + G q̇ + K q = 0, rad/s."""
-    G, K, _ = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    G, K, _ = c.evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     return gyroscopic_frequencies(c.mass, G, K, count)
 
 

@@ -279,7 +279,7 @@ def _lacking(system: System) -> dict[str, str]:
     lacking = dict[str, str]()
     if not _stressed(system):
         lacking[STRESS] = of_rigid if rigid else "no body is a beam or a mesh"
-    if not len(system.tree.free):
+    if not len(system.tree.unknowns):
         lacking[DISPLACEMENT] = of_rigid
     return lacking
 

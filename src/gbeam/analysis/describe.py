@@ -53,7 +53,7 @@ def describe(case: Case) -> Description:
     """
     system, settings = case.system, case.response
     masses, centres = zip(*(_mass(system.bodies[name]) for name in system.order), strict=True)
-    total, roots = float(sum(masses)), zip(system.at_start.roots, centres, strict=True)
+    total, roots = float(sum(masses)), zip(system.start_state.roots, centres, strict=True)
     moment = np.einsum("b,bi->i", masses, [root.p + root.R @ centre for root, centre in roots])
     over_time: dict[str, Any] = {}
     doubts = [*_doubts(case), *(() if settings is None else settings.warnings)]

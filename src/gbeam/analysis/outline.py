@@ -42,7 +42,7 @@ def ends_of(system: System) -> dict[str, Floats]:
     bodies; and points of matrices.
     """
     several, ends = len(system.bodies) > 1, dict[str, Floats]()
-    for name, root in zip(system.order, system.at_start.roots, strict=True):
+    for name, root in zip(system.order, system.start_state.roots, strict=True):
         for end, place in _ends(system.bodies[name]).items():
             ends[f"{end} of {name}" if several else end] = np.asarray(root.p + root.R @ place)
     return ends

@@ -267,13 +267,13 @@ def _structure(
     if beam.loads:
         work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(beam.masses))
     rest = np.zeros(len(stiffness))
-    places, geometric = inertia.about(rest)
+    places, geometric = inertia.expand(rest)
     c = coefficients(
         mass,
         places,
         stiffness,
         geometric=geometric,
-        loads=None if work is None else work.about(len(beam.loads), rest),
+        loads=None if work is None else work.linearise(len(beam.loads), rest),
     )
     if damping is None:
         damping = damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)
@@ -287,7 +287,7 @@ def _structure(
         mass=mass,
         places=places,
         stations=at,
-        station_places=field.points(slice(first_station, None)).at_rest(),
+        station_places=field.points(slice(first_station, None)).expand_rest(),
         coefficients=c.damped(damping),
         inertia=inertia,
         field=field,
@@ -327,7 +327,7 @@ def breaks_of(beam: Beam) -> list[float]:
     return [*beam.section.stations, *(() if beam.line is None else beam.line.panels), *supports]
 
 
-def at_stations(structure: Structure, stations: ArrayLike) -> Structure:
+def replace_stations(structure: Structure, stations: ArrayLike) -> Structure:
     """Return the same structure of a beam with other stations of output, m; the tip is added last."""
     return remade(structure, model_of(structure), stations)
 

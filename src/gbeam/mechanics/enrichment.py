@@ -275,13 +275,13 @@ def enrichment(structure: Structure, base: Base | None = None) -> Enrichment | T
     """
     if structure.richer is not None:
         return Twin(structure)
-    unloaded = _without_force(structure)
-    force = None if base is None else unloaded.bent_by(base)
+    unloaded = _unloaded_enrichment(structure)
+    force = None if base is None else unloaded.bending_force(base)
     return unloaded if force is None else Enrichment(structure, force)
 
 
 @lru_cache(maxsize=4)  # keyed by values: runs of equal structures look for what they lack once
-def _without_force(structure: Structure) -> Enrichment:
+def _unloaded_enrichment(structure: Structure) -> Enrichment:
     """Enrichment of a structure without axial force."""
     return Enrichment(structure)
 
@@ -304,7 +304,7 @@ class Enrichment:
         self.beam = beam
         self._made: dict[Any, tuple[Structure, NDArray[np.int_]]] = {}
 
-    def bent_by(self, base: Base) -> Array | None:
+    def bending_force(self, base: Base) -> Array | None:
         """Axial force (g,) N that a motion of the base brings, where it is large enough to change the shapes."""
         along, spin = np.asarray(base.a_WO_B)[..., 0], (np.asarray(base.w_WB_B)[..., 1:] ** 2).sum(axis=-1)
         force = axial_force(self.beam, self.rule, np.atleast_1d(along), np.atleast_1d(spin))
@@ -331,7 +331,7 @@ class Enrichment:
             for count, new, is_wanted in zip(model_counts, self.new, wanted, strict=True)
         )
         counts: Any = (axial if KINDS[kind].axial else 0, *other_counts)
-        families: Any = tuple(_first(family, count) for family, count in zip(self.families, counts, strict=True))
+        families: Any = tuple(_truncated(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)
         if isinstance(ratio, tuple):  # new modes have the last ratio
@@ -366,10 +366,10 @@ def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families
     return families_of(beam, structure.kind, counts, rule, structure.source.shapes)
 
 
-def _first(family: Family, count: int) -> Family:
+def _truncated(family: Family, count: int) -> Family:
     """Family of the first `count` shapes of another."""
 
-    def first(x: Array) -> Shapes:
+    def first_shapes(x: Array) -> Shapes:
         return Shapes(*(part[:, :count] for part in family(x)))
 
-    return first
+    return first_shapes

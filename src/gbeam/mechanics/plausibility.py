@@ -241,8 +241,8 @@ def input_warnings(
         elif base is None and motion.free:
             base = motion.mount.base(*np.zeros((3, 1)))  # type: ignore[attr-defined]
     warnings += unstiffened(structure, base, where)
-    warnings += _without_shapes(structure, base, where, span)
-    return (*warnings, *_twisting(structure, span), *_on_edge(structure, motion, base, where))
+    warnings += _warn_of_missing_shapes(structure, base, where, span)
+    return (*warnings, *_twisting(structure, span), *_warn_of_edgewise_bending(structure, motion, base, where))
 
 
 def _frequency(structure: Structure, lowest: float) -> Iterator[str]:
@@ -274,8 +274,9 @@ def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
 
 
 def bend(structure: Structure, q: Any) -> float:
-    """Largest displacement of a station at coordinates (..., n) over the length, where places are linear in these: zero
-    of a beam.
+    """Largest displacement of a station at coordinates (..., n), as a share of the length; zero of a beam.
+
+    It is of structures whose places are linear in the coordinates.
     """
     if structure.field is not None or not structure.size:
         return 0.0
@@ -283,15 +284,15 @@ def bend(structure: Structure, q: Any) -> float:
 
 
 def elastic_bend(structure: Structure, base: Any) -> float:
-    """That of the static answer to a motion of the base (..., 3), by the elastic stiffness alone."""
+    """Return the :func:`bend` of the static answer to a motion of the base (..., 3), by the elastic stiffness alone."""
     if structure.field is not None:
         return 0.0
     c = structure.coefficients
-    _, _, force = c.at(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
+    _, _, force = c.evaluate(base.a_WO_B, base.w_WB_B, base.alpha_WB_B)
     return bend(structure, np.linalg.solve(c.stiffness, force[..., None])[..., 0])
 
 
-def of_first_order(share: float) -> str:
+def first_order_clause(share: float) -> str:
     """Clause on a bend, as a share of the length, that is too far for a stiffness of first order; else ""."""
     if share < BENT:
         return ""
@@ -300,13 +301,13 @@ def of_first_order(share: float) -> str:
 
 def bent_far(structure: Structure, share: float) -> Iterator[str]:
     """Warn of a bend, as a share of the length, that is too far for a stiffness of first order."""
-    if clause := of_first_order(share):
+    if clause := first_order_clause(share):
         known = structure.richer is not None and structure.richer.bending is not None
         left_out = "stated as error of the model" if known else "not known"
         yield f"{clause}: what that leaves out is {left_out}"
 
 
-def _without_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
+def _warn_of_missing_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:
     """Warn of accelerations and loads across the beam along axes without shapes: the model stays straight there."""
     rigid_axes = structure.axes_without_shapes
     if structure.field is None or not rigid_axes:
@@ -341,7 +342,7 @@ def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
         )
 
 
-def _on_edge(structure: Structure, motion: Any, base: Any, where: str) -> Iterator[str]:
+def _warn_of_edgewise_bending(structure: Structure, motion: Any, base: Any, where: str) -> Iterator[str]:
     """Warn if a hub's angular acceleration bends a beam in its stiff direction and the setting angle was not chosen."""
     if motion is None or motion.kind != "hub" or structure.source is None:
         return

@@ -192,7 +192,7 @@ def particles_of(points: Floats, shapes: Floats, mass: Any) -> tuple[Floats, Flo
     return _particles(functions.T @ (mass @ functions), shapes.shape[-1])
 
 
-def standing_in(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Floats, Floats]:
+def equivalent_particles(body: Floats, sums: Floats, moments: Floats) -> tuple[Floats, Floats, Floats]:
     """Few particles, as :func:`particles_of` returns them, that have the same inertia as a body with many.
 
     They have the mass, first and second moments of the `body` (10,), and its `sums` Σ m ∂r_a/∂q (3, n) and `moments` Σ

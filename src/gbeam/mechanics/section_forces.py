@@ -61,7 +61,7 @@ def section_forces(
     structure without sections at its root and tip only.
     """
     if structure.sections is None:
-        return about_the_hub(_of_ends(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
+        return add_hub_torques(_end_loads(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)
     applied = None if structure.history is None else structure.history(time)
     reactions = reactions_of(structure, base, q, qd, qdd, applied, hung)
@@ -95,7 +95,7 @@ def section_forces(
     )
     if reactions is not None:
         loads = with_supports(loads, structure, reactions)
-    return about_the_hub(loads, motion, base.alpha_WB_B)
+    return add_hub_torques(loads, motion, base.alpha_WB_B)
 
 
 def with_supports(loads: Loads, structure: Structure, reactions: Reactions) -> Loads:
@@ -111,7 +111,7 @@ def with_supports(loads: Loads, structure: Structure, reactions: Reactions) -> L
     )
 
 
-def _of_ends(
+def _end_loads(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, time: Array, hung: Hung | None
 ) -> Loads:
     """Loads at the root of a structure without sections, and at its tip, which carries nothing; without stress."""
@@ -226,7 +226,7 @@ def _cross(xp: Any, left: Array, right: Array) -> Array:
     return joined(xp, cross(split(left), split(right)), np.broadcast_shapes(left.shape[:-1], right.shape[:-1]))
 
 
-def about_the_hub(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:
+def add_hub_torques(loads: Loads, motion: Motion | None, alpha_WB_B: Array) -> Loads:
     """Add to loads the beam's torque about a hub's axis and, if the hub's inertia is given, the torque of its drive.
 
     With other motions the loads are returned as they are. `alpha_WB_B` (t, 3), rad/s², is the base's.

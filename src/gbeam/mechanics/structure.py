@@ -367,14 +367,14 @@ class Structure:
         assert isinstance(self.inertia, Inertia)
         return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
 
-    def about(self, q: Array) -> tuple[Coefficients, Array]:
+    def linearise(self, q: Array) -> tuple[Coefficients, Array]:
         """Coefficients of the equations linearised at coordinates `q` (n,), and the elastic forces there, (n,)."""
         c = self.coefficients
         if self.linear:
-            return c.about(q), c.elastic(q)
+            return c.linearise(q), c.elastic(q)
         assert self.inertia is not None
-        places, geometric = self.inertia.about(q)
-        loads = None if self.work is None or self.load_values is None else self.work.about(len(self.load_values), q)
+        places, geometric = self.inertia.expand(q)
+        loads = None if self.work is None or self.load_values is None else self.work.linearise(len(self.load_values), q)
         elastic, tangent = c.stiffness @ q, c.stiffness
         if isinstance(self.equations, HeldComplete):
             steps = q + 1j * STEP * np.eye(self.size)
@@ -418,7 +418,7 @@ class Structure:
         """Return the structure with its loads frozen at a `time`, s: as static, modes and stability take it."""
         if self.history is None:
             return self
-        history = self.history.held(float(time))
+        history = self.history.freeze(float(time))
         return replace(self, history=history, load_values=history(np.zeros(())))
 
     def turned(self, basis: Array) -> Structure:

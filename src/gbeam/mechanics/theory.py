@@ -36,15 +36,15 @@ def stiffening(beam: Beam, x: Floats, curvatures: Floats) -> tuple[Floats, Float
         return np.ones(len(x)), np.ones(len(x))
     ratio, (width, thickness) = float(beam.material.ratio), beam.section.at(x).extents()
     plate_gain = ratio**2 / (1 - ratio**2)
-    flatness = [
-        near_clamp_or_bent(ratio, x, across, through, curvature) * np.maximum(1 - (through / across) ** 2, 0)
+    share = [
+        flatness(ratio, x, across, through, curvature) * np.maximum(1 - (through / across) ** 2, 0)
         for across, through, curvature in ((width, thickness, curvatures[0]), (thickness, width, curvatures[1]))
     ]
     plate_factor = 1 / (1 - ratio**2) if beam.section.plate else 1.0
-    return (1 + plate_gain * flatness[0]) / plate_factor, 1 + plate_gain * flatness[1]
+    return (1 + plate_gain * share[0]) / plate_factor, 1 + plate_gain * share[1]
 
 
-def near_clamp_or_bent(ratio: float, x: Floats, across: Floats, through: Floats, curvature: Floats) -> Floats:
+def flatness(ratio: float, x: Floats, across: Floats, through: Floats, curvature: Floats) -> Floats:
     """Flatness of sections (p,), from 0 (free to bend across) to 1 (as in a plate), at x, m, from the clamp.
 
     Sections are `across` m wide and `through` m thick. Near the clamp, where c = c' = 0, the shape c across solves
@@ -96,7 +96,7 @@ class Theory(NamedTuple):
     @property
     def exact(self) -> Theory:
         """Both theories without truncation, for answers that are bent far."""
-        slender, thick = (replace(each, kind="exact", linear=False) for each in (self.slender, self.thick))
+        slender, thick = (replace(beam, kind="exact", linear=False) for beam in (self.slender, self.thick))
         return self._replace(slender=slender, thick=thick)
 
     def variants(self, plate: Floats) -> tuple[Structure, Structure]:
@@ -206,7 +206,7 @@ class _Parts:
             uncoupled = np.where(self.known, 1 / self.stiffness, 0.0)[:, None] * forces
         if self.coupling is None:
             return np.asarray(uncoupled)
-        return self._at_nodes(np.asarray(np.linalg.inv(self.coupling)), forces, uncoupled)
+        return self._nodal_products(np.asarray(np.linalg.inv(self.coupling)), forces, uncoupled)
 
     def scaled(self, strains: Floats, *, back: bool = False) -> Floats:
         """Scale strains (m, k) so that their energy is half their square; `back` reverses it."""
@@ -215,9 +215,9 @@ class _Parts:
         if self.coupling is None:
             return np.asarray(uncoupled)
         upper = np.swapaxes(np.linalg.cholesky(self.coupling), 1, 2)
-        return self._at_nodes(np.linalg.inv(upper) if back else upper, strains, uncoupled)
+        return self._nodal_products(np.linalg.inv(upper) if back else upper, strains, uncoupled)
 
-    def _at_nodes(self, matrices: Floats, strains: Floats, springs: Floats) -> Floats:
+    def _nodal_products(self, matrices: Floats, strains: Floats, springs: Floats) -> Floats:
         """Products (m, k) of matrices (g, 6, 6) and nodal strains, with the root springs' rows of `springs` (m, k)."""
         nodes, count = len(self.rule.node), strains.shape[1]
         nodal = np.einsum("gab,bgk->agk", matrices, strains[: 6 * nodes].reshape(6, nodes, count))
@@ -321,7 +321,7 @@ class _Parts:
         structure, beam, rest = self.structure, self.beam, np.zeros(len(stiffness))
         station, mass, offset = particles_of(beam, self.rule, rotary=rotary)
         inertia = held_inertia(field.points(station, offset), mass)
-        places, geometric = inertia.about(rest)
+        places, geometric = inertia.expand(rest)
         work, loaded, loads = None, np.zeros(0, int), None
         if beam.loads:
             work, loaded = self.work(field)
@@ -339,7 +339,7 @@ class _Parts:
             hub_force=True,
             mass=mass,
             places=places,
-            station_places=field.points(slice(self.first_station, None)).at_rest(),
+            station_places=field.points(slice(self.first_station, None)).expand_rest(),
             coefficients=c.damped(damping),
             grip=None,
             inertia=inertia,
@@ -359,5 +359,5 @@ def _load_terms(work: LoadWork, field: StrainField, at: Floats, count: int) -> L
     parts = []
     for chunk in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):
         acting = LoadWork(field[at[chunk]], work.load[chunk], work.weight[chunk], work.follower[chunk])
-        parts.append(acting.about(count, np.zeros(field.size)))
+        parts.append(acting.linearise(count, np.zeros(field.size)))
     return LoadTerms(sum(part.constant for part in parts), sum(part.slope for part in parts))

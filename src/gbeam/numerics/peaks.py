@@ -250,10 +250,10 @@ def peak_difference(time: Floats, values: Floats, others: Floats) -> float:
 
     Of histories with more columns than vectors have, only columns that reach half of the largest value count.
     """
-    return largest_apart(time, values[None], others[None])
+    return largest_peak_difference(time, values[None], others[None])
 
 
-def largest_apart(time: Floats, values: Floats, others: Floats) -> float:
+def largest_peak_difference(time: Floats, values: Floats, others: Floats) -> float:
     """Largest :func:`peak_difference` of histories in windows (w, t, ...) that have their times alike."""
     if values.ndim == 3 and values.shape[2] > WIDE:
         most = np.abs(values).max(axis=(0, 1))

@@ -20,7 +20,7 @@ from gbeam.guards.quantities import MODAL_DAMPING, MODES_KEPT, Count, Mass, Moda
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
-from gbeam.mechanics.reduction import particles_of, reduce, standing_in
+from gbeam.mechanics.reduction import equivalent_particles, particles_of, reduce
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.solids.foreign import unit_size
 from gbeam.solids.matrices import (
@@ -329,7 +329,7 @@ class ImportedModel(Value):
         sums, moments, missing = products[:, 0], products[:, 1:], left_out(of_nodes, moved)
         unknown = missing > MOST and (np.asarray(self.unknowns)[:, 1] == OWN).any()
         if unknown:
-            mass, *paths = standing_in(body, sums, moments)
+            mass, *paths = equivalent_particles(body, sums, moments)
         else:
             mass, *paths = particles_of(np.asarray(self.nodes)[nodes], moved, of_nodes)
         places = Places(*paths)

@@ -16,7 +16,7 @@ from gbeam.guards.quantities import ModalDamping
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, rest_modes
 from gbeam.mechanics.fields.taylor import EPSILON, Places
-from gbeam.mechanics.reduction import standing_in
+from gbeam.mechanics.reduction import equivalent_particles
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.solids.matrices import with_tip
 
@@ -86,7 +86,7 @@ def read_sid(
     )
     sums, moments = -terms.f_a, _moments(terms)
     lacking = not np.any(terms.k_a)
-    mass, *paths = standing_in(np.asarray(terms.rigid), sums, moments)
+    mass, *paths = equivalent_particles(np.asarray(terms.rigid), sums, moments)
     structure = linear_structure(
         terms,
         mass,

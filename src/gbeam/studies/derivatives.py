@@ -322,7 +322,7 @@ def _differentiable(system: System) -> bool:
     """
     meshes = any(body.source is None for body in system.flexible.values())
     bending = any(joint.holder.bends for joint in system.joints.values())
-    return bool(len(system.tree.free)) and not (meshes or bending or system.controllers)
+    return bool(len(system.tree.unknowns)) and not (meshes or bending or system.controllers)
 
 
 def _runs(case: Case, steps: Mapping[str, float]) -> Study:

@@ -192,7 +192,7 @@ def settle(inquiry: Inquiry, case: Case, cases: int) -> Inquiry:
     if settings is None or not inquiry.together:
         return inquiry
     enough = settings.step is not None or cases >= TOGETHER
-    able = len(case.system.tree.free) > 0 and not settings.estimate and not case.automatic and not case.spans
+    able = len(case.system.tree.unknowns) > 0 and not settings.estimate and not case.automatic and not case.spans
     return replace(inquiry, together=enough and able)
 
 

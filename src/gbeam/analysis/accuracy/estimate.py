@@ -17,7 +17,7 @@ from gbeam.analysis.accuracy.correction import DEFLECTION, MOVED, Quantity, Read
 from gbeam.analysis.accuracy.looks import Looks
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.plausibility import of_first_order
+from gbeam.mechanics.plausibility import first_order_clause
 from gbeam.mechanics.structure import Structure
 from gbeam.printable import percent as percent
 from gbeam.results.errors import ErrorEstimate
@@ -114,7 +114,7 @@ def not_known(bend: float, lost: str) -> dict[str, Any]:
 
     They are empty unless its bend, as a share of the length, is too far for such a stiffness.
     """
-    clause = of_first_order(bend)
+    clause = first_order_clause(bend)
     words = f"whether it would stay there is not known: {lost}, but {clause}"
     return {"outcome": NOT_KNOWN, "message": words} if clause else {}
 

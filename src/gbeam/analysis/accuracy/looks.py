@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.correction import MOVED, Reading
 from gbeam.arrays.types import Floats, Indices
-from gbeam.numerics.peaks import FEWEST, WIDE, largest_apart, signed_columns
+from gbeam.numerics.peaks import FEWEST, WIDE, largest_peak_difference, signed_columns
 
 FEW = 300  # times: of fewer, all are read
 PEAKS = 8  # highest local maxima, of each history computed, beside which all times are read
@@ -52,7 +52,7 @@ class Looks(NamedTuple):
     def peaks_apart(self, values: Floats, others: Floats) -> float:
         """Largest difference of the peaks of two histories at the times that are read."""
         time = self.interval * np.arange(self.windows.shape[1], dtype=np.float64)
-        return largest_apart(time, values[self.windows], others[self.windows])
+        return largest_peak_difference(time, values[self.windows], others[self.windows])
 
 
 def times_of_peaks(time: Floats, computed: Reading) -> Floats:

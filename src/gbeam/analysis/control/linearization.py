@@ -31,7 +31,7 @@ from gbeam.guards.checks import choice
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
-from gbeam.mechanics.tree.one_body import on_motion
+from gbeam.mechanics.tree.one_body import moving_system
 from gbeam.mechanics.tree.system import System
 from gbeam.motion import Flight
 from gbeam.motion.protocol import Motion, notes_on
@@ -280,7 +280,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     control = import_control()
 
     structure.require_coordinates()
-    system, _ = on_motion(structure, motion)
+    system, _ = moving_system(structure, motion)
     outputs = outputs_of(structure, undeformed(system), gauges)
     states = coordinate_signals(structure, outputs.first) + (() if outputs.first else BASE_RATES)
 

@@ -21,7 +21,7 @@ from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import accelerations
-from gbeam.mechanics.assembly import at_stations
+from gbeam.mechanics.assembly import replace_stations
 from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
@@ -101,14 +101,14 @@ class Outputs:
     @property
     def first(self) -> int:
         """Index of the body's first coordinate in y: 1 behind the angle of a free hub."""
-        return len(self.tree.free) - self.structure.size
+        return len(self.tree.unknowns) - self.structure.size
 
     @property
     def held(self) -> Array:
         """Inputs u (m,) that hold the state."""
         drives, ground = self.drives, self.drives.ground
         efforts: Any = drives.efforts
-        driven = [efforts[self.tree.free[:1]]] if self.first else [ground.a, ground.w, ground.alpha]
+        driven = [efforts[self.tree.unknowns[:1]]] if self.first else [ground.a, ground.w, ground.alpha]
         loads = [] if drives.loads[-1] is None else [np.ravel(drives.loads[-1])]
         return np.concatenate([*driven, *loads])
 
@@ -131,7 +131,7 @@ class Outputs:
         drives, ground = self.drives, self.drives.ground
         if self.first:
             driven, loads = np.split(u, [1], axis=-1)
-            efforts = driven * np.equal(np.arange(self.tree.size), self.tree.free[0])
+            efforts = driven * np.equal(np.arange(self.tree.size), self.tree.unknowns[0])
             drives = replace(drives, efforts=efforts)
         else:
             a, w, alpha, loads = np.split(u, [3, 6, 9], axis=-1)
@@ -228,7 +228,7 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
         measured = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
     if gauges:
         positions, strains = _of_beam(structure, dict(enumerate(gauges)))
-        structure = at_stations(structure, positions)
+        structure = replace_stations(structure, positions)
         measured = structure.sections
         assert measured is not None
         at = _nearest(structure, positions)
@@ -238,7 +238,7 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
     outboard = replace(measured, mass=measured.mass[rows], loaded=measured.loaded[rows])
     point = state.point
     drives = point.inputs
-    if len(point.tree.free) > structure.size:  # the torque that a free hub needs to go on as it does
+    if len(point.tree.unknowns) > structure.size:  # the torque that a free hub needs to go on as it does
         needed = replace(drives, efforts=None)
         efforts = point.tree.rows(point.y, point.yd, point.ydd, needed)[0]
         drives = replace(drives, efforts=efforts)
@@ -258,7 +258,7 @@ def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, 
             by_number |= {i: Strained(name, _of_solid(body, i, gauge)) for i, gauge in on_body.items()}
             continue
         positions, shares = _of_beam(body, on_body)
-        bodies[name] = body = at_stations(body, np.union1d(body.stations, positions))
+        bodies[name] = body = replace_stations(body, np.union1d(body.stations, positions))
         for i, share, section in zip(on_body, shares, _nearest(body, positions), strict=True):
             by_number[i] = Strained(name, share, int(section))
     return replace(system, bodies=bodies), {f"strain_{i + 1}": by_number[i] for i in range(len(gauges))}

@@ -26,7 +26,7 @@ from gbeam.integrate.equations import accelerations, slopes
 from gbeam.integrate.tangent import tangent
 from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.mechanics.tree.joints import SLIDES
-from gbeam.mechanics.tree.one_body import HINGE, on_hub
+from gbeam.mechanics.tree.one_body import HINGE, hub_system
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
 from gbeam.motion.profiles.profile import Profile
@@ -111,7 +111,7 @@ class Plant:
         body.require_coordinates()
         if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
             raise InputError("rate", "is not zero: the hub turns already", "leave it out")
-        return Plant(on_hub(body, hub, system.order[0]), f"{HINGE}.angle", f"{system.order[0]}.tip")
+        return Plant(hub_system(body, hub, system.order[0]), f"{HINGE}.angle", f"{system.order[0]}.tip")
 
     @staticmethod
     def of(system: System, coordinate: str, point: str | None) -> Plant:
@@ -172,7 +172,7 @@ class Plant:
         """The system at rest with the driven coordinate held at its start plus `moved`, rad or m."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
-        initial = {key: value + moved * (key == coordinate) for key, value in joint.first.items()}
+        initial = {key: value + moved * (key == coordinate) for key, value in joint.start_values.items()}
         efforts = {key: effort for key, effort in joint.efforts.items() if key != coordinate}
         moves: dict[str, Any] = {"initial": initial, "rate": {**joint.rates, coordinate: 0.0}, "effort": efforts}
         held = replace(joint, **moves)
@@ -248,7 +248,7 @@ class Plant:
         """Displacement (t, 3) m, or place if rigid, of the point by all coordinates (t, n); residual vibration, m."""
         tip = self._deflection(q)
         if tip is None:
-            y, k = q[:, system.tree.free], system.points.index(self.point)
+            y, k = q[:, system.tree.unknowns], system.points.index(self.point)
             tip = np.asarray(system.tree.motion(y, 0 * y, 0 * y, system.inputs(time)).every_point[k].p)
         return tip, float(np.linalg.norm(half_ranges(time, tip, settings.residual_from or 0.0)))
 
@@ -283,9 +283,11 @@ class Plant:
             qdd = accelerations(tree, q, qd, inputs)
             stiffness, damping, mass = slopes(tree, q, qd, qdd, inputs)
             if self.free:
-                slope = -np.broadcast_to(np.equal(tree.free, k).astype(float)[:, None], (len(time), len(tree.free), 1))
+                slope = -np.broadcast_to(
+                    np.equal(tree.unknowns, k).astype(float)[:, None], (len(time), len(tree.unknowns), 1)
+                )
             else:
-                slope = np.empty((len(time), len(tree.free), 3))
+                slope = np.empty((len(time), len(tree.unknowns), 3))
                 for j in range(3):
                     prescribed = np.array(inputs.prescribed, dtype=complex)
                     prescribed[:, j, tree.fixed.index(k)] += 1j * STEP
@@ -300,13 +302,13 @@ class Plant:
         def moved(by: Floats | float) -> Ran:
             """The run with `by` added to its free coordinates."""
             q = np.zeros((len(ends), tree.size))
-            q[:, tree.free] = run.q[ends] + by
+            q[:, tree.unknowns] = run.q[ends] + by
             tip, residual = self._tip(system, run.time[ends], q, settings)
             return Ran(run.time[ends], tip, "done", "", residual, settings.step or np.nan)
 
         def varied() -> Iterator[tuple[Ran, Ran]]:
             """Yield the runs of each pair, half a `width` before and behind this one."""
-            still = np.zeros((len(tree.free), len(pairs)))
+            still = np.zeros((len(tree.unknowns), len(pairs)))
             changes = tangent(linear, scheme, steps, run, still, still, accelerations=False)[0]
             for change in np.moveaxis(width / 2 * changes[ends], -1, 0):
                 yield moved(-change), moved(change)

@@ -248,7 +248,7 @@ def place(
 
 def default_weights(system: System) -> dict[Measure, float]:
     """Weights by default: the tip's displacement or, if nothing can be displaced, the load."""
-    return {"tip" if len(system.tree.free) else "load": 1.0}
+    return {"tip" if len(system.tree.unknowns) else "load": 1.0}
 
 
 def default_turns(system: System) -> Ways:

@@ -178,4 +178,4 @@ def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
             ww[i, j] = ww[j, i] = product
         return Answer.of(change[1:4], change[4:7], ww)
 
-    return answer(rows[:, local.tree.free]), answer(ground.force), answer(ground.moment)
+    return answer(rows[:, local.tree.unknowns]), answer(ground.force), answer(ground.moment)

@@ -31,7 +31,7 @@ def creeping(
         return ()
     warnings = list[str]()
     for name, joint, link, q, qd in _states(system, run, inputs()):
-        values, rates = link.held(q, qd)
+        values, rates = link.held_values(q, qd)
         for kind, friction in joint.frictions.items():
             k, driven, step = joint.rate_names.index(kind), kind in joint.rates, np.diff(run.time)
             rate = rates[:, k]
@@ -73,7 +73,7 @@ def _states(
     """
     states = [run.q, run.qd]
     if inputs.prescribed is not None:
-        states = [system.tree.whole(state, inputs.prescribed[..., k, :]) for k, state in enumerate(states)]
+        states = [system.tree.complete(state, inputs.prescribed[..., k, :]) for k, state in enumerate(states)]
     names = {joint.body: name for name, joint in system.joints.items()}
     by_link = zip(*system.tree.parted(*states), strict=True)
     for body, link, (q, qd) in zip(system.order, system.tree.links, by_link, strict=True):
@@ -88,7 +88,7 @@ def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str
     for name, joint, link, q, qd in _states(system, run, inputs):
         # Rates are derivatives along time, by a complex step.
         ahead = [value + 1j * STEP * rate for value, rate in zip(q, qd, strict=True)]
-        values, further = (link.held(of_joint, qd)[0] for of_joint in (q, ahead))
+        values, further = (link.held_values(of_joint, qd)[0] for of_joint in (q, ahead))
         yield name, joint, values, further.imag / STEP
 
 

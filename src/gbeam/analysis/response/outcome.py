@@ -16,7 +16,7 @@ from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.guards.limits import BOUNDLESS
-from gbeam.mechanics.plausibility import bent_far, elastic_bend, of_first_order
+from gbeam.mechanics.plausibility import bent_far, elastic_bend, first_order_clause
 from gbeam.mechanics.structure import Structure
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.errors import ErrorEstimate, Errors
@@ -91,7 +91,7 @@ def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Fl
             first = int(np.searchsorted(time, loss.start))
             state = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
             lost = f"{structure.kind}'s {state} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
-        bent = of_first_order(elastic_bend(structure, each_leaf(lambda values: values[first], base)))
+        bent = first_order_clause(elastic_bend(structure, each_leaf(lambda values: values[first], base)))
     if bent and loss is not None and (stopped or loss.growth > GROWN):
         return Ending(NOT_KNOWN, f"whether it diverges is not known: {lost}, but {bent}")
     particles = structure.field is None  # they have no other model, nor a length that bounds their displacement

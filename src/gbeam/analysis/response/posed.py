@@ -175,7 +175,7 @@ class Posed:
 
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
-        if not len(self.system.tree.free):  # nothing is integrated
+        if not len(self.system.tree.unknowns):  # nothing is integrated
             return once(self.kept, StepErrors(0.0, 0.0, 0.0))
         return planned(self.settings, self.kept, self.limit)
 
@@ -291,7 +291,7 @@ def refuse_long(system: System, settings: ResponseSettings, step: float) -> None
         fix = f"give {settings.duration / LOADS_STEPS:.3g} s or more, or a shorter run"
         samples = settings.duration / controller.sample
         refuse_more(f"controllers.{key}.sample", "samples", samples, STEPS, 8.0 * 3 * system.tree.size, fix)
-    if system.controllers and not len(system.tree.free):
+    if system.controllers and not len(system.tree.unknowns):
         raise InputError("controllers", "have nothing to move: all motion is prescribed", "leave them out, or a rate")
     if system.controllers and settings.integrator != "gauss":
         fix = "leave it out: controllers are sampled by Gauss's method"
@@ -312,7 +312,7 @@ def first_step(subject: Subject, start: Begun, settings: ResponseSettings) -> fl
         return settings.duration / max(1, round(settings.duration / settings.step))
     system, bends = subject.system, partial(corners, subject)
     largest = settings.duration / LEAST
-    if not len(system.tree.free):
+    if not len(system.tree.unknowns):
         largest = min(largest, RIGID)
         return settings.duration / even_steps(largest, bends(largest), settings)
     _, k, _, m = Point(system.tree, start.y, start.yd, 0 * start.y, _resting(subject, settings.start)).local.slopes()

@@ -23,7 +23,7 @@ from gbeam.analysis.system.solution import reading_of
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats, Indices
 from gbeam.mechanics.fields.basis import FAMILIES
-from gbeam.mechanics.section_forces import about_the_hub, accelerations
+from gbeam.mechanics.section_forces import accelerations, add_hub_torques
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import units_of
 from gbeam.motion import Centrifuge
@@ -162,7 +162,7 @@ class Histories:
         """Loads along a body in a state at times (t,) s, of a beam on a hub with the torque on it."""
         subject = self.run.posed.subject
         loads = loads_of(subject.system.flexible[name], state, time)
-        return about_the_hub(loads, subject.motion, state.base.alpha_WB_B) if name == subject.body else loads
+        return add_hub_torques(loads, subject.motion, state.base.alpha_WB_B) if name == subject.body else loads
 
     def _loads_between(self, name: str) -> Callable[[Indices], Loads]:
         """Function that returns the loads along a body at indices of all steps of the flight."""

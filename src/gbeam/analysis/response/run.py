@@ -232,7 +232,7 @@ class Run:
     def _starting(self) -> Starting | None:
         """Start of richer systems; None where all is in equilibrium with a motion that is prescribed."""
         posed, begin = self.posed, self.posed.settings.begin
-        jointed = len(posed.system.tree.free) > sum(body.size for body in self.deforming.values())
+        jointed = len(posed.system.tree.unknowns) > sum(body.size for body in self.deforming.values())
         if not jointed and (posed.before or begin.settled):
             return None
 
@@ -300,7 +300,7 @@ class Run:
         system, run = self.posed.system, self.trajectory
         state = run.q[step], run.qd[step], 0 * run.q[step]
         local, names = Point(system.tree, *state, self.inputs(system, step)).local, local_names(system.coordinates)
-        k = [names[each] for each in local.tree.free].index(name)
+        k = [names[each] for each in local.tree.unknowns].index(name)
         return float(1 / np.linalg.inv(local.slopes()[3])[k, k])
 
     @cached_property

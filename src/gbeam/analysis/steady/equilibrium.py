@@ -73,12 +73,12 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
 
     if structure.linear:
         frozen = base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads
-        return Equilibrium(jnp.linalg.solve(*structure.coefficients.at(*frozen)[1:]), True)
+        return Equilibrium(jnp.linalg.solve(*structure.coefficients.evaluate(*frozen)[1:]), True)
     return Equilibrium(resting(structure.equations, base, loads), True)
 
 
 def expanded(structure: Structure, q: Array) -> tuple[Coefficients, Array]:
     """Coefficients of small departures from coordinates `q` (n,), and the elastic forces (n,) there."""
     if np.any(q):
-        return structure.about(q)
+        return structure.linearise(q)
     return structure.coefficients, np.zeros(structure.size)

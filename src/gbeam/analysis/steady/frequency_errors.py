@@ -251,7 +251,7 @@ def _with_more(state: SteadySystem, *, exact: bool) -> More:
     system, along = state.system, dict[str, Directions]()
     bases = state.solution.bases(judged_bodies(system))
     for name, body in system.flexible.items():
-        if len(system.flexible) == 1 and len(system.tree.free) <= body.size + 1:
+        if len(system.flexible) == 1 and len(system.tree.unknowns) <= body.size + 1:
             along[name] = True, body.counts[1] > 0, body.counts[2] > 0
     rich = richer(system, bases, exact=exact, along=along)
     return More(rich.system, rich.renamed)

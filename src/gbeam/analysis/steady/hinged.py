@@ -25,7 +25,7 @@ def turned_by_effort(system: System, joint: str, time: float) -> Drive:
     """
     ((angle, effort),) = system.joints[joint].efforts.items()
     drive = Drive(None, time, f"{joint}.{angle}", rate=0.0)
-    k = system.tree.free.tolist().index(system.coordinates.index(drive.coordinate))
+    k = system.tree.unknowns.tolist().index(system.coordinates.index(drive.coordinate))
     momentum = _momentum(system, joint, inertia_along(undeformed(system).point, k), time)
     for _ in range(MOST):
         point, rate = steady(system, drive).point, drive.rate or 0.0

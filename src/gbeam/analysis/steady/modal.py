@@ -20,7 +20,7 @@ from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signal_names import deforming
-from gbeam.mechanics.tree.steps import parameters_of_all
+from gbeam.mechanics.tree.steps import parameters_of_matrices
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.numerics.eigen import Vibrations
@@ -74,7 +74,7 @@ def modes_of(
         point_turn=turn / scale[:, None, None],
         share=state.shares(moving.modes),
         place=np.stack([frame.p for frame in state.frames]),
-        attitude=parameters_of_all(np.stack([frame.R for frame in state.frames])),
+        attitude=parameters_of_matrices(np.stack([frame.R for frame in state.frames])),
         bodies={body_name: _in_modes(state, body_name, *of_body, scale) for body_name, of_body in bodies.items()},
         instabilities=instabilities(state, moving, subject.directions),
         rigid=rigid,

@@ -24,7 +24,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.models import TORSION
-from gbeam.mechanics.section_forces import about_the_hub
+from gbeam.mechanics.section_forces import add_hub_torques
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import units_of
 from gbeam.mechanics.tree.system import System
@@ -147,7 +147,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
         by_key, _ = histories(system, y[None], point.yd[None], point.ydd[None], inputs, inertial=False)
         return {key: history[0] for key, history in by_key.items()}
 
-    begun, values = values_at(system.start[0][system.tree.free]), values_at(point.y)
+    begun, values = values_at(system.start[0][system.tree.unknowns]), values_at(point.y)
     # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
     moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
     links = zip(point.tree.links, moving.q, moving.roots, strict=True)
@@ -189,7 +189,7 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
         base, q = state_of.base, np.asarray(state_of.q)
         loads = loads_of(structure, state_of, time)
         if body == subject.body:
-            loads = about_the_hub(loads, subject.motion, base.alpha_WB_B)
+            loads = add_hub_torques(loads, subject.motion, base.alpha_WB_B)
         names = {"motion": name, "model": structure.kind, "environment": environment}
         recovery = structure.recovery
         parts = {} if recovery is None else recovery.parts(time, base, q, **names)

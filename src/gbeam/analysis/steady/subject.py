@@ -15,7 +15,7 @@ from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.one_body import HINGE, on_hub
+from gbeam.mechanics.tree.one_body import HINGE, hub_system
 from gbeam.mechanics.tree.signal_names import deforming, local_names
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -143,7 +143,7 @@ def subject_of(structure: Structure | System, motion: Motion | None) -> Subject:
     (name,) = system.order
     if motion is None or not motion.free:
         return Subject(system, motion, name, motion)
-    return Subject(on_hub(body, motion, name), None, name, motion)
+    return Subject(hub_system(body, motion, name), None, name, motion)
 
 
 def directions_of(structure: Structure, q: Floats, modes: Complex | Floats) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.mechanics.tree.equations import Inputs
-from gbeam.mechanics.tree.steps import turned_on
+from gbeam.mechanics.tree.steps import turn_steadily
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
 from gbeam.motion.protocol import Motion
@@ -62,7 +62,7 @@ class Drive:
             for column, k in enumerate(system.tree.fixed):
                 if system.coordinates[k].endswith(".e0"):  # the first of four Euler parameters
                     euler = slice(column, column + 4)
-                    prescribed[:, euler] = turned_on(before[:, euler], self.turn / fastest)
+                    prescribed[:, euler] = turn_steadily(before[:, euler], self.turn / fastest)
         return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 

@@ -17,10 +17,10 @@ from gbeam.integrate.sampled import NEAR
 from gbeam.mechanics.tree.control import (
     Feedback,
     answer_of,
+    clip_efforts,
     naming_controller,
     refuse_memory,
     signal_names,
-    within,
 )
 from gbeam.mechanics.tree.signals import carried_of, drives_of, measurable
 from gbeam.mechanics.tree.system import System
@@ -179,7 +179,7 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
         asked, after = law(parts, t, references + sign * y, state)
         if limit is None:
             return asked, asked, after
-        return asked, within(namespace(asked, limit), as_array(limit), asked), after
+        return asked, clip_efforts(namespace(asked, limit), as_array(limit), asked), after
 
     return TracedLaw(times, commanded, (parameters, controller.limit), references, start)
 

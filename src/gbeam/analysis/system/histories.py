@@ -17,7 +17,7 @@ from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.mechanics.tree.equations import Inputs, State
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.signal_names import deforming
-from gbeam.mechanics.tree.steps import parameters_of_all
+from gbeam.mechanics.tree.steps import parameters_of_matrices
 from gbeam.mechanics.tree.system import System
 from gbeam.results.parts import Base, Loads
 
@@ -69,7 +69,7 @@ def histories(
     rows, ground, acting = tree.demanded(state, inputs)
     whole = [y, yd]
     if inputs.prescribed is not None:
-        whole = [tree.whole(unknown, inputs.prescribed[:, k]) for k, unknown in enumerate(whole)]
+        whole = [tree.complete(unknown, inputs.prescribed[:, k]) for k, unknown in enumerate(whole)]
     xp = namespace(rows)
     effort = xp.zeros_like(whole[0]) if inputs.efforts is None else inputs.efforts
     effort = xp.where(np.isin(np.arange(tree.size), tree.fixed), rows, effort)
@@ -77,7 +77,7 @@ def histories(
         "place": xp.stack([frame.p for frame in frames], axis=1),
         "velocity": xp.stack([turned(frame.R, frame.v) for frame in frames], axis=1),
         "acceleration": xp.stack([frame.a for frame in frames], axis=1),
-        "attitude": xp.stack([parameters_of_all(frame.R) for frame in frames], axis=1),
+        "attitude": xp.stack([parameters_of_matrices(frame.R) for frame in frames], axis=1),
         "angular_velocity": xp.stack([frame.w for frame in frames], axis=1),
         "q": whole[0],
         "qd": whole[1],

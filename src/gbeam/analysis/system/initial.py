@@ -227,7 +227,7 @@ def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
         return displaced(body, stations, axes, wanted)
     q = np.zeros(body.size)
     for _ in range(_ITERATIONS):
-        coefficients, elastic = body.about(q)
+        coefficients, elastic = body.linearise(q)
         missing = wanted - body.displacement(q)[stations, axes]
         change = _constrained(coefficients.stiffness, -elastic, body.station_slopes(q)[stations, axes], missing)
         q = q + change

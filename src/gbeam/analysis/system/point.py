@@ -48,9 +48,9 @@ class Point:
         tree, prescribed = self.tree, self.inputs.prescribed
         states = [self.y, self.yd, self.ydd]
         if prescribed is not None:
-            states = [tree.whole(state, prescribed[k]) for k, state in enumerate(states)]
+            states = [tree.complete(state, prescribed[k]) for k, state in enumerate(states)]
         reduced, y, yd, ydd = tree.local(states[0], states[1], states[2])
-        free, inputs = reduced.free, self.inputs
+        free, inputs = reduced.unknowns, self.inputs
         if inputs.efforts is not None:
             # Efforts act on the last coordinates of a joint, as many as it has degrees of freedom.
             kept = list[Any]()
@@ -91,7 +91,7 @@ class Point:
         state, warnings, local = self.tree.motion(self.y, self.yd, self.ydd, self.inputs), list[str](), None
         for name, joint in system.joints.items():
             k = system.order.index(joint.body)
-            rates = self.tree.links[k].held(state.q[k][:-1], state.qd[k][:-1])[1] if joint.frictions else ()
+            rates = self.tree.links[k].held_values(state.q[k][:-1], state.qd[k][:-1])[1] if joint.frictions else ()
             for kind, friction in joint.frictions.items():
                 i = joint.rate_names.index(kind)
                 if kind in joint.rates or abs(rates[i]) >= STUCK:
@@ -104,7 +104,7 @@ class Point:
                 _, stiffness, _, mass = local.slopes()
                 names = local_names(system.coordinates)
                 coordinate = f"{name}.{joint.values[i]}"
-                force = friction * np.array([names[index] == coordinate for index in local.tree.free])
+                force = friction * np.array([names[index] == coordinate for index in local.tree.unknowns])
                 moved = answered(stiffness, mass, force)
                 if np.allclose(stiffness @ moved, force, atol=1e-6 * friction):
                     reach = in_words(kind, abs(float(moved @ force)) / friction)
@@ -126,7 +126,7 @@ def refuse_massless(system: System, point: Point, mass: Floats) -> None:
         return
     local = point.local  # whose names are those of degrees of freedom
     names, motion = local_names(system.coordinates), np.abs(_least_moving(local.slopes()[3])[1])
-    foremost = [names[local.tree.free[k]] for k in np.flatnonzero(motion > motion.max() / 2)]
+    foremost = [names[local.tree.unknowns[k]] for k in np.flatnonzero(motion > motion.max() / 2)]
     if all(name.rpartition(".")[0] in system.flexible for name in foremost):
         return  # shapes of a body that are nearly dependent, and have mass nevertheless
     together = ", ".join(foremost)

@@ -120,7 +120,7 @@ def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
     growing drives; and, where joints move, down the forces.
     """
     tree, inputs, state, lost = held_tree(system, drive), drive.inputs(system), None, None
-    only_bodies = len(tree.free) == sum(link.body.size for link in tree.links)
+    only_bodies = len(tree.unknowns) == sum(link.body.size for link in tree.links)
     try:
         # Where nothing but bodies gives way, a state that is not near is found along the path of growing drives.
         state = SteadySystem(system, drive, rested(system, tree, inputs, start, nearby=only_bodies))
@@ -132,7 +132,7 @@ def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
         off_path = only_bodies and not is_linear(tree)
     else:
         y = state.point.y
-        distance = np.abs(y - start[tree.free]).max(initial=0.0)
+        distance = np.abs(y - start[tree.unknowns]).max(initial=0.0)
         off_path = distance > PREDICTED * np.abs(y).max(initial=0.0) and not bends_back(tree, state.point.slopes()[1])
     if off_path:
         try:
@@ -162,7 +162,7 @@ def held_tree(system: System, drive: Drive) -> Tree:
 
 def undeformed(system: System) -> SteadySystem:
     """System at its start with undeformed bodies, all at rest on ground at rest. It need not be in equilibrium."""
-    y, still = system.start[0][system.tree.free], np.zeros(len(system.tree.free))
+    y, still = system.start[0][system.tree.unknowns], np.zeros(len(system.tree.unknowns))
     return SteadySystem(system, Drive(), Point(system.tree, y, still, still, system.inputs(np.zeros(()))))
 
 
@@ -176,10 +176,10 @@ def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) ->
         state = steady(system, drive)
     else:
         tree, inputs = held_tree(system, drive), drive.inputs(system)
-        still = np.zeros(len(tree.free))
-        point = Point(tree, system.start[0][tree.free], still, still, inputs)
+        still = np.zeros(len(tree.unknowns))
+        point = Point(tree, system.start[0][tree.unknowns], still, still, inputs)
         state = release(SteadySystem(system, drive, point), held=False)
-    point, names = state.point, [system.coordinates[k] for k in state.point.tree.free]
+    point, names = state.point, [system.coordinates[k] for k in state.point.tree.unknowns]
     bent = np.array([".q" in name for name in names])  # coordinates of bodies
     y, yd = np.array(point.y), np.array(point.yd)
     y[bent] = y[bent] if q is None else q

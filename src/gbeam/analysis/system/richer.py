@@ -91,7 +91,7 @@ def richer(
     }
     numbers = {name: k for k, name in enumerate(other.coordinates)}
     indices = np.array([numbers[renamed.get(name, name)] for name in system.coordinates], dtype=int)
-    return Richer(other, np.searchsorted(other.tree.free, indices[system.tree.free]), system, renamed)
+    return Richer(other, np.searchsorted(other.tree.unknowns, indices[system.tree.unknowns]), system, renamed)
 
 
 def linear_about_rest(system: System, bodies: Iterable[str]) -> System:

@@ -43,7 +43,7 @@ CLOSE = 1e-12  # of the coordinates: where the next correction would be smaller,
 
 def _farthest(system: System, tree: Tree, values: Any) -> str:
     """Name of the free coordinate with the largest value (n,), or of the rotation that an Euler parameter is of."""
-    name = system.coordinates[tree.free[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
+    name = system.coordinates[tree.unknowns[int(np.abs(np.nan_to_num(values, nan=np.inf)).argmax())]]
     return name if local_names([name]) == [name] else f"the rotation of {name.rpartition('.')[0]}"
 
 
@@ -125,7 +125,7 @@ def rested_together(
     One that Newton's method does not find near its start is None.
     """
     inputs, sliding, sloped = stack_trees(drives), tree.sliding, tree.frictionless
-    y, begun = starts[:, tree.free], starts[:, tree.free]
+    y, begun = starts[:, tree.unknowns], starts[:, tree.unknowns]
     still, ydd, before = np.zeros_like(y), np.zeros_like(y), np.full(len(y), np.inf)
     converged, lost = np.zeros((2, len(y)), dtype=bool)
     with np.errstate(all="ignore"):  # of states that diverge
@@ -170,10 +170,10 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
     the joints' start with undeformed bodies. Where Newton's method fails from there, the residual at the start is taken
     away in shares; a state that has to be `nearby` is not searched so. ComputationError if there is no equilibrium.
     """
-    still = np.zeros(len(tree.free))
+    still = np.zeros(len(tree.unknowns))
     if is_linear(tree):
         return _rested_at_once(Point(tree, still, still, still, inputs))
-    begun = point = Point(tree, (system.start[0] if start is None else start)[tree.free], still, still, inputs)
+    begun = point = Point(tree, (system.start[0] if start is None else start)[tree.unknowns], still, still, inputs)
     residual, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
     if not np.isfinite(residual).all():
         raise ComputationError("no equilibrium", "the forces are not finite where the search begins")
@@ -213,7 +213,7 @@ def _turns(point: Point) -> str:
 def bends_back(tree: Tree, stiffness: Floats) -> bool:
     """True if the stiffness K (n, n) holds the bodies that deform while joints are held."""
     deforms = [np.full(size, k == len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
-    kept = np.concatenate(deforms)[tree.free]
+    kept = np.concatenate(deforms)[tree.unknowns]
     return positive_definite(stiffness[kept][:, kept])
 
 
@@ -235,7 +235,7 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
     Strides are shortened where one fails, or where the bodies' stiffness is lost in a long one that ends far from its
     prediction. Where the path ends, a ComputationError says which share of the drives was reached.
     """
-    still, y = np.zeros(len(tree.free)), system.start[0][tree.free]
+    still, y = np.zeros(len(tree.unknowns)), system.start[0][tree.unknowns]
     residual, k, _, m = Point(tree, y, still, still, _eased(inputs, 0.0)).slopes()
     pull = residual - tree(y, still, still, inputs)
     # dy/dshare, along which a stride starts
@@ -262,8 +262,8 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
 
 def relaxed(system: System, tree: Tree, inputs: Inputs, start: Floats) -> Point:
     """State of rest to which a tree moves from coordinates `start` down its forces; ComputationError if to none."""
-    still = np.zeros(len(tree.free))
-    point, slope, _, converged = _newton(Point(tree, start[tree.free], still, still, inputs), still, relaxing=True)
+    still = np.zeros(len(tree.unknowns))
+    point, slope, _, converged = _newton(Point(tree, start[tree.unknowns], still, still, inputs), still, relaxing=True)
     if not converged:
         raise ComputationError("no equilibrium", "no place was found in which the system comes to rest")
     return _steady(system, point, slope)
@@ -276,7 +276,7 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     motion has no mass.
     """
     tree, (k, c, m) = point.tree, slope
-    if len(tree.free) == sum(link.body.size for link in tree.links) and bends_back(tree, k):
+    if len(tree.unknowns) == sum(link.body.size for link in tree.links) and bends_back(tree, k):
         return point  # the stiffness holds all, whatever its mass
     refuse_massless(system, point, m)
     slides, residual = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)
@@ -303,7 +303,7 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
 def _refuse_rubbing(system: System, local: Point) -> None:
     """Raise ComputationError where a coordinate with friction is accelerated: it slips, or friction holds it."""
     for index in np.flatnonzero(local.ydd).tolist():
-        name = local_names(system.coordinates)[local.tree.free[index]]
+        name = local_names(system.coordinates)[local.tree.unknowns[index]]
         if _friction(system, name):
             without = np.where(np.arange(len(local.ydd)) == index, 0.0, local.ydd)
             residual = local.tree(local.y, local.yd, without, local.inputs)
@@ -317,7 +317,7 @@ def _unheld(system: System, local: Point) -> str:
     force = force - k @ answered(k, m, force)  # without what stiffness balances
     # Of the coordinates that are accelerated together, the one on which the most force acts for its mass.
     row = int(np.abs(force / np.sqrt(np.diag(m))).argmax())
-    name = local_names(system.coordinates)[local.tree.free[row]]
+    name = local_names(system.coordinates)[local.tree.unknowns[row]]
     joint, _, kind = name.rpartition(".")
     size = f"{abs(force[row]):.4g} {unit_of_effort(kind)}"
     if joint in system.joints and kind in ("rx", "ry", "rz") and system.joints[joint].kind == "free":

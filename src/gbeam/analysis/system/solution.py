@@ -150,7 +150,7 @@ class Solution:
     def deformed(self) -> dict[str, Floats]:
         """Coordinates (t, n) of flexible bodies by name."""
         q = np.zeros((len(self.of.time), len(self.system.coordinates)))
-        q[:, self.system.tree.free] = self.of.q
+        q[:, self.system.tree.unknowns] = self.of.q
         return {name: q[:, deforming(self.system.coordinates, name)] for name in self.system.flexible}
 
     @property

@@ -91,13 +91,16 @@ def started(system: System, motion: Motion | None, time: float, initial: Initial
     bodies is as `initial` says: see :class:`gbeam.Initial`.
     """
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
-    y, yd = system.start[0][tree.free], system.start[1][tree.free]
+    y, yd = system.start[0][tree.unknowns], system.start[1][tree.unknowns]
     undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
     refuse_massless(system, undeformed, masses(tree, y[None], yd[None], undeformed.driven())[0])
     begun, bent, accelerated = _begun(system, inputs, initial)
     y, yd = begun.q, _moving(system, begun.q, yd, initial)
     if begun.adrift >= 0:
-        body, fix = system.coordinates[tree.free[begun.adrift]].rpartition(".")[0], 'begin with initial = "undeformed"'
+        body, fix = (
+            system.coordinates[tree.unknowns[begun.adrift]].rpartition(".")[0],
+            'begin with initial = "undeformed"',
+        )
         raise ComputationError("no equilibrium", f"{body} has no place to rest at the start; {fix}")
     ydd = begun.qdd
     if initial.acceleration is not None or initial.moving or not (bent | accelerated).all():  # what was held is let go
@@ -108,7 +111,7 @@ def started(system: System, motion: Motion | None, time: float, initial: Initial
 def started_traced(system: System, motion: Motion | None, time: float, initial: Initial) -> tuple[Array, Array]:
     """Coordinates and rates (n,) as `started` has them, for a system that JAX traces; NaN where no shape is at rest."""
     y = _begun(system, system.inputs(np.asarray(time), motion), initial)[0].q
-    return y, _moving(system, y, system.start[1][system.tree.free], initial)
+    return y, _moving(system, y, system.start[1][system.tree.unknowns], initial)
 
 
 def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Flags, Flags]:
@@ -118,7 +121,7 @@ def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Fla
     Bodies with displaced points take their shapes from these; what is left to bend or accelerate is solved for.
     """
     tree, moved = system.tree, on_bodies(system.flexible, initial.displaced)
-    y, yd = system.start[0][tree.free], system.start[1][tree.free]
+    y, yd = system.start[0][tree.unknowns], system.start[1][tree.unknowns]
     bent, accelerated = unknown_at_start(system, initial.state)
     if initial.acceleration is not None:  # joints are held, and what floats deforms, too
         bodies = [_of_body(system, name).any(axis=0) for name in system.flexible]
@@ -137,7 +140,7 @@ def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Fla
 
 def _of_body(system: System, name: str) -> Floats:
     """Selection matrix (m, n) of the m coordinates of a body among the free ones."""
-    return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.free).astype(float)
+    return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.unknowns).astype(float)
 
 
 def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
@@ -168,7 +171,7 @@ def unknown_at_start(system: System, initial: str) -> tuple[Flags, Flags]:
     floats is undeformed.
     """
     bent, accelerated = list[bool](), list[bool]()
-    for k in system.tree.free:
+    for k in system.tree.unknowns:
         owner, _, coordinate = system.coordinates[k].rpartition(".")
         if coordinate.startswith("q"):
             body, deforms, gives = owner, True, False

@@ -87,7 +87,7 @@ class SteadySystem(Steady):
         where only bodies move, which hold themselves.
         """
         size = sum(link.body.size for link in self.point.tree.links)
-        return 0.0 if len(self.point.tree.free) == size else RIGID
+        return 0.0 if len(self.point.tree.unknowns) == size else RIGID
 
     @property
     def base(self) -> Base | None:
@@ -152,7 +152,7 @@ class SteadySystem(Steady):
     def _held_spin(self) -> tuple[str, ...]:
         """Warn of joints that turn freely at the start and rest in this state."""
         tree, names = self.local.tree, self.names
-        rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.free]
+        rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.unknowns]
         if self.point.yd.any() or not rates.any():
             return ()
         # A joint goes on turning if no stiffness acts on it, but for that of what is adrift.
@@ -219,7 +219,7 @@ class SteadySystem(Steady):
     def adrift(self) -> Flags:
         """Flags of the local coordinates that nothing holds, so that forces accelerate them."""
         # Rotations stand for the last three of four Euler parameters.
-        kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.free]
+        kept = [not self.system.coordinates[k].endswith(".e0") for k in self.point.tree.unknowns]
         residual, *slope = self.point.slopes()
         return adrift(self.point, residual, slope)[kept]
 
@@ -236,7 +236,7 @@ class SteadySystem(Steady):
     def coordinates(self) -> Floats:
         """All coordinates (n,)."""
         whole = np.array(self.system.start[0])
-        whole[self.point.tree.free] = self.point.y
+        whole[self.point.tree.unknowns] = self.point.y
         return whole
 
     @property
@@ -255,7 +255,7 @@ class SteadySystem(Steady):
     def names(self) -> list[str]:
         """Names of the local coordinates: the system's, with rotations in place of balls' Euler parameters."""
         local = local_names(self.system.coordinates)
-        return [local[k] for k in self.local.tree.free]
+        return [local[k] for k in self.local.tree.unknowns]
 
     @property
     def accelerated(self) -> tuple[Accelerated, ...]:
@@ -368,7 +368,7 @@ class SteadySystem(Steady):
         if self.drive.coordinate:
             k = self.system.coordinates.index(self.drive.coordinate)
             if k not in tree.fixed:
-                y[np.searchsorted(tree.free, k)] += turn
+                y[np.searchsorted(tree.unknowns, k)] += turn
                 prescribed = prescribed[:, :-1] if prescribed is not None else None
         inputs = replace(inputs, prescribed=None if prescribed is None or not prescribed.size else prescribed)
         return replace(self.point, y=y, inputs=inputs)
@@ -392,8 +392,8 @@ def release(state: SteadySystem, *, held: bool) -> SteadySystem:
     inputs = fixed.inputs
     assert inputs.prescribed is not None
     pairs = zip((fixed.y, fixed.yd, fixed.ydd), inputs.prescribed, strict=True)
-    whole = [fixed.tree.whole(unknown, prescribed) for unknown, prescribed in pairs]
+    whole = [fixed.tree.complete(unknown, prescribed) for unknown, prescribed in pairs]
     others = inputs.prescribed[:, :-1]
     inputs = replace(inputs, prescribed=others if others.size else None)
-    y, yd, ydd = (state_of_all[tree.free] for state_of_all in whole)
+    y, yd, ydd = (state_of_all[tree.unknowns] for state_of_all in whole)
     return SteadySystem(state.system, state.drive, Point(tree, y, yd, ydd, inputs))

@@ -37,9 +37,9 @@ class HeldInertia:
         along, force, moment = self.free.forces(whole, rate, change, a, w, alpha)
         return projection(basis, along), force, moment
 
-    def about(self, q: Array) -> tuple[Places, Geometric | None]:
+    def expand(self, q: Array) -> tuple[Places, Geometric | None]:
         """Places about coordinates (n,), and geometric stiffness."""
-        places, bent = self.field.about(q, self.mass)
+        places, bent = self.field.expand(q, self.mass)
         return places, geometric_of(bent[0], bent[1:])
 
 

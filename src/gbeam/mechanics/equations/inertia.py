@@ -36,9 +36,10 @@ UNITS: Vector = (x, y, z)  # of the three unit vectors, in columns
 
 
 class Demanded(NamedTuple):
-    """Forces that a motion demands on the tangents t, and moments on the sections at the nodes, their resultant `total`
-    and moment `about` the root, and, as parts of these, the moments `turn` of the sections' own inertia at the nodes
-    and the forces `push` on points beside the axis.
+    """Forces that a motion demands on the tangents t, and moments on the sections at the nodes.
+
+    `total` is their resultant, `about` their moment about the root. Parts of these are the moments `turn` of the
+    sections' own inertia at the nodes, and the forces `push` on points beside the axis.
     """
 
     force: Vector
@@ -66,25 +67,25 @@ class Particles:
         field: Any = self.field
         r, rd, rdd = field.components(q, qd, qdd)
         force = scaled(self.mass, add(_relative(r, rd, rdd, w, alpha), a))
-        return field.along(q, force), _summed(force), _summed(cross(r, force))
+        return field.generalised_forces(q, force), _summed(force), _summed(cross(r, force))
 
 
 @record
 class Bodies:
-    """Rigid sections on the axis of a strain field, and particles beside it, the field's points (p,) kg.
+    """Rigid sections on the axis of a strain field, and particles of `off_axis_mass` (p,) kg beside it, its points.
 
     The places of sections are constant sums C t of the field's tangents: `pairs` CᵀmC (G, G) and `first` Cᵀm (G,), kg,
-    have their `mass`. `turning` kg m² are the sections' moments of inertia about the axis, the principal ones (3, G) or
-    those and the products xy, yz, zx (6, G), or None; `aside` (3, G) kg m their first moments, or None.
+    have their `mass`. `moments_of_inertia` kg m² are the sections' about the axis, the principal ones (3, G) or those
+    and the products xy, yz, zx (6, G), or None; `first_moments` (3, G) kg m are those of their mass, or None.
     """
 
     field: StrainField
-    beside: Array
+    off_axis_mass: Array
     mass: Array
     pairs: Array
     first: Array
-    turning: Array | None
-    aside: Array | None = None
+    moments_of_inertia: Array | None
+    first_moments: Array | None = None
 
     def forces(
         self, q: Array, qd: Array, qdd: Array, a: Vector, w: Vector, alpha: Vector
@@ -106,11 +107,11 @@ class Bodies:
         total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, base))
         about = _summed(cross(tangents.t, force))
         turn, push = NONE, NONE
-        if self.turning is not None:
-            turn = self._turning(tangents)
+        if self.moments_of_inertia is not None:
+            turn = self._rotary_moments(tangents)
             on_sections = turn
-            if self.aside is not None:
-                aside, lever = self._aside(tangents, a)
+            if self.first_moments is not None:
+                aside, lever = self._eccentric_forces(tangents, a)
                 force = add(force, mapped(aside, self.field.node_cumulative.T))
                 on_sections = add(turn, lever)
                 place = mapped(tangents.t, self.field.node_cumulative)
@@ -118,10 +119,10 @@ class Bodies:
                 about = add(about, _summed(cross(place, aside)))
             moment = mapped(on_sections, self.field.node_cumulative.T)
             about = add(about, _summed(on_sections))
-        if len(self.beside):
+        if len(self.off_axis_mass):
             r, _, rdd = self.field.carried(tangents)
-            push = scaled(self.beside, add(rdd, a))
-            node_force, node_moment = self.field.at_nodes(tangents, push)
+            push = scaled(self.off_axis_mass, add(rdd, a))
+            node_force, node_moment = self.field.nodal_forces(tangents, push)
             force, moment = add(force, node_force), add(moment, node_moment)
             total = add(total, _summed(push))
             about = add(about, _summed(cross(r, push)))
@@ -134,30 +135,30 @@ class Bodies:
         a, ω and α, (..., 3 n + 9, n + 6). Rows of ω and α about axes of the root that are not in `axes` are zero, and
         so are those of q and q̇ where these are `still`.
         """
-        shape = np.broadcast_shapes(*(each.shape[:-1] for each in (q, qd, qdd, a, w, alpha)))
+        shape = np.broadcast_shapes(*(values.shape[:-1] for values in (q, qd, qdd, a, w, alpha)))
         n, outboard = self.field.size, self.field.node_cumulative.T  # sums of all that is outboard of a node
         # The last axis are nodes or points, the one before it the columns by q, q̇, q̈, ω and α.
-        base, w, alpha = (_components(each[..., None, :]) for each in (a, w, alpha))
-        q, qd, qdd = (each[..., None, :] for each in (q, qd, qdd))
+        base, w, alpha = (_components(vectors[..., None, :]) for vectors in (a, w, alpha))
+        q, qd, qdd = (values[..., None, :] for values in (q, qd, qdd))
         tangents = self.field.moving(q, qd, qdd, base=(w, alpha))
         demand = self._demanded(tangents, base)
         fixed = Tangents(tangents.rotation, tangents.t, tangents.arm) if still else tangents
-        columns, side = self.field.columns(fixed), _Side.of(shape, n, axes, still)
+        columns, side = self.field.columns(fixed), _Side.from_axes(shape, n, axes, still)
         # The root's turn moves t, and turns sections, as a coordinate does.
         moved = side.rows(columns.place[0], cross(UNITS, tangents.t))
         change = side.changes(columns, tangents.t, tangents.td, w)
         work, resultant = _work(mapped(change, self.pairs), moved), _weighted(change, self.first)
         by_a, mass, swung = _weighted(moved, self.first), self.mass, cross(columns.place[0], demand.force)
         lever, about = mapped(swung, outboard), _summed(swung)
-        if self.turning is not None:
-            turn = self._turning_changes(tangents, columns, demand.turn, side)
+        if self.moments_of_inertia is not None:
+            turn = self._rotary_moment_slopes(tangents, columns, demand.turn, side)
             work = work + _work(turn, side.rows(columns.angle[0], UNITS))
-        if len(self.beside):
+        if len(self.off_axis_mass):
             (r, rd, _), points = self.field.carried(tangents), self.field.columns_of_points(fixed, columns)
             moved = side.rows(points.place[0], cross(UNITS, r))
-            change = scaled(self.beside, side.changes(points, r, rd, w))
+            change = scaled(self.off_axis_mass, side.changes(points, r, rd, w))
             work, resultant = work + _work(change, moved), add(resultant, _summed(change))
-            by_a, mass = add(by_a, _weighted(moved, self.beside)), mass + self.beside.sum()
+            by_a, mass = add(by_a, _weighted(moved, self.off_axis_mass)), mass + self.off_axis_mass.sum()
             arm = cross(cross(points.angle[0], tangents.arm), demand.push)
             lever = add(lever, mapped(arm, self.field.cumulative.T))
             about = add(about, _summed(arm))
@@ -177,8 +178,8 @@ class Bodies:
         value = [along, *(joined(np, vector, (*shape, 1)) for vector in (demand.total, demand.about))]
         return concatenated(value)[..., 0, :], out
 
-    def _turning_changes(self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side) -> Vector:
-        """Derivatives of the sections' torque, which :meth:`_turning` returns as `turn`, in the columns of `side`."""
+    def _rotary_moment_slopes(self, tangents: Tangents, columns: Columns, turn: Vector, side: _Side) -> Vector:
+        """Derivatives of the sections' torque `turn` (:meth:`_rotary_moments`), in the columns of `side`."""
         (angle, rate, change), rotation, w = columns.angle, tangents.rotation, tangents.w
         relative = add(w, scaled(-1.0, tangents.base[0]))
         # Derivatives of ω and α as seen in axes that turn with the sections.
@@ -192,32 +193,36 @@ class Bodies:
         )
         # In the sections' axes the torque is J α + ω × J ω, with constant J.
         w, by_w, by_alpha = (turned_back(rotation, vector) for vector in (w, by_w, by_alpha))
-        torque = add(self._about_axes(by_alpha), cross(by_w, self._about_axes(w)), cross(w, self._about_axes(by_w)))
+        torque = add(
+            self._multiply_inertia(by_alpha),
+            cross(by_w, self._multiply_inertia(w)),
+            cross(w, self._multiply_inertia(by_w)),
+        )
         return add(turned(rotation, torque), side.joined(cross(angle, turn), NONE, NONE, NONE, NONE))
 
-    def _turning(self, tangents: Tangents) -> Vector:
+    def _rotary_moments(self, tangents: Tangents) -> Vector:
         """Moments J α + ω × J ω of the sections at the nodes."""
-        inward = tangents.rotation
-        rate, change = turned_back(inward, tangents.w), turned_back(inward, tangents.alpha)
-        momentum, torque = self._about_axes(rate), self._about_axes(change)
-        return turned(inward, add(torque, cross(rate, momentum)))
+        rotation = tangents.rotation
+        rate, change = turned_back(rotation, tangents.w), turned_back(rotation, tangents.alpha)
+        momentum, torque = self._multiply_inertia(rate), self._multiply_inertia(change)
+        return turned(rotation, add(torque, cross(rate, momentum)))
 
-    def _about_axes(self, vector: Vector) -> Vector:
-        """Moments of inertia J times vectors in the sections' axes; J has three principal moments, or products, too."""
-        x, y, z, *products = self.turning  # type: ignore[misc]
+    def _multiply_inertia(self, vector: Vector) -> Vector:
+        """Multiply vectors in the sections' axes by J, which has three principal moments, or products, too."""
+        x, y, z, *products = self.moments_of_inertia  # type: ignore[misc]
         if not products:
             return times(x, vector[0]), times(y, vector[1]), times(z, vector[2])
         xy, yz, zx = products
         rows = (x, xy, zx), (xy, y, yz), (zx, yz, z)
         return turned(rows, vector)
 
-    def _aside(self, tangents: Tangents, base: Vector) -> tuple[Vector, Vector]:
+    def _eccentric_forces(self, tangents: Tangents, base: Vector) -> tuple[Vector, Vector]:
         """Forces and moments about the axis, at the nodes, of sections whose centres of mass lie off the axis.
 
         They come on top of those of the sections' mass on the axis.
         """
-        assert self.aside is not None
-        x, y, z = self.aside
+        assert self.first_moments is not None
+        x, y, z = self.first_moments
         arm = turned(tangents.rotation, (x, y, z))
         axis = add(mapped(tangents.tdd, self.field.node_cumulative), base)
         return swept(tangents.w, tangents.alpha, arm), cross(arm, axis)
@@ -225,11 +230,11 @@ class Bodies:
 
 @record
 class Inertia:
-    """Particles (p,) kg of a field, of quadrature points and bodies; `same` has the same inertia in fewer sums."""
+    """Particles (p,) kg of a field, of quadrature points and bodies; `reduced` has the same inertia in fewer sums."""
 
     field: StrainField | SeriesField | Places
     mass: Array
-    same: Particles | Bodies
+    reduced: Particles | Bodies
 
     def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Array, Array]:
         """Forces Σ m (∂r/∂q)·a on the coordinates (..., n), resultant of m a, and moment about the root (..., 3).
@@ -244,7 +249,7 @@ class Inertia:
                 return stepped[..., :-6], stepped[..., -6:-3], stepped[..., -3:]
         xp = namespace(self.mass, q, a)
         shape = np.broadcast_shapes(*(array.shape[:-1] for array in motion))
-        along, total, moment = self.same.forces(q, qd, qdd, *(_components(vector) for vector in (a, w, alpha)))
+        along, total, moment = self.reduced.forces(q, qd, qdd, *(_components(vector) for vector in (a, w, alpha)))
         along = xp.broadcast_to(along, (*shape, along.shape[-1]))
         return along, joined(xp, total, shape), joined(xp, moment, shape)
 
@@ -256,20 +261,25 @@ class Inertia:
         """
         axes = max(array.ndim for array in motion)
         real = [_common(array, axes) for array in motion]
-        if axes < 2 or not isinstance(self.same, Bodies) or self.same.aside is not None or any(x is None for x in real):
+        if (
+            axes < 2
+            or not isinstance(self.reduced, Bodies)
+            or self.reduced.first_moments is not None
+            or any(x is None for x in real)
+        ):
             return None
         q, qd, qdd, a, w, alpha = real
         turns = [k for k in range(3) if any(np.imag(vector[..., k]).any() for vector in motion[4:])]
         still = not any(map(np.iscomplexobj, motion[:2]))
-        out, slope = self.same.slopes(q, qd, qdd, a, w, alpha, turns, still=still)
+        out, slope = self.reduced.slopes(q, qd, qdd, a, w, alpha, turns, still=still)
         steps = np.moveaxis(concatenated([array.imag for array in motion]), 0, -2)
         return out + 1j * np.moveaxis(steps @ slope, -2, 0)
 
-    def about(self, q: Array) -> tuple[Places, Geometric | None]:
-        """Places about coordinates (n,), and geometric stiffness where they are of first order only (strain fields)."""
+    def expand(self, q: Array) -> tuple[Places, Geometric | None]:
+        """Expand places about coordinates (n,), with geometric stiffness where only to first order (strain fields)."""
         if not isinstance(self.field, StrainField):
-            return self.field.about(q), None
-        places, bent = self.field.about(q, self.mass)
+            return self.field.expand(q), None
+        places, bent = self.field.expand(q, self.mass)
         return places, geometric_of(bent[0], bent[1:])
 
 
@@ -279,8 +289,10 @@ def _relative(r: Vector, rd: Vector, rdd: Vector, w: Vector, alpha: Vector) -> V
 
 
 class _Side(NamedTuple):
-    """Layout of columns of derivatives side by side, with respect to q, q̇, q̈ (n each), ω and α (`axes` of the root's
-    axes each, whose unit vectors are `units`), at instants of a shape; where it is `still`, without q and q̇.
+    """Layout of derivatives in columns side by side, at instants of a `shape`: by q, q̇, q̈ (n each), ω and α.
+
+    ω and α are taken about `axes` of the root's axes, whose unit vectors are `units`. Columns by q and q̇ are left out
+    where it is `still`.
     """
 
     shape: tuple[int, ...]
@@ -290,8 +302,8 @@ class _Side(NamedTuple):
     still: bool
 
     @classmethod
-    def of(cls, shape: tuple[int, ...], n: int, axes: list[int], still: bool) -> _Side:
-        """The layout with ω and α about some of the axes 0, 1 and 2 of the root."""
+    def from_axes(cls, shape: tuple[int, ...], n: int, axes: list[int], still: bool) -> _Side:
+        """Make the layout with ω and α about some of the axes 0, 1 and 2 of the root."""
         x, y, z = (row[axes, None] if k in axes else 0 for k, row in enumerate(np.eye(3)))
         return cls(shape, n, len(axes), (x, y, z), still)
 

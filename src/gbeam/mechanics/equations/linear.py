@@ -53,7 +53,7 @@ class LoadTerms:
         """Resultant at the root and forces on the coordinates under load components (..., loads, 6), (..., 6 + n)."""
         xp, n = namespace(self.constant, q, values), q.shape[-1]
         flat = xp.reshape(values, (*values.shape[:-2], -1))
-        constant, slope = (xp.reshape(each, (flat.shape[-1], -1)) for each in (self.constant, self.slope))
+        constant, slope = (xp.reshape(part, (flat.shape[-1], -1)) for part in (self.constant, self.slope))
         by_coordinate = xp.reshape(flat @ slope, (*flat.shape[:-1], -1, n))
         return flat @ constant + (by_coordinate * q[..., None, :]).sum(axis=-1)
 
@@ -129,10 +129,10 @@ class Coefficients:
         rows = [[yy + zz, -xy, -zx], [-xy, zz + xx, -yz], [-zx, -yz, xx + yy]]
         return xp.stack([xp.stack(row) for row in rows])
 
-    def at(
+    def evaluate(
         self, a_WO_B: Array, w_WB_B: Array, alpha_WB_B: Array, load_values: Array | None = None
     ) -> tuple[Array, Array, Array]:
-        """C + G, K and F, (..., n, n) and (..., n), at base motions (..., 3) under load components (..., loads, 6)."""
+        """C + G, K and F, (..., n, n) and (..., n), at base motions (..., 3) and load components (..., loads, 6)."""
         return self.terms.evaluate(self.features(a_WO_B, w_WB_B, alpha_WB_B, load_values))
 
     def frozen(
@@ -140,10 +140,10 @@ class Coefficients:
     ) -> tuple[Array, Array]:
         """C + G and K, (..., n, n), that decide whether the motion of an instant is stable.
 
-        They are those of :meth:`at`, without the skew part of α's stiffness: it feeds no energy.
+        They are those of :meth:`evaluate`, without the skew part of α's stiffness: it feeds no energy.
         """
         xp = namespace(self.k_al, alpha_WB_B)
-        velocity, stiffness, _ = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
+        velocity, stiffness, _ = self.evaluate(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         skew = (self.k_al - xp.swapaxes(self.k_al, 1, 2)) / 2
         return velocity, stiffness - xp.tensordot(alpha_WB_B, skew, axes=1)
 
@@ -183,7 +183,7 @@ class Coefficients:
         load_values: Array | None = None,
     ) -> Array:
         """Residual on a base whose motion is given, (..., n); zero where the equations hold."""
-        velocity, stiffness, force = self.at(a_WO_B, w_WB_B, alpha_WB_B, load_values)
+        velocity, stiffness, force = self.evaluate(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         internal = velocity @ qd[..., None] + stiffness @ q[..., None]
         residual = qdd @ self.mass + internal[..., 0] - force
         return residual if self.bending is None else residual + self.bending.forces(q)
@@ -193,8 +193,8 @@ class Coefficients:
         linear = q @ self.stiffness
         return linear if self.bending is None else linear + self.bending.forces(q)
 
-    def about(self, q: Array) -> Coefficients:
-        """Coefficients of small departures from coordinates (n,)."""
+    def linearise(self, q: Array) -> Coefficients:
+        """Return the coefficients of small departures from coordinates (n,)."""
         if self.bending is None:
             return self
         return replace(self, stiffness=self.stiffness + self.bending.stiffness(q), bending=None)
@@ -248,9 +248,9 @@ def coefficients(
         mass=xp.einsum("aaij->ij", pairs),
         damping=zero if damping is None else damping,
         stiffness=stiffness,
-        gyroscopic=2 * _once(xp, pairs),
-        k_ww=_twice(xp, pairs) + extra.ww,
-        k_al=_once(xp, pairs) + extra.al,
+        gyroscopic=2 * _spin_up_coefficients(xp, pairs),
+        k_ww=_spin_coefficients(xp, pairs) + extra.ww,
+        k_al=_spin_up_coefficients(xp, pairs) + extra.al,
         k_a=extra.a,
         **inertial_forces(sums, moments),
         rigid=rigid,
@@ -263,7 +263,7 @@ def inertial_forces(sums: Array, moments: Array) -> dict[str, Array]:
     Σ m ∂r_a/∂q (3, n) and the moments Σ m r_b ∂r_a/∂q (3, 3, n), a first.
     """
     xp = namespace(sums, moments)
-    return {"f_ww": -_twice(xp, moments), "f_al": -_once(xp, moments), "f_a": -sums}
+    return {"f_ww": -_spin_coefficients(xp, moments), "f_al": -_spin_up_coefficients(xp, moments), "f_a": -sums}
 
 
 def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:
@@ -279,7 +279,7 @@ def _summed(xp: Any, left: Array, right: Array) -> Array:
     sums = left.T @ right
     if xp is not np:
         return sums
-    sizes = (np.sqrt(np.einsum("ki,ki->i", each, each)) for each in (left, right))
+    sizes = (np.sqrt(np.einsum("ki,ki->i", columns, columns)) for columns in (left, right))
     return np.where(np.abs(sums) > NOTHING * np.multiply.outer(*sizes), sums, 0.0)
 
 
@@ -287,10 +287,10 @@ def geometric_of(even: Array, growing: Array) -> Geometric:
     """Geometric stiffness by the sums Σ m H, (3, n, n), and Σ m r0_b H, (3, 3, n, n), b first."""
     xp = namespace(even, growing)
     of_place = xp.swapaxes(growing, 0, 1)
-    return Geometric(even, _once(xp, of_place), _twice(xp, of_place))
+    return Geometric(even, _spin_up_coefficients(xp, of_place), _spin_coefficients(xp, of_place))
 
 
-def _twice(xp: Any, x: Array) -> Array:
+def _spin_coefficients(xp: Any, x: Array) -> Array:
     """Coefficients (3, 3, ...) of ω ωᵀ in a·(ω × (ω × b)) = (a·ω)(b·ω) − a·b ω², symmetric in the two rates, where
     x[a, b, ...] holds the products of components of a and b.
     """
@@ -299,7 +299,7 @@ def _twice(xp: Any, x: Array) -> Array:
     return 0.5 * (x + xp.swapaxes(x, 0, 1)) - ones * trace
 
 
-def _once(xp: Any, x: Array) -> Array:
+def _spin_up_coefficients(xp: Any, x: Array) -> Array:
     """Coefficients (3, ...) of α in a·(α × b), where x[a, b, ...] holds the products of components of a and b."""
     return xp.tensordot(xp.asarray(EPSILON), x, axes=((0, 2), (0, 1)))
 

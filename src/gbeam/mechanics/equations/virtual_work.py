@@ -36,7 +36,7 @@ class LoadWork:
         moment N m at the root, base axes, (..., 3).
         """
         force, moment = self.forces(self.field.rotation(q), values)
-        along = self.field.along(q, split(force), split(moment))
+        along = self.field.generalised_forces(q, split(force), split(moment))
         return along, *self.resultant(self.field.positions(q), force, moment)
 
     @staticmethod
@@ -64,7 +64,7 @@ class LoadWork:
         xp = namespace(rotation, self.weight)
         return xp.where(xp.asarray(self.follower)[:, None, None], rotation, xp.eye(3))
 
-    def about(self, count: int, q: Array) -> LoadTerms:
+    def linearise(self, count: int, q: Array) -> LoadTerms:
         """Generalised forces of the unit components of all `count` loads, to first order about coordinates (n,)."""
         places, rotation, turns = self.field.curved(q)
         return self.terms(count, places, rotation, turns.first, turns.second)
@@ -129,7 +129,7 @@ class LoadHistory:
         xp = namespace(*(part for pair in parts for part in pair))
         return xp.stack([xp.concatenate(pair, axis=-1) for pair in parts], axis=-2)
 
-    def held(self, time: float) -> LoadHistory:
+    def freeze(self, time: float) -> LoadHistory:
         """Return constant loads, those of a time, s."""
         return LoadHistory(tuple((constant(force(time)), constant(moment(time))) for force, moment in self.profiles))
 

@@ -81,7 +81,7 @@ class Measures:
                 moment = moment + vector_rate[..., section, axis, :, None, None] * unit
             turn = tuple(moment[..., axis, :, :] for axis in range(3))
         alike = _for_each_row(tangents)
-        return self.sections.pulled(alike, *self.sections.at_nodes(alike, push, turn))
+        return self.sections.pulled(alike, *self.sections.nodal_forces(alike, push, turn))
 
     def bent_rows(self, q: Array) -> Array:
         """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
@@ -300,7 +300,7 @@ class HeldStrainField:
         """Field of these points followed by the points of `axis`, a field of the same beam's axis."""
         return replace(self, free=self.free.joined(axis.free))
 
-    def at_rest(self) -> Places:
+    def expand_rest(self) -> Places:
         """Places about the beam at rest, to first order."""
         rest = np.zeros(self.size)
         return Places(self.positions(rest), self.slopes(rest))
@@ -329,10 +329,10 @@ class HeldStrainField:
         """Rotations (..., p, 3, 3) of the points' sections, their angular velocities and accelerations, base axes."""
         return self.free.turning(*self.conditions.motion(q, qd, qdd))
 
-    def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
+    def generalised_forces(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
         """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
         whole = self.conditions.lifted(q)
-        return self.conditions.projected(whole, self.free.along(whole, push, turn))
+        return self.conditions.projected(whole, self.free.generalised_forces(whole, push, turn))
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
@@ -345,10 +345,10 @@ class HeldStrainField:
         slopes, angles = self.free.jacobians(whole)
         return slopes @ phi, angles @ phi
 
-    def about(self, q: Array, mass: Array) -> tuple[Places, Array]:
+    def expand(self, q: Array, mass: Array) -> tuple[Places, Array]:
         """Places about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q², (4, 3, n, n)."""
         whole = self.conditions.lifted(q)
-        places, bent = self.free.about(whole, mass)
+        places, bent = self.free.expand(whole, mass)
         phi = self.conditions.basis(whole)
         curved = self.conditions.curvature(whole, phi)
         weights = np.concatenate([mass[None], mass * places.r0.T])

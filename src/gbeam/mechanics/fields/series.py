@@ -161,7 +161,7 @@ class SeriesField:
 
     # --- forces come back
 
-    def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
+    def generalised_forces(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
         """Generalised forces (..., n) of forces `push` and moments `turn` on the points, base axes, (..., p) each.
 
         The series is gone through from its highest order to its lowest.
@@ -181,7 +181,7 @@ class SeriesField:
             pulls = [add(cross(k, pull), moment) for pull, moment in zip(inward, strained, strict=True)]
             on_arms = strained = [NONE] * 3
         out = self.exact.inward(Tangents(axes, NONE), on_strain, on_turn)
-        return out if all(map(absent, turn)) else out + self.exact.along(q, NONE, turn)
+        return out if all(map(absent, turn)) else out + self.exact.generalised_forces(q, NONE, turn)
 
     # --- how it changes
 
@@ -195,12 +195,12 @@ class SeriesField:
         """∂r/∂q of the points, and the angles by which their sections turn with q, (..., p, 3, n) each."""
         return self.slopes(q), self.exact.jacobians(q)[1]
 
-    def at_rest(self) -> Places:
+    def expand_rest(self) -> Places:
         """Places about the beam at rest, to first order."""
         rest = np.zeros(self.size)
         return Places(self.positions(rest), self.slopes(rest))
 
-    def about(self, q: Array) -> Places:
+    def expand(self, q: Array) -> Places:
         """Positions of the points near coordinates (n,), to second order."""
         xp, unit = namespace(self.exact.strains, self.arm, q), np.eye(self.size)
         pairs = unit[:, None] + unit  # D²(a, b) = ½ (D²(a + b, a + b) − D²(a, a) − D²(b, b))
@@ -212,7 +212,7 @@ class SeriesField:
     def curved(self, q: Array) -> tuple[Places, Array, Turns]:
         """Places about coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
         _, rotation, turns = self.exact.curved(q)
-        return self.about(q), rotation, turns
+        return self.expand(q), rotation, turns
 
 
 def _matrices(rotation: Rotation) -> Array:

@@ -121,7 +121,7 @@ class StrainField:
             self, cumulative=cumulative, frames=replace(self.frames, points=points, angles=angles), offset=offset
         )
 
-    def at_rest(self) -> Places:
+    def expand_rest(self) -> Places:
         """Places about the beam at rest, to first order."""
         rest = np.zeros(self.size)
         return Places(self.positions(rest), self.slopes(rest))
@@ -249,12 +249,12 @@ class StrainField:
         parts = [part @ self.strains[k] for k, part in enumerate(inward) if self.shaped[k] and not absent(part)]
         return sum(parts[1:], start=parts[0])
 
-    def along(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
+    def generalised_forces(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
         """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
         tangents = self.tangents(q)
-        return self.pulled(tangents, *self.at_nodes(tangents, push, turn))
+        return self.pulled(tangents, *self.nodal_forces(tangents, push, turn))
 
-    def at_nodes(self, tangents: Tangents, push: Vector, turn: Vector = NONE) -> tuple[Vector, Vector]:
+    def nodal_forces(self, tangents: Tangents, push: Vector, turn: Vector = NONE) -> tuple[Vector, Vector]:
         """Forces on t and moments on the sections at the nodes that do the work of forces and moments on the points."""
         turn = add(turn, cross(tangents.arm, push))
         return mapped(push, self.cumulative.T), mapped(turn, self.cumulative.T)
@@ -345,7 +345,7 @@ class StrainField:
         whole = xp.stack(out, axis=1)
         return whole + xp.swapaxes(whole, -1, -2)
 
-    def about(self, q: Array, mass: Array) -> tuple[Places, Array]:
+    def expand(self, q: Array, mass: Array) -> tuple[Places, Array]:
         """Places about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q², (4, 3, n, n)."""
         xp = namespace(self.strains, self.offset, q, mass)
         r = self.positions(q)

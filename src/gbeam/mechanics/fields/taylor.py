@@ -29,11 +29,11 @@ class Places:
         second = None if self.second is None else basis.T @ self.second @ basis
         return Places(self.r0, self.first @ basis, second)
 
-    def at_rest(self) -> Places:
+    def expand_rest(self) -> Places:
         """Return the polynomials themselves: they are about the beam at rest already."""
         return self
 
-    def about(self, q: Any) -> Places:
+    def expand(self, q: Any) -> Places:
         """The polynomials about coordinates (n,)."""
         return Places(self.positions(q), self.slopes(q), self.second)
 
@@ -68,7 +68,7 @@ class Places:
         r, rd, rdd = (split(each) for each in self.paths(q, qd, qdd))
         return r, rd, rdd
 
-    def along(self, q: Any, push: Vector) -> Any:
+    def generalised_forces(self, q: Any, push: Vector) -> Any:
         """Generalised forces (..., n) of forces on the points, by components (..., p): the slopes at q, transposed,
         times the forces.
         """
@@ -159,9 +159,9 @@ class Polynomials:
         change = xp.einsum("...pabi,...i->...pab", (self.turns.slopes(q) + self.turns.first) / 2, q)
         return (xp.eye(3) if rest is None else rest) + change
 
-    def along(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
+    def generalised_forces(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
         """Generalised forces (..., n) of forces `push` and moments `turn` on the points, by components (..., p)."""
-        straight = self.places.along(q, push)
+        straight = self.places.generalised_forces(q, push)
         if all(map(absent, turn)):
             return straight
         # δR = [δθ]× R, so that ½ [M]× R : δR = M·δθ. The columns of [M]× R are M × those of R.
@@ -178,7 +178,7 @@ class Polynomials:
 
     def curved(self, q: Any) -> tuple[Places, Any, Turns]:
         """Places about coordinates (n,) to second order, rotations (p, 3, 3), and the derivatives of these."""
-        return self.places.about(q), self.rotation(q), Turns(self.turns.slopes(q), self.turns.second)
+        return self.places.expand(q), self.rotation(q), Turns(self.turns.slopes(q), self.turns.second)
 
 
 class Expanded:

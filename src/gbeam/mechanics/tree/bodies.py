@@ -24,7 +24,7 @@ from gbeam.mechanics.fields.taylor import EPSILON, Polynomials
 from gbeam.mechanics.fields.vectors import split
 from gbeam.mechanics.tree.contraction import Contraction, RigidRows, Roots, contraction, rigid_rows
 from gbeam.mechanics.tree.frames import Frame, Relative, Wrench, cross, turned, turned_back
-from gbeam.mechanics.tree.steps import rotation_by_vector, tangent_back
+from gbeam.mechanics.tree.steps import component_moments, rotation_by_vector
 
 THIN = 1e-9  # of the largest moment of inertia: less is none
 
@@ -57,7 +57,7 @@ class Body(Protocol):
         """Forces (..., n) on the coordinates and wrench at the root that a motion demands under load components."""
         ...
 
-    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+    def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         """Forces (..., n) on the coordinates that do the work of wrenches on points."""
         ...
 
@@ -119,7 +119,7 @@ class Rigid:
         terms = self.mass, self.mass * self.centre, self.inertia + self.mass * parallel_axis
         return replace(self, contraction=rigid_rows(*terms, reach))
 
-    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+    def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         return q
 
     def stored(self, q: Array) -> Array:
@@ -155,12 +155,12 @@ class StrainedPoints:
         """Places (..., p, 3) m in the root's axes, by coordinates (..., n)."""
         return self.field.positions(q)
 
-    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+    def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         at_root = [(turned(by.R, wrench.force), turned(by.R, wrench.moment)) for _, by, wrench in wrenches]
         stacks = (xp.stack(xp.broadcast_arrays(*vectors), axis=-2) for vectors in zip(*at_root, strict=True))
         forces, moments = map(split, stacks)
-        return self.field[np.array([acting.point for acting in wrenches])].along(q, forces, moments)
+        return self.field[np.array([acting.point for acting in wrenches])].generalised_forces(q, forces, moments)
 
 
 @record
@@ -184,7 +184,7 @@ class PolynomialPoints:
         slope = self.first + _times(self.second, q) / 2
         return self.r0 + namespace(slope, q).einsum("...pai,...i->...pa", slope, q)
 
-    def along(self, q: Array, wrenches: list[Acting]) -> Array:
+    def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         """Generalised forces (..., n) of wrenches that act at the points."""
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         points = np.array([acting.point for acting in wrenches])
@@ -193,13 +193,13 @@ class PolynomialPoints:
         slope = self.first[points] + xp.einsum("paij,...j->...pai", self.second[points], q)
         turning = self.turn[points] + xp.einsum("paij,...j->...pai", self.bend[points], q)
         phi = xp.einsum("...pai,...i->...pa", (self.turn[points] + turning) / 2, q)
-        on_vector = tangent_back(phi, moment)
+        on_vector = component_moments(phi, moment)
         return (slope * force[..., None] + turning * on_vector[..., None]).sum(axis=(-3, -2))
 
 
 def _point(k: int, path: tuple[Array, Array, Array], R: Array, w: Array, alpha: Array) -> Relative:
     """Motion of the point k, by the motions of all (..., p)."""
-    r, rd, rdd = (each[..., k, :] for each in path)
+    r, rd, rdd = (vectors[..., k, :] for vectors in path)
     return Relative(r, rd, rdd, R[..., k, :, :], w[..., k, :], alpha[..., k, :])
 
 
@@ -227,8 +227,8 @@ class FieldBody:
         along, *wrench = self.equations.demanded(q, qd, qdd, root.a, root.w, root.alpha, loads)
         return along, Wrench(*wrench)
 
-    def along(self, q: Array, wrenches: list[Acting]) -> Array:
-        return self.points.along(q, wrenches)
+    def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
+        return self.points.generalised_forces(q, wrenches)
 
     def stored(self, q: Array) -> Array:
         return self.equations.strain_energy(q)
@@ -309,21 +309,22 @@ class LinearBody:
         return along, Wrench(force, moment)
 
     def _contracted(
-        self, by: Contraction, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None
+        self, constants: Contraction, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None
     ) -> tuple[Array, Wrench]:
         """Forces and wrench as :meth:`demanded` returns them, computed by contracted constants."""
-        c, (along, rows) = self.coefficients, by.demanded(q, qd, qdd, root.a, root.w, root.alpha)
+        c, (along, rows) = self.coefficients, constants.demanded(q, qd, qdd, root.a, root.w, root.alpha)
         if c.bending is not None:
             along = along + c.bending.forces(q)
         if loads is not None and c.loads is not None:
             forces = c.loads.generalised(q, loads)
-            along, rows = along - forces[..., 6:], rows - forces[..., :6] @ by.loads
-        wrench = rows @ by.places
+            along, rows = along - forces[..., 6:], rows - forces[..., :6] @ constants.loads
+        wrench = rows @ constants.places
         return along, Wrench(wrench[..., :3], wrench[..., 3:])
 
     def contracted(self, carrier: Roots, root: Roots) -> LinearBody:
-        """Contract it by the motion of its `carrier`, which tells that of its root; itself where that is in doubt, or
-        would not be faster.
+        """Contract the body by the motion of its `carrier`, which determines that of its root.
+
+        The body itself is returned where that is in doubt, or would not be faster.
         """
         reach = None if self.carried is not None or not self.size else carrier.reach(root)
         constants = None if reach is None else contraction(self.coefficients, reach, felt=self.hub_force)
@@ -340,8 +341,8 @@ class LinearBody:
         Sd, h = turned(Si, qd), turned(hi, qd)
         return S, Si, Sd, J, Ji, h, hi
 
-    def along(self, q: Array, wrenches: list[Acting]) -> Array:
-        return self.points.along(q, wrenches)
+    def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
+        return self.points.generalised_forces(q, wrenches)
 
     def stored(self, q: Array) -> Array:
         return ((q @ self.coefficients.stiffness) * q).sum(axis=-1) / 2
@@ -371,14 +372,14 @@ def carried(c: Coefficients) -> Array | None:
     """
     mass, S, J = c.rigid[0], c.rigid[1:4], c.second_moment
     if not is_traced(J):
-        least, _, most = np.linalg.eigvalsh(_about_centre(mass, S, J))
+        least, _, most = np.linalg.eigvalsh(_central_inertia(mass, S, J))
         if not least > THIN * most:
             return None
     v, w = _mean_motion(mass, S, J, c.f_a.T, c.f_al.T)
     return c.f_a.T @ v.T + c.f_al.T @ w.T
 
 
-def _about_centre(mass: Array, S: Array, J: Array) -> Array:
+def _central_inertia(mass: Array, S: Array, J: Array) -> Array:
     """Moments of inertia (..., 3, 3) about the centre of mass, by the first moment S and J about the root."""
     square = (S * S).sum(axis=-1)[..., None, None] * np.eye(3)
     return J - (square - S[..., :, None] * S[..., None, :]) / mass
@@ -390,7 +391,7 @@ def _mean_motion(mass: Array, S: Array, J: Array, push: Array, spin: Array) -> t
     The body has `mass` and, about the root, the moments S and J. `push` is its momentum, `spin` the angular momentum
     about the root.
     """
-    centre, inertia = S / mass, _about_centre(mass, S, J)
+    centre, inertia = S / mass, _central_inertia(mass, S, J)
     x, y, z = (inertia[..., k, :] for k in range(3))  # rows; the inverse is by their vector products
     at_centre, yz = spin - cross(centre, push), cross(y, z)
     w = at_centre[..., :1] * yz + at_centre[..., 1:2] * cross(z, x) + at_centre[..., 2:] * cross(x, y)

@@ -35,8 +35,10 @@ Pivots = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Reach:
-    """Components by which a carrier's motion is told, its `features` of (ω ωᵀ, α, a), `spin` of ω and `twists` of
-    (velocity, angular velocity); and those of a root on it as sums of these, by rows (k, 12), (k, 3) and (k, 6).
+    """Components that determine a carrier's motion, and that of a root on it as sums of these.
+
+    They are its `features` of (ω ωᵀ, α, a), its `spin` of ω and its `twists` of (velocity, angular velocity). The rows
+    `of_features` (k, 12), `of_spin` (k, 3) and `of_twists` (k, 6) give the root's.
     """
 
     features: Pivots
@@ -49,8 +51,9 @@ class Reach:
 
 @dataclass(frozen=True)
 class Roots:
-    """Samples of a frame's motion, (s, k) each: features (ω ωᵀ, α, a), ω, and what the unknown accelerations add to the
-    acceleration and angular acceleration, which is a twist.
+    """Samples of a frame's motion, (s, k) each: `features` (ω ωᵀ, α, a), the `spin` ω, and `twists`.
+
+    Twists are what unknown accelerations of coordinates add to the frame's acceleration and angular acceleration.
     """
 
     features: Floats
@@ -58,20 +61,21 @@ class Roots:
     twists: Floats
 
     @classmethod
-    def of(cls, frame: Any, pushed: Any) -> Roots:
-        """Samples of frames, and of the same ones under other accelerations of the unknown coordinates."""
-        w, alpha, a = (_cleared(each) for each in (frame.w, frame.alpha, frame.a))
+    def from_frames(cls, frame: Any, pushed: Any) -> Roots:
+        """Sample a `frame`, and the same one, `pushed` by other accelerations of the unknown coordinates."""
+        w, alpha, a = (_cleared(vectors) for vectors in (frame.w, frame.alpha, frame.a))
         squares = np.stack([w[:, i] * w[:, j] for i, j in PAIRS], axis=-1)
         twists = [_cleared(pushed.a - frame.a), _cleared(pushed.alpha - frame.alpha)]
         return cls(np.concatenate([squares, alpha, a], axis=-1), w, np.concatenate(twists, axis=-1))
 
     def reach(self, root: Roots) -> Reach | None:
-        """Components that tell this motion, and that of a `root` by these; None where they are in doubt."""
-        spans = [_span(getattr(self, name), getattr(root, name)) for name in ("features", "spin", "twists")]
-        if any(span is None for span in spans):
+        """Find components that determine this motion, and that of a `root` by these; None where they are in doubt."""
+        features = _span(self.features, root.features)
+        spin = _span(self.spin, root.spin)
+        twists = _span(self.twists, root.twists)
+        if features is None or spin is None or twists is None:
             return None
-        pivots, rows = zip(*spans, strict=True)
-        return Reach(*pivots, *rows)
+        return Reach(features[0], spin[0], twists[0], features[1], spin[1], twists[1])
 
 
 def _cleared(vectors: Floats) -> Floats:
@@ -105,12 +109,17 @@ def _span(samples: Floats, targets: Floats) -> tuple[Pivots, Floats] | None:
     return tuple(pivots), np.where(parts <= ROUNDING * largest, 0.0, rows)
 
 
-def _of_root(features: Pivots, a: Array, w: Array, alpha: Array) -> Array:
+def _root_features(features: Pivots, a: Array, w: Array, alpha: Array) -> Array:
     """One, and the components `features` of a root's (ω ωᵀ, α, a), (..., 1 + f)."""
     parts: list[Any] = [1.0]
     for k in features:
-        i, j = PAIRS[k] if k < 6 else (0, 0)
-        parts.append(w[..., i] * w[..., j] if k < 6 else alpha[..., k - 6] if k < 9 else a[..., k - 9])
+        if k < 6:
+            i, j = PAIRS[k]
+            parts.append(w[..., i] * w[..., j])
+        elif k < 9:
+            parts.append(alpha[..., k - 6])
+        else:
+            parts.append(a[..., k - 9])
     return joined(namespace(a, w), tuple(parts), np.broadcast_shapes(a.shape[:-1], w.shape[:-1]))
 
 
@@ -125,7 +134,7 @@ class RigidRows:
 
     def wrench(self, a: Array, w: Array, alpha: Array) -> Array:
         """Force and moment (..., 6)."""
-        return _of_root(self.features, a, w, alpha) @ self.rows
+        return _root_features(self.features, a, w, alpha) @ self.rows
 
 
 def rigid_rows(mass: Any, S: Floats, J: Floats, reach: Reach) -> RigidRows:
@@ -140,7 +149,7 @@ def _factors(twists: Floats) -> tuple[Floats, Floats, Floats]:
     """Factors of mass (t, 12), first moment (t, 12, 3) and moments of inertia (t, 12, 3, 3) in the work along `twists`
     (t, 6) of the wrench that each of twelve features demands of a rigid body.
     """
-    by_mass, by_S, by_J = (np.tensordot(twists, each, 1) for each in _unit_factors())
+    by_mass, by_S, by_J = (np.tensordot(twists, factors, 1) for factors in _unit_factors())
     return by_mass, by_S, by_J
 
 
@@ -164,9 +173,11 @@ def _unit_factors() -> tuple[Floats, Floats, Floats]:
 
 @record
 class Contraction:
-    """Constants of a linear body's equations on a root whose features, angular velocity and twists are told by the
-    components `features` of (ω ωᵀ, α, a), `spin` of ω and `twists` of (velocity, angular velocity). What q moves is
-    `constant` (k n) + q `of_q` (n, k n), what q̇ moves q̇ `of_qd`; `rigid` (f, t) are factors of 1 and the features.
+    """Constants of a linear body's equations on a root whose motion is told by few components.
+
+    These are the f − 1 `features` of (ω ωᵀ, α, a), the s − 1 components `spin` of ω and the t `twists` of (velocity,
+    angular velocity). `of_q` and `of_qd` (n, k n) hold k matrices (n, n) side by side, by which q and q̇ are multiplied;
+    `constant` (k n,) is what q = 0 has in place of q `of_q`. `rigid` (f, t) are factors of 1 and the features.
     """
 
     mass: Array
@@ -185,34 +196,36 @@ class Contraction:
 
         Each constant is contracted once with q or q̇; what results is multiplied by the features of the root's motion.
         """
-        xp, n, rows = namespace(q, qd, qdd, a, w, self.of_q), q.shape[-1], len(self.twists)
-        of_root = _of_root(self.features, a, w, alpha)
-        spin = joined(xp, (1.0, *(w[..., k] for k in self.spin)), w.shape[:-1])
-        f, s = of_root.shape[-1], spin.shape[-1]
-        # One product with q and one with q̇ hold all blocks: first those of the features, then those of the spin.
+        xp, n, t = namespace(q, qd, qdd, a, w, self.of_q), q.shape[-1], len(self.twists)
+        features = _root_features(self.features, a, w, alpha)  # φ, (..., f), the first of which is 1
+        spin = joined(xp, (1.0, *(w[..., k] for k in self.spin)), w.shape[:-1])  # 1 and w, (..., s)
+        f, s = features.shape[-1], spin.shape[-1]
+        # One product with q and one with q̇ hold all blocks (..., n): of each feature one for the forces along the
+        # coordinates and one for each twist; then, of q, one for each twist by q̈, and by each w and q̇.
         by_q, by_qd = q @ self.of_q + self.constant, qd @ self.of_qd
-        end = f * (1 + rows) * n
-        by_root = by_q[..., :end].reshape(*by_q.shape[:-1], f, (1 + rows) * n)
-        by_spin = by_qd[..., : s * n].reshape(*by_qd.shape[:-1], s, n)
-        summed = xp.einsum("...f,...fk->...k", of_root, by_root)
-        along = qdd @ self.mass + summed[..., :n] + xp.einsum("...k,...kn->...n", spin, by_spin)
-        if not rows:
-            return along, summed[..., :0]
-        whirled = by_q[..., end + rows * n :].reshape(*by_q.shape[:-1], s - 1, rows * n)
-        drawn = by_qd[..., s * n :] + xp.einsum("...k,...kn->...n", spin[..., 1:], whirled)
-        products = (summed[..., n:], q), (by_q[..., end : end + rows * n], qdd), (drawn, qd)
-        return along, of_root @ self.rigid + sum(_dots(slopes, rates, rows) for slopes, rates in products)
+        end = f * (1 + t) * n
+        feature_blocks = by_q[..., :end].reshape(*by_q.shape[:-1], f, (1 + t) * n)
+        spin_blocks = by_qd[..., : s * n].reshape(*by_qd.shape[:-1], s, n)
+        by_features = xp.einsum("...f,...fk->...k", features, feature_blocks)
+        along = qdd @ self.mass + by_features[..., :n] + xp.einsum("...k,...kn->...n", spin, spin_blocks)
+        if not t:
+            return along, by_features[..., :0]
+        gyro_blocks = by_q[..., end + t * n :].reshape(*by_q.shape[:-1], s - 1, t * n)
+        by_rates = by_qd[..., s * n :] + xp.einsum("...k,...kn->...n", spin[..., 1:], gyro_blocks)
+        products = (by_features[..., n:], q), (by_q[..., end : end + t * n], qdd), (by_rates, qd)
+        return along, features @ self.rigid + sum(_dots(slopes, rates, t) for slopes, rates in products)
 
 
 def _dots(left: Array, right: Array, rows: int) -> Array:
-    """Products (..., rows) of each of some vectors side by side, (..., rows n), with one (..., n)."""
+    """Products (..., rows) of vectors side by side, (..., rows n), with one vector (..., n)."""
     xp, vectors = namespace(left, right), left.reshape(*left.shape[:-1], rows, right.shape[-1])
     return xp.einsum("...jn,...n->...j", vectors, right)
 
 
 def contraction(c: Coefficients, reach: Reach, *, felt: bool) -> Contraction | None:
     """Contract coefficients with what a body's root can do; None where that is so much that it would not be faster.
-    Where deforming is not `felt`, the root feels no rates of the coordinates.
+
+    Unless deforming is `felt`, the root feels no rates of the coordinates.
     """
     phi, W, T = reach.of_features, reach.of_spin, reach.of_twists
     n, f, s, t = c.size, 1 + len(phi), len(W), len(T)
@@ -221,8 +234,8 @@ def contraction(c: Coefficients, reach: Reach, *, felt: bool) -> Contraction | N
     # By the twelve features: symmetric products of ω, α and a.
     unit = np.eye(3)
     products = np.array([(np.outer(unit[i], unit[j]) + np.outer(unit[j], unit[i])) / (1 + (i == j)) for i, j in PAIRS])
-    stiffness = _by(phi, np.concatenate([np.tensordot(products, c.k_ww, 2), c.k_al, c.k_a]))
-    force = _by(phi, np.concatenate([np.tensordot(products, c.f_ww, 2), c.f_al, c.f_a]))
+    stiffness = _combine(phi, np.concatenate([np.tensordot(products, c.k_ww, 2), c.k_al, c.k_a]))
+    force = _combine(phi, np.concatenate([np.tensordot(products, c.f_ww, 2), c.f_al, c.f_a]))
     # Derivatives of the first moment of mass, of the moments of inertia and of the momentum.
     S, S1, S2, J, J1, J2, h, h1 = (
         c.rigid[1:4],
@@ -238,15 +251,15 @@ def contraction(c: Coefficients, reach: Reach, *, felt: bool) -> Contraction | N
     rigid = c.rigid[0] * by_mass + by_S @ S + np.einsum("tkab,ab->tk", by_J, J)
     slope = by_S @ S1 + np.einsum("tkab,abn->tkn", by_J, J1)
     bend = np.einsum("tka,anm->tknm", by_S, S2) + np.einsum("tkab,abnm->tknm", by_J, J2)
-    rigid, slope, bend = (_by(phi, each.swapaxes(0, 1)) for each in (rigid, slope, bend))
+    rigid, slope, bend = (_combine(phi, values.swapaxes(0, 1)) for values in (rigid, slope, bend))
     V, turns = T[:, :3], T[:, 3:]
     of_mass = np.tensordot(V, S2, 1) + np.tensordot(turns, h1, 1)
     # Of each component of ω and twist: 2 (v × e)·Ṡ + Ω·J̇ e + (Ω × e)·h.
-    across, whirl = (np.einsum("abc,tb->cta", EPSILON, each) for each in (V, turns))
+    across, whirl = (np.einsum("abc,tb->cta", EPSILON, vectors) for vectors in (V, turns))
     gyro = 2 * across @ S1 + np.einsum("ta,akn->ktn", turns, J1) + whirl @ h
     gyro_slope = 2 * np.tensordot(across, S2, 1) + np.einsum("ta,aknm->ktnm", turns, J2) + np.tensordot(whirl, h1, 1)
     share = 1.0 if felt else 0.0
-    gyro, gyro_slope, drawn = share * _by(W, gyro), share * _by(W, gyro_slope), share * of_mass
+    gyro, gyro_slope, drawn = share * _combine(W, gyro), share * _combine(W, gyro_slope), share * of_mass
     by_feature = np.zeros((f, 1 + t, n, n))
     by_feature[0, 0], by_feature[1:, 0], by_feature[1:, 1:] = c.stiffness, stiffness, bend / 2
     constant = np.zeros((f, 1 + t, n))
@@ -254,7 +267,7 @@ def contraction(c: Coefficients, reach: Reach, *, felt: bool) -> Contraction | N
     return Contraction(
         mass=c.mass,
         of_q=_columns(by_feature, of_mass, gyro_slope),
-        of_qd=_columns(c.damping, _by(W, c.gyroscopic), drawn),
+        of_qd=_columns(c.damping, _combine(W, c.gyroscopic), drawn),
         constant=np.concatenate([constant.ravel(), (V @ S1 + turns @ h).ravel(), gyro.ravel()]),
         rigid=np.concatenate([np.zeros((1, t)), rigid]),
         loads=T.T,
@@ -265,7 +278,7 @@ def contraction(c: Coefficients, reach: Reach, *, felt: bool) -> Contraction | N
     )
 
 
-def _by(rows: Floats, values: Floats) -> Floats:
+def _combine(rows: Floats, values: Floats) -> Floats:
     """Sums (k, ...) of values (m, ...) by rows (k, m)."""
     return np.tensordot(rows, values, 1)
 
@@ -273,4 +286,4 @@ def _by(rows: Floats, values: Floats) -> Floats:
 def _columns(*matrices: Array) -> Array:
     """Matrix (n, k n) by which a row q has products M q with matrices (..., n, n), one after the other."""
     n = matrices[0].shape[-1]
-    return np.ascontiguousarray(np.concatenate([each.reshape(-1, n) for each in matrices]).T)
+    return np.ascontiguousarray(np.concatenate([matrix.reshape(-1, n) for matrix in matrices]).T)

@@ -249,7 +249,7 @@ class Feedback(Value):
         efforts : (..., m)
             What the law asks for.
         """
-        return efforts if self.limit is None else np.asarray(within(np, np.asarray(self.limit), efforts))
+        return efforts if self.limit is None else np.asarray(clip_efforts(np, np.asarray(self.limit), efforts))
 
 
 def answer_of(controller: Feedback, t: Any, measured: Any, state: Any) -> Any:
@@ -284,7 +284,7 @@ def refuse_memory(controller: Feedback, t: float, measured: Floats, state: Any, 
 
 
 def _law_of(controller: Feedback) -> str:
-    """A law, by what it drives."""
+    """Name a law by what it drives."""
     return f"the law of {', '.join(controller.drive)}"
 
 
@@ -312,8 +312,8 @@ def _alike(one: Any, other: Any) -> bool:
     return not numbers or np.array_equal(*values, equal_nan=True)
 
 
-def within(xp: Any, limit: Any, efforts: Any) -> Any:
-    """Efforts (..., m) cut at a limit; one of exactly that size keeps its derivative under JAX."""
+def clip_efforts(xp: Any, limit: Any, efforts: Any) -> Any:
+    """Return efforts (..., m) cut at a limit; one of exactly that size keeps its derivative under JAX."""
     return xp.where(abs(efforts) <= limit, efforts, xp.copysign(limit, efforts))
 
 
@@ -329,7 +329,8 @@ def naming_controller(name: str) -> Iterator[None]:
 
 def signal_names(controllers: Mapping[str, Feedback], kind: Literal["drive", "measure"]) -> tuple[str, ...]:
     """Names of all that controllers drive or measure, as ``controller: signal``."""
-    return tuple(f"{name}: {each}" for name, controller in controllers.items() for each in getattr(controller, kind))
+    signals = [(name, getattr(controller, kind)) for name, controller in controllers.items()]
+    return tuple(f"{name}: {signal}" for name, names in signals for signal in names)
 
 
 Law = tuple[Floats, Floats, Floats, Floats]
@@ -368,7 +369,7 @@ def pid(
         parts.append(
             (np.full((1, 1), -rate), np.full((1, 1), rate), np.full((1, 1), -kd * rate), np.full((1, 1), kd * rate))
         )
-    return reduce(_beside, parts)
+    return reduce(_add_laws, parts)
 
 
 def lead_lag(
@@ -399,18 +400,18 @@ def notch(
 
 def in_series(laws: Sequence[Law]) -> Law:
     """Law of laws in series, the first of which takes the measurements."""
-    return reduce(_after, laws)
+    return reduce(_chain_laws, laws)
 
 
-def _beside(one: Law, other: Law) -> Law:
-    """Law whose efforts are the sum of those of two laws."""
+def _add_laws(one: Law, other: Law) -> Law:
+    """Return the law whose efforts are the sum of those of two laws, each x₊ = A x + B y with the effort C x + D y."""
     (a, b, c, d), (e, f, g, h) = one, other
     zero = np.zeros((len(a), len(e)))
     return np.block([[a, zero], [zero.T, e]]), np.concatenate([b, f]), np.concatenate([c, g], axis=1), d + h
 
 
-def _after(inner: Law, outer: Law) -> Law:
-    """Law of two in series: `outer` takes the efforts of `inner`."""
+def _chain_laws(inner: Law, outer: Law) -> Law:
+    """Return the law of two in series: `outer` takes the efforts of `inner`."""
     (a, b, c, d), (e, f, g, h) = inner, outer
     zero = np.zeros((len(a), len(e)))
     return np.block([[a, zero], [f @ c, e]]), np.concatenate([b, f @ d]), np.concatenate([h @ c, g], axis=1), h @ d

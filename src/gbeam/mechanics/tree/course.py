@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, is_traced, namespace
 from gbeam.mechanics.tree.frames import cross
-from gbeam.mechanics.tree.steps import parameter_rates, parameters_after, parameters_of_vector
+from gbeam.mechanics.tree.steps import composed_parameters, parameter_rates, parameters_of_vector
 from gbeam.motion.profiles.profile import Profile
 
 STRIDE, PIECES, HALVINGS = 1e-3, 2000, 8  # s, and pieces of the whole, between knots; and how often these are halved
@@ -35,7 +35,7 @@ class Course:
         # Pieces are halved until their halves agree with them.
         for _ in range(0 if traced else HALVINGS):
             middle = (times[1:] + times[:-1]) / 2
-            halves = parameters_after(self._turned(times[:-1], middle), self._turned(middle, times[1:]))
+            halves = composed_parameters(self._turned(times[:-1], middle), self._turned(middle, times[1:]))
             coarse = np.abs(halves - turns).max(axis=-1) > EXACT
             if not coarse.any():
                 break
@@ -46,10 +46,10 @@ class Course:
         since = xp.concatenate([np.array([[1.0, 0.0, 0.0, 0.0]]), turns])
         reach = 1
         while reach < len(since):  # products of 2, 4, 8, ... pieces at once
-            since = xp.concatenate([since[:reach], parameters_after(since[:-reach], since[reach:])])
+            since = xp.concatenate([since[:reach], composed_parameters(since[:-reach], since[reach:])])
             reach *= 2
         inverse = since[zero] * np.array([1.0, -1.0, -1.0, -1.0])
-        self.times, self.attitudes = times, parameters_after(parameters_after(as_array(start), inverse), since)
+        self.times, self.attitudes = times, composed_parameters(composed_parameters(as_array(start), inverse), since)
 
     def __call__(self, t: Any) -> tuple[Array, Array, Array]:
         """Euler parameters (..., 4), and their first and second derivatives by time, at times `t` (...), s."""
@@ -59,7 +59,7 @@ class Course:
         xp = namespace(times, self.attitudes)
         last = xp.maximum(xp.searchsorted(xp.asarray(self.times), times, side="right") - 1, 0)
         turn = self._turned(xp.asarray(self.times)[last], times)
-        e = parameters_after(xp.asarray(self.attitudes)[last], turn)
+        e = composed_parameters(xp.asarray(self.attitudes)[last], turn)
         rate = parameter_rates(e, w)
         return e, rate, parameter_rates(rate, w) + parameter_rates(e, change)
 

@@ -26,8 +26,9 @@ STUCK = 3 * SLIP  # rate below which friction has less than 0.995 of its size
 
 @record
 class Holder:
-    """Springs and stops that act on the values (h,) of a joint (:meth:`Step.held`), and dampers and friction that act
-    on their rates. The springs have no force at the values `ease`; the stops begin at `low` and `high` and have the
+    """Springs and stops on the values (h,) of a joint (:meth:`Step.held_values`), dampers and friction on their rates.
+
+    The springs have no force at the values `ease`; the stops begin at `low` and `high` and have the
     stiffness `stop`; `coupling` (h, h) is the stiffness between values, or None; friction is smooth below rates of the
     size `slip`.
     """
@@ -50,12 +51,12 @@ class Holder:
     @property
     def holds(self) -> bool:
         """True if there is any force, apart from the coupling's."""
-        return any((each != 0).any() for each in (self.stiffness, self.damping, self.friction, self.stop))
+        return any((values != 0).any() for values in (self.stiffness, self.damping, self.friction, self.stop))
 
     def forces(self, values: Array, rates: Array) -> tuple[Array, Array]:
         """Forces (..., h) of springs and stops on the values, and of dampers and friction on the rates."""
         xp = namespace(values, rates, self.stiffness)
-        pull = self.stiffness * (values - self.ease) + self.stop * self._beyond(values)
+        pull = self.stiffness * (values - self.ease) + self.stop * self._excess(values)
         if self.coupling is not None:
             pull = pull + (values - self.ease) @ self.coupling
         return pull, self.damping * rates + self.friction * xp.tanh(rates / self.slip)
@@ -64,9 +65,9 @@ class Holder:
         """Energy (...) of the springs and stops, J."""
         moved = values - self.ease
         pull = self.stiffness * moved if self.coupling is None else self.stiffness * moved + moved @ self.coupling
-        return (pull * moved + self.stop * self._beyond(values) ** 2).sum(axis=-1) / 2
+        return (pull * moved + self.stop * self._excess(values) ** 2).sum(axis=-1) / 2
 
-    def _beyond(self, q: Array) -> Array:
+    def _excess(self, q: Array) -> Array:
         """Signed distance (..., h) of values beyond their stops, zero between these."""
         xp = namespace(q, self.low)
         return xp.maximum(q - self.high, 0.0) - xp.maximum(self.low - q, 0.0)
@@ -97,26 +98,26 @@ class Link:
 
     def stored(self, q: list[Array], qd: list[Array]) -> Array:
         """Energy (...) of the joint's springs and stops, J, by coordinates of its steps and rates."""
-        return self.holder.stored(self.held(q, qd)[0])
+        return self.holder.stored(self.held_values(q, qd)[0])
 
-    def held(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
+    def held_values(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
         """Values (..., h) on which the joint's springs act, and their rates, by coordinates and rates of its steps."""
-        values, rates = zip(*self._held(q, qd), strict=True)
+        values, rates = zip(*self._values_by_step(q, qd), strict=True)
         return concatenated(values), concatenated(rates)
 
     def holding(self, q: list[Array], qd: list[Array]) -> list[Array]:
         """Forces (..., k) of springs, dampers, friction and stops on the coordinates of each step."""
-        held = self._held(q, qd)
-        values, rates = (concatenated(list(parts)) for parts in zip(*held, strict=True))
+        by_step = self._values_by_step(q, qd)
+        values, rates = (concatenated(list(parts)) for parts in zip(*by_step, strict=True))
         pull, drag = self.holder.forces(values, rates)
-        sizes = [part.shape[-1] for part, _ in held]
+        sizes = [part.shape[-1] for part, _ in by_step]
         spans = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
         steps = zip(self.steps, q, spans, strict=True)
         return [step.pushed(coordinates, pull[..., span], drag[..., span]) for step, coordinates, span in steps]
 
-    def _held(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
-        """Values and rates, as :meth:`held`, of each step."""
-        return [step.held(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
+    def _values_by_step(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
+        """Values and rates, as :meth:`held_values`, of each step."""
+        return [step.held_values(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
 
 
 @record
@@ -169,10 +170,11 @@ class State:
         xp, frame = namespace(*self.q[0], self._ground.a), self._ground
         R = None if frame.R is None else xp.broadcast_to(frame.R, (*self.shape, 3, 3))
         vectors = frame.p, frame.v, frame.w, frame.a, frame.alpha
-        return Frame(R, *(None if each is None else xp.broadcast_to(each, (*self.shape, 3)) for each in vectors))
+        spread = (None if vector is None else xp.broadcast_to(vector, (*self.shape, 3)) for vector in vectors)
+        return Frame(R, *spread)
 
-    def moved(self, body: int) -> tuple[list[Any], Frame]:
-        """Motions of the steps of a body's joint, and the motion of its root; computed once for each body."""
+    def step_motions(self, body: int) -> tuple[list[Any], Frame]:
+        """Motions of the steps of a body's joint, and the motion of the body's root; computed once."""
         if body not in self._moved:
             link, steps = self.links[body], list[Any]()
             frame = self.ground if link.parent < 0 else self.point(link.parent, link.on)
@@ -185,12 +187,12 @@ class State:
 
     def point(self, body: int, on: int) -> Frame:
         """Motion of a body's point `on`, −1 its root."""
-        return self.moved(body)[1] if on < 0 else self.points_of(body)[on]
+        return self.step_motions(body)[1] if on < 0 else self.points_of(body)[on]
 
     @property
     def roots(self) -> list[Frame]:
         """Motions of the roots of all bodies."""
-        return [self.moved(body)[1] for body in range(len(self.links))]
+        return [self.step_motions(body)[1] for body in range(len(self.links))]
 
     def relative(self, body: int) -> list[Any]:
         """Motions of a body's points in its root's axes."""
@@ -202,7 +204,7 @@ class State:
     def points_of(self, body: int) -> list[Frame]:
         """Motions of a body's points, its root the last."""
         if body not in self._points:
-            _, root = self.moved(body)
+            _, root = self.step_motions(body)
             self._points[body] = [*(root.carried(by) for by in self.relative(body)), root]
         return self._points[body]
 
@@ -211,7 +213,7 @@ class State:
         """Positions (..., p, 3), m, of the points of all bodies, in the order of :attr:`every_point`."""
         places = list[Array]()
         for body, link in enumerate(self.links):
-            root = self.moved(body)[1]
+            root = self.step_motions(body)[1]
             relative = link.body.places_of(self.q[body][-1])
             points = root.p[..., None, :] + relative @ namespace(root.R).swapaxes(root.R, -1, -2)
             places += [points, root.p[..., None, :]]
@@ -252,7 +254,7 @@ class Tree:
         return replace(self, links=tuple(replace(link, holder=changed(link.holder)) for link in self.links))
 
     @property
-    def free(self) -> Array:
+    def unknowns(self) -> Array:
         """Indices of the coordinates that are unknown."""
         return np.delete(np.arange(self.size), self.fixed)
 
@@ -271,7 +273,7 @@ class Tree:
                 slid, first = slid and isinstance(step, Slide | Placed), first + step.size
             flags += [False] * link.body.size
             only_slid[body] = slid and not link.body.size
-        return np.array(flags, dtype=bool)[self.free]
+        return np.array(flags, dtype=bool)[self.unknowns]
 
     @property
     def turning(self) -> list[Array]:
@@ -286,7 +288,7 @@ class Tree:
             for step in link.steps:
                 free_hinge = isinstance(step, Rotation) and step.size == 1 and not link.holder.holds
                 if slid and (free_hinge or (isinstance(step, Ball | Turning) and not link.holder.stop.any())):
-                    flags.append((first <= self.free) & (self.free < first + step.size))
+                    flags.append((first <= self.unknowns) & (self.unknowns < first + step.size))
                 slid, first = slid and isinstance(step, Slide | Placed), first + step.size
             only_slid[body], first = slid and not link.body.size, first + link.body.size
         return [joint for joint in flags if joint.any()]
@@ -300,12 +302,12 @@ class Tree:
             end = ends[-1]
         return [[[y[..., span] for span in link_spans] for link_spans in spans] for y in coordinates]
 
-    def whole(self, y: Array, prescribed: Array) -> Array:
-        """All coordinates (..., n) from the unknown and the prescribed ones."""
+    def complete(self, y: Array, prescribed: Array) -> Array:
+        """Merge the unknown and the prescribed coordinates to all, (..., n)."""
         xp = namespace(y, prescribed)
-        order = np.argsort(np.concatenate([self.free, np.array(self.fixed)]))
+        order = np.argsort(np.concatenate([self.unknowns, np.array(self.fixed)]))
         shape = np.broadcast_shapes(y.shape[:-1], prescribed.shape[:-1])
-        parts = [xp.broadcast_to(each, (*shape, each.shape[-1])) for each in (y, prescribed)]
+        parts = [xp.broadcast_to(values, (*shape, values.shape[-1])) for values in (y, prescribed)]
         return xp.concatenate(parts, axis=-1)[..., order]
 
     def motion(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> State:
@@ -314,7 +316,9 @@ class Tree:
 
     def _state(self, y: Array, yd: Array, ydd: Array, inputs: Inputs, ground: Frame) -> State:
         if inputs.prescribed is not None:
-            y, yd, ydd = (self.whole(each, inputs.prescribed[..., k, :]) for k, each in enumerate((y, yd, ydd)))
+            y = self.complete(y, inputs.prescribed[..., 0, :])
+            yd = self.complete(yd, inputs.prescribed[..., 1, :])
+            ydd = self.complete(ydd, inputs.prescribed[..., 2, :])
         return State(self, y, yd, ydd, ground)
 
     def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
@@ -325,7 +329,7 @@ class Tree:
         elif all(force.follower for force in self.forces):  # nothing asks where the frames are
             ground = Frame(None, None, None, ground.w, ground.a, ground.alpha)
         rows = self._demanded(self._state(y, yd, ydd, inputs, ground), inputs, ground=False)[0]
-        return rows[..., self.free] if self.fixed else rows
+        return rows[..., self.unknowns] if self.fixed else rows
 
     def contracted(self, ground: Frame | None = None) -> Tree:
         """Return the same equations of the unknown coordinates with fewer sums.
@@ -339,7 +343,7 @@ class Tree:
         y, yd, ydd = random.normal(size=(3, SAMPLES, self.size))
         # The same states with other accelerations of the unknown coordinates.
         other_ydd, ground_motion = ydd.copy(), random.normal(size=(3, SAMPLES, 3))
-        other_ydd[:, self.free] = random.normal(size=(SAMPLES, len(self.free)))
+        other_ydd[:, self.unknowns] = random.normal(size=(SAMPLES, len(self.unknowns)))
         rests = False
         if ground is not None:
             motion = np.stack([ground.w, ground.a, ground.alpha])
@@ -355,8 +359,8 @@ class Tree:
                 carrier = link.parent if isinstance(self.links[link.parent].body, Rigid) else k
             body = link.body
             if isinstance(body, LinearBody | Rigid):
-                carrier_roots = Roots.of(*(state.moved(carrier)[1] for state in states))
-                own_roots = Roots.of(*(state.moved(k)[1] for state in states))
+                carrier_roots = Roots.from_frames(*(state.step_motions(carrier)[1] for state in states))
+                own_roots = Roots.from_frames(*(state.step_motions(k)[1] for state in states))
                 body = body.contracted(carrier_roots, own_roots)
             loose = link.loose or not (link.holder.holds or link.holder.coupling is not None)
             if rests and link.parent < 0:
@@ -397,12 +401,12 @@ class Tree:
         rows: list[Array] = []
         on_ground = Wrench(xp.zeros(3), xp.zeros(3))
         for k in reversed(range(len(self.links))):
-            link, (steps, root) = self.links[k], state.moved(k)
+            link, (steps, root) = self.links[k], state.step_motions(k)
             *joint, body = zip(state.q[k], state.qd[k], state.qdd[k], strict=True)
             along, wrench = link.body.demanded(*body, root, inputs.loads[k])
             if on_points[k]:
-                along = along + link.body.along(body[0], on_points[k])
-            wrench = sum((each.wrench.brought(each.by) for each in on_points[k]), start=wrench)
+                along = along + link.body.generalised_forces(body[0], on_points[k])
+            wrench = sum((acting.wrench.brought(acting.by) for acting in on_points[k]), start=wrench)
             wrench = sum(on_roots[k], start=wrench)
             on_steps: list[Array] = []
             # No row is asked of what lies between the ground and the first step with coordinates.
@@ -412,8 +416,8 @@ class Tree:
                 wrench = wrench if i < idle else wrench.brought(by)
             if on_steps:
                 if not link.loose:
-                    held = link.holding([each[0] for each in joint], [each[1] for each in joint])
-                    on_steps = [demand + force for demand, force in zip(on_steps, held, strict=True)]
+                    holding = link.holding([q for q, _, _ in joint], [qd for _, qd, _ in joint])
+                    on_steps = [demand + force for demand, force in zip(on_steps, holding, strict=True)]
                 along = concatenated([*on_steps, along])
             rows.insert(0, along)
             if link.parent < 0:
@@ -429,7 +433,7 @@ class Tree:
         """
         total_momentum = total_spin = kinetic = elastic = potential = 0.0
         for k, link in enumerate(self.links):
-            q, qd, (_, root) = state.q[k], state.qd[k], state.moved(k)
+            q, qd, (_, root) = state.q[k], state.qd[k], state.step_motions(k)
             energy, impulse = momentum(link.body, q[-1], qd[-1], root)
             push, spin = turned(root.R, impulse.force), turned(root.R, impulse.moment)
             total_momentum, total_spin = total_momentum + push, total_spin + spin + cross(root.p, push)

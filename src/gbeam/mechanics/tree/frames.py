@@ -93,7 +93,7 @@ class Frame:
         if self.w is not None and self.a is not None:
             return self
         zero = np.zeros((*shape, 3))
-        w, a, alpha = (zero if each is None else each for each in (self.w, self.a, self.alpha))
+        w, a, alpha = (zero if vector is None else vector for vector in (self.w, self.a, self.alpha))
         return Frame(self.R, self.p, self.v, w, a, alpha)
 
 

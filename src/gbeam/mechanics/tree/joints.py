@@ -26,9 +26,9 @@ from gbeam.mechanics.tree.steps import (
     Rotation,
     Slide,
     Step,
-    about,
     parameter_rates,
     parameters_of_vector,
+    rotation_matrix,
 )
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
@@ -69,20 +69,23 @@ def _kinds_of(key: str, arguments: Mapping[str, Any]) -> Kinds:
     """Kinds of what a key says of a joint, by its arguments."""
     name: Any = str(arguments.get("kind"))
     kind = KINDS.get(name)
-    return {} if kind is None else {each: kind_of_value(key, each) for each in kind.names_in(key)}
+    return {} if kind is None else {name: kind_of_value(key, name) for name in kind.names_in(key)}
 
 
 def _kinds_of_coupling(arguments: Mapping[str, Any]) -> Kinds:
     """Kinds of the stiffness between two coordinates, by both names."""
     pairs = arguments.get("coupling")
     names = pairs if isinstance(pairs, Mapping) else ()
-    return {pair: COUPLINGS[sum(each in SLIDES for each in str(pair).split("-")[:2])] for pair in names}
+    slides = {pair: sum(end in SLIDES for end in str(pair).split("-")[:2]) for pair in names}
+    return {pair: COUPLINGS[count] for pair, count in slides.items()}
 
 
 class Kind(NamedTuple):
-    """A kind of joint: its motion in words, the function that makes its steps of its axes (k, 3), the names of their
-    coordinates, the number k of axes, the names of its rates where they differ from those, and the directions along
-    which it gives way where these have a spring.
+    """A kind of joint.
+
+    It has its motion in `words`, the function that makes its `steps` of its axes (k, 3), the `names` of their
+    coordinates and the number k of `axes`. `rates` are the names of its rates where they differ from the coordinates',
+    `sprung` the directions along which it gives way where these have a spring.
     """
 
     words: str
@@ -254,7 +257,7 @@ class Joint(Value):
         if self.kind == "fixed":  # its springs' directions are its coordinates
             names = values = tuple(direction for direction in DIRECTIONS if direction in self._sprung)
         assign(self, coordinates=names, values=values, rate_names=kind.rates or names)
-        assign(self, holder=self._held(), steps=self._chained(), start=self._started())
+        assign(self, holder=self._holder(), steps=self._chained(), start=self._started())
         assign(self, start_rate=self._moving(), rates=self._prescribed())
         assign(self, efforts=self._driven())
 
@@ -288,7 +291,7 @@ class Joint(Value):
 
     def _chained(self) -> tuple[Step, ...]:
         """Chain of elementary motions from the point that holds the joint to the root of the body."""
-        placed = Placed(as_array(self.at), about(self.turn))
+        placed = Placed(as_array(self.at), rotation_matrix(self.turn))
         axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
         steps = KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
         if self.kind == "fixed" and self.coordinates:
@@ -326,7 +329,7 @@ class Joint(Value):
             return False
         return any(name in _TURN for key in ("stiffness", "stops") for name in self._named(key, getattr(self, key)))
 
-    def _held(self) -> Holder:
+    def _holder(self) -> Holder:
         """Springs, dampers, friction and stops. InputError if one is impossible, or does nothing without another."""
         values = {name: self._numbers(name, getattr(self, name)) for name in _EASY}
         for name in ("stiffness", "damping", "friction", "stop_stiffness"):
@@ -337,8 +340,8 @@ class Joint(Value):
             k = self.values.index(coordinate)
             ends = array(f"stops.{coordinate}", pair)
             if ends.shape != (2,) or not ends[0] < ends[1]:
-                unit, of_unit = ("m", ends) if coordinate in SLIDES else ("deg", np.degrees(ends))
-                listed = ", ".join(f"{end:.6g} {unit}" for end in np.ravel(of_unit))
+                unit, ends_in_unit = ("m", ends) if coordinate in SLIDES else ("deg", np.degrees(ends))
+                listed = ", ".join(f"{end:.6g} {unit}" for end in np.ravel(ends_in_unit))
                 raise InputError(f"stops.{coordinate}", f"is {listed}", "give the lowest and the highest coordinate")
             low[k], high[k] = ends
             if not (is_jax(values["stop_stiffness"]) or values["stop_stiffness"][k] > 0):
@@ -384,10 +387,10 @@ class Joint(Value):
     def frictions(self) -> dict[str, float]:
         """Friction, N or N m, by the names of the rates that have any."""
         friction = self._numbers("friction", self.friction)
-        return {name: float(each) for name, each in zip(self.rate_names, friction, strict=True) if each > 0}
+        return {name: float(force) for name, force in zip(self.rate_names, friction, strict=True) if force > 0}
 
     @property
-    def first(self) -> dict[str, Any]:
+    def start_values(self) -> dict[str, Any]:
         """Values at the start, by name."""
         return dict(zip(self.values, self._numbers("initial", self.initial), strict=True))
 
@@ -433,7 +436,7 @@ class Joint(Value):
     def _profiles(self, where: str, values: Any) -> dict[str, Profile]:
         """Profiles of a key's values by name."""
         named = self._named(where, values)
-        return {name: as_profile(f"{where}.{name}", each) for name, each in named.items()}
+        return {name: as_profile(f"{where}.{name}", value) for name, value in named.items()}
 
     def _names(self, key: str) -> tuple[str, ...]:
         """Names of the rates or values that a key takes."""
@@ -441,7 +444,7 @@ class Joint(Value):
 
     def _numbers(self, where: str, named: Any) -> Array:
         """Numbers (h,) of a key in the order of its names, zero where `named` has none."""
-        values = {name: finite(f"{where}.{name}", each) for name, each in self._named(where, named).items()}
+        values = {name: finite(f"{where}.{name}", value) for name, value in self._named(where, named).items()}
         return as_array([values.get(name, 0.0) for name in self._names(where)])
 
     def _named(self, where: str, values: Any) -> dict[str, Any]:

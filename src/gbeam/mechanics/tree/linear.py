@@ -30,7 +30,7 @@ def is_linear(tree: Tree) -> bool:
     force acts, on a point that deforming moves. There is at least one equation.
     """
     deforming = [link.body for link in tree.links if link.body.size]
-    only_deforming = 0 < len(tree.free) == sum(body.size for body in deforming)
+    only_deforming = 0 < len(tree.unknowns) == sum(body.size for body in deforming)
     if not only_deforming or not all(_constant(body) for body in deforming):  # asked first: it is cheap
         return False
     load_points = [(link.parent, link.on) for link in tree.links if link.parent >= 0]
@@ -46,7 +46,7 @@ def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
     of_joint = np.concatenate(
         [np.full(size, k < len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
     )
-    of_joint = of_joint[tree.free]
+    of_joint = of_joint[tree.unknowns]
     bends = any(link.holder.bends for link in tree.links)
     if holds_jax(tree, inputs) or bends or of_joint.all() or not of_joint.any():
         return None
@@ -103,10 +103,10 @@ def _roots(tree: Tree, drive: Drive, t: Array) -> Roots:
     """Motions at times (t,) of the roots of the bodies that deform, and their loads."""
     inputs: Inputs = drive(t)
     ground = replace(inputs.ground, R=None, p=None, v=None)
-    zeros = np.zeros((*np.shape(t), len(tree.free)))
+    zeros = np.zeros((*np.shape(t), len(tree.unknowns)))
     state = tree.motion(zeros, zeros, zeros, replace(inputs, ground=ground))
     bodies = [k for k, link in enumerate(tree.links) if link.body.size]
-    return tuple((state.moved(k)[1], inputs.loads[k]) for k in bodies)
+    return tuple((state.step_motions(k)[1], inputs.loads[k]) for k in bodies)
 
 
 def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, Array]:
@@ -115,7 +115,9 @@ def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, A
         link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size
     ]
     roots = _roots(tree, lambda _: inputs, np.zeros(()))
-    parts = [c.at(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(body_coefficients, roots, strict=True)]
+    parts = [
+        c.evaluate(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(body_coefficients, roots, strict=True)
+    ]
     damping, stiffness, force = zip(*parts, strict=True)
     mass = _diagonal([c.mass for c in body_coefficients])
     return mass, _diagonal([*damping]), _diagonal([*stiffness]), concatenated(force)

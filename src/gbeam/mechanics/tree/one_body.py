@@ -17,14 +17,14 @@ from gbeam.motion.protocol import Motion
 HUB, HINGE, RIM = "hub", "hinge", "rim"  # names of a free hub, its joint, and its point that holds the structure
 
 
-def on_motion(structure: Structure, motion: Motion | None, name: str = "beam") -> tuple[System, Motion | None]:
+def moving_system(structure: Structure, motion: Motion | None, name: str = "beam") -> tuple[System, Motion | None]:
     """System of a structure alone in a motion, and the motion of the system's ground: none under a free hub."""
     if motion is None or not motion.free:
         return System.of(structure, name), motion
-    return on_hub(structure, motion, name), None
+    return hub_system(structure, motion, name), None
 
 
-def on_hub(structure: Structure, hub: Any, name: str = "beam") -> System:
+def hub_system(structure: Structure, hub: Any, name: str = "beam") -> System:
     """System of a structure on the rim of a hub, which turns at its rate, or freely under torque, spring and damper."""
     rim = Place(at=hub.mount.place, turn=_turn_of_root(hub))
     # Only the moment about the hinge's axis takes part; equal ones are those of a possible body.

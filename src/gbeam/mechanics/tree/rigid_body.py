@@ -18,7 +18,7 @@ from gbeam.guards.quantities import Mass, PositionVector, Quantity, RotationVect
 from gbeam.mechanics.tree.bodies import (
     Rigid,
 )
-from gbeam.mechanics.tree.steps import about
+from gbeam.mechanics.tree.steps import rotation_matrix
 
 ROOT = "root"
 
@@ -100,9 +100,9 @@ class RigidBody(Value):
 
     @property
     def body(self) -> Rigid:
-        """Its terms in the equations."""
-        places = [as_array(each.at) for each in self.points.values()]
-        turns = [about(each.turn) for each in self.points.values()]
+        """Terms of the body in the equations."""
+        places = [as_array(point.at) for point in self.points.values()]
+        turns = [rotation_matrix(point.turn) for point in self.points.values()]
         xp = namespace(*places, *turns)
         places, turns = xp.reshape(xp.asarray(places), (-1, 3)), xp.reshape(xp.asarray(turns), (-1, 3, 3))
         return Rigid(self.mass, as_array(self.centre), self.tensor, places, turns)

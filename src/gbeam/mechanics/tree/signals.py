@@ -10,7 +10,7 @@ from gbeam.guards.kinds import KINDS
 from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.signal_names import CARRIED, OF_POINTS, kind_of_drive, kind_of_signal, rate_signal
-from gbeam.mechanics.tree.steps import parameters_of_all, vector_of
+from gbeam.mechanics.tree.steps import parameters_of_matrices, vector_of
 
 
 class Measured(Protocol):
@@ -134,7 +134,7 @@ def measurements(
     read = {
         "place": lambda frame: frame.p,
         "velocity": lambda frame: turned(frame.R, frame.v),
-        "attitude": lambda frame: vector_of(parameters_of_all(xp.broadcast_to(frame.R, (*state.shape, 3, 3)))),
+        "attitude": lambda frame: vector_of(parameters_of_matrices(xp.broadcast_to(frame.R, (*state.shape, 3, 3)))),
         "acceleration": lambda frame: frame.a,
         "spin": lambda frame: frame.w,
     }
@@ -145,7 +145,7 @@ def measurements(
             joint = system.joints[owner]
             body = system.order.index(joint.body)
             names = [*joint.values, *map(rate_signal, joint.rate_names)]
-            values_and_rates = tree.links[body].held(state.q[body][:-1], state.qd[body][:-1])
+            values_and_rates = tree.links[body].held_values(state.q[body][:-1], state.qd[body][:-1])
             columns.append(xp.broadcast_to(concatenated(list(values_and_rates))[..., names.index(kind)], state.shape))
         else:
             name, _, axis = kind.partition("_")

@@ -34,7 +34,7 @@ class Step(Protocol):
         """Forces (..., k) on the coordinates that do the work of a wrench on the frame after it."""
         ...
 
-    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
         """Values (..., h) on which a joint's springs and stops act, and rates on which its dampers and friction do."""
         ...
 
@@ -50,7 +50,7 @@ class Step(Protocol):
 class Minimal:
     """A motion with as many coordinates as degrees of freedom: springs and dampers act on these themselves."""
 
-    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
         return q, qd
 
     def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
@@ -71,7 +71,7 @@ class Slide(Minimal):
         return int(self.axes.shape[1])
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        return Relative(*(each @ self.axes.T for each in (q, qd, qdd)))
+        return Relative(*(values @ self.axes.T for values in (q, qd, qdd)))
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         return wrench.force @ self.axes
@@ -79,8 +79,9 @@ class Slide(Minimal):
 
 @record
 class Rotation(Minimal):
-    """Rotation by the vector Σ q_i u_i, the columns of `axes` (3, k), after a constant one, R0 (3, 3); None about one
-    axis where nothing depends on how far it has turned.
+    """Rotation by the vector Σ q_i u_i, with u_i the columns of `axes` (3, k), after a constant rotation R0 (3, 3).
+
+    R0 is None about one axis where nothing depends on how far it has turned.
     """
 
     axes: Array
@@ -92,12 +93,12 @@ class Rotation(Minimal):
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
         if self.size == 1:
-            R = None if self.R0 is None else self._about_axis(q)
+            R = None if self.R0 is None else self._rotation_matrix(q)
             return Relative(None, None, None, R, qd @ self.axes.T, qdd @ self.axes.T)
-        R, w, alpha = rotation_by_vector(*(each @ self.axes.T for each in (q, qd, qdd)), plane=False)
+        R, w, alpha = rotation_by_vector(*(values @ self.axes.T for values in (q, qd, qdd)), plane=False)
         return Relative(None, None, None, product(self.R0, R), w, alpha)
 
-    def _about_axis(self, q: Array) -> Array:
+    def _rotation_matrix(self, q: Array) -> Array:
         """Rotation matrices R0 (1 + sin θ [u]× + (1 − cos θ) [u]×²) (..., 3, 3) by angles q (..., 1) about one axis."""
         xp, axis = namespace(q, self.axes, self.R0), self.axes[:, 0]
         size = xp.sqrt(axis @ axis)
@@ -112,7 +113,7 @@ class Rotation(Minimal):
         if self.size == 1:
             return wrench.moment @ self.axes
         phi = q @ self.axes.T
-        return tangent_back(phi, wrench.moment) @ self.axes
+        return component_moments(phi, wrench.moment) @ self.axes
 
 
 @record
@@ -144,13 +145,13 @@ class Ball:
         unit_size = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
         return concatenated([unit_size, wrench.moment])
 
-    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
+    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
         size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
         return vector_of(q / size), 2 / size * _outward(q / size, qd)
 
     def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
         size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
-        return concatenated([0 * size, on_body(vector_of(q / size), by_values) + by_rates])
+        return concatenated([0 * size, body_moment(vector_of(q / size), by_values) + by_rates])
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         by = self.motion(q, qd, qdd)
@@ -175,25 +176,25 @@ class Turning:
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
         R, w, alpha = rotation_by_vector(q, qd - self.spin, qdd - self.faster, plane=False)
-        spin, faster = (turned_back(R, each + 0 * q) for each in (self.spin, self.faster))
+        spin, faster = (turned_back(R, vector + 0 * q) for vector in (self.spin, self.faster))
         R = product(rotation_by_parameters(self.before), R)
         return Relative(None, None, None, R, w + spin, alpha + faster + cross(spin, w))
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         return wrench.moment
 
-    def held(self, q: Array, qd: Array) -> tuple[Array, Array]:
-        return self._whole(q), self.motion(q, qd, 0 * qd).w
+    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        return self._total_rotation(q), self.motion(q, qd, 0 * qd).w
 
     def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
-        return on_body(self._whole(q), by_values) + by_rates
+        return body_moment(self._total_rotation(q), by_values) + by_rates
 
     def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         return self, q, qd, qdd
 
-    def _whole(self, q: Array) -> Array:
+    def _total_rotation(self, q: Array) -> Array:
         """Rotation vectors (..., 3) of the Euler parameters `before` and the vectors q after them."""
-        return vector_of(parameters_after(self.before, parameters_of_vector(q)))
+        return vector_of(composed_parameters(self.before, parameters_of_vector(q)))
 
 
 @record
@@ -222,9 +223,9 @@ def _outward(n: Array, rate: Array) -> Array:
     return scalar * rate[..., 1:] - vector * rate[..., :1] - cross(vector, rate[..., 1:])
 
 
-def parameters_after(first: Array, then: Array) -> Array:
-    """Euler parameters (..., 4) of a rotation and then another in the turned axes."""
-    s, v, t, u = first[..., :1], first[..., 1:], then[..., :1], then[..., 1:]
+def composed_parameters(first: Array, second: Array) -> Array:
+    """Euler parameters (..., 4) of the `first` rotation, followed by the `second` about the turned axes."""
+    s, v, t, u = first[..., :1], first[..., 1:], second[..., :1], second[..., 1:]
     return concatenated([s * t - (v * u).sum(axis=-1, keepdims=True), s * u + t * v + cross(v, u)])
 
 
@@ -237,13 +238,13 @@ def parameters_of_vector(phi: Array) -> Array:
 
 def parameter_rates(e: Array, w: Array) -> Array:
     """Rates (..., 4) of Euler parameters that turn at w (..., 3) rad/s, turned axes."""
-    return parameters_after(e, concatenated([0 * w[..., :1], w / 2]))
+    return composed_parameters(e, concatenated([0 * w[..., :1], w / 2]))
 
 
-def turned_on(state: Array, time: Any) -> Array:
-    """Euler parameters and their two derivatives (3, 4), a time (s) later, of what turns on at its angular velocity."""
-    w = 2 * parameters_after(state[0] * np.array([1.0, -1.0, -1.0, -1.0]), state[1])[1:]
-    return parameters_after(state, parameters_of_vector(w * time))
+def turn_steadily(state: Array, time: Any) -> Array:
+    """Euler parameters and their two derivatives (3, 4) after a time, s, at constant angular velocity in body axes."""
+    w = 2 * composed_parameters(state[0] * np.array([1.0, -1.0, -1.0, -1.0]), state[1])[1:]
+    return composed_parameters(state, parameters_of_vector(w * time))
 
 
 def rotation_by_parameters(n: Array) -> Array:
@@ -273,7 +274,7 @@ def _products_of_parameters() -> Array:
 _PRODUCTS = _products_of_parameters()
 
 
-def parameters_of_all(R: Array) -> Array:
+def parameters_of_matrices(R: Array) -> Array:
     """Unit Euler parameters (t, 4) of rotation matrices (t, 3, 3), without jumps of sign from one to the next."""
     xp = namespace(R)
     products = np.eye(4) + (R.reshape(*R.shape[:-2], 9) @ _PRODUCTS).reshape(*R.shape[:-2], 4, 4)
@@ -350,14 +351,14 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
     return R, w, alpha
 
 
-def tangent_back(phi: Array, moment: Array) -> Array:
-    """Tᵀ M: the moments on a rotation vector's components that do the work of a moment (..., 3), turned axes."""
-    _, b, c, *_ = (each[..., None] for each in functions_of_angle((phi * phi).sum(axis=-1)))
+def component_moments(phi: Array, moment: Array) -> Array:
+    """Tᵀ M, the moments on a rotation vector's components φ that do the work of a moment M (..., 3), turned axes."""
+    _, b, c, *_ = (function[..., None] for function in functions_of_angle((phi * phi).sum(axis=-1)))
     across = cross(phi, moment)
     return moment + b * across + c * cross(phi, across)
 
 
-def on_body(phi: Array, forces: Array) -> Array:
+def body_moment(phi: Array, forces: Array) -> Array:
     """Moment (..., 3) in turned axes, T⁻ᵀ f, that does the work of forces f on the components of φ."""
     s = (phi * phi).sum(axis=-1, keepdims=True)
     xp, small = namespace(phi), s < SMALL
@@ -368,7 +369,7 @@ def on_body(phi: Array, forces: Array) -> Array:
     return forces - phi_f / 2 + xp.where(small, series, (1 - a / (2 * b)) / safe) * cross(phi, phi_f)
 
 
-def about(v: Any) -> Array:
+def rotation_matrix(v: Any) -> Array:
     """Rotation matrix (3, 3) of a rotation vector (3,), rad."""
     zero = np.zeros(3)
     return rotation_by_vector(as_array(v), zero, zero, plane=True)[0]

@@ -79,8 +79,10 @@ class PointForce(Value):
     history: tuple[Profile, Profile] = follows()
 
     def __post_init__(self) -> None:
-        force, moment = ((0.0, 0.0, 0.0) if each is None else each for each in (self.force, self.moment))
-        assign(self, history=(as_profile("force", force, 3), as_profile("moment", moment, 3)))
+        zero = (0.0, 0.0, 0.0)
+        force = as_profile("force", zero if self.force is None else self.force, 3)
+        moment = as_profile("moment", zero if self.moment is None else self.moment, 3)
+        assign(self, history=(force, moment))
 
 
 @typed
@@ -171,7 +173,7 @@ class System(Value):
         assign(self, points=tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body)))
         assign(self, coordinates=self._named(), prescribed=self._prescribed())
         assign(self, tree=self._assembled())
-        assign(self, unknown_coordinates=tuple(self.coordinates[k] for k in self.tree.free))
+        assign(self, unknown_coordinates=tuple(self.coordinates[k] for k in self.tree.unknowns))
         spun = [name for name, numbers, _ in self.prescribed if len(numbers) > 1]
         assign(self, courses={name: self.joints[name].course for name in spun})
         drives, signals = drives_of(self), measurable(self)
@@ -186,7 +188,7 @@ class System(Value):
 
     def __repr__(self) -> str:
         names = ", ".join(self.order)
-        return f"System({names}; {len(self.tree.free)} unknown coordinates)"
+        return f"System({names}; {len(self.tree.unknowns)} unknown coordinates)"
 
     @classmethod
     @typed
@@ -285,7 +287,7 @@ class System(Value):
         driven = [(joint.rates, joint.efforts) for joint in self.joints.values()]
         histories = [force.history for force in self.forces.values()]
         loads = [body.history for body in self.flexible.values()]
-        controlled = any(each.traced for each in self.controllers.values())
+        controlled = any(controller.traced for controller in self.controllers.values())
         return controlled or holds_jax(self.tree, self.start, self.gravity, driven, histories, loads)
 
     @property
@@ -322,7 +324,7 @@ class System(Value):
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, each behind the body's name."""
         bodies = self.bodies.items()
-        return tuple(f"{name}: {each}" for name, body in bodies for each in getattr(body, "warnings", ()))
+        return tuple(f"{name}: {warning}" for name, body in bodies for warning in getattr(body, "warnings", ()))
 
     @property
     def laden(self) -> set[str]:
@@ -375,10 +377,10 @@ class System(Value):
         for name, force in self.forces.items():
             body, on = self.point(f"forces.{name}.on", force.on)
             forces.append(Force(index[body], on, force.follower))
-        fixed = [self._first(name) + k for name, numbers, _ in self.prescribed for k in numbers]
+        fixed = [self._first_coordinate(name) + k for name, numbers, _ in self.prescribed for k in numbers]
         return Tree(tuple(links), tuple(forces), tuple(fixed))
 
-    def _first(self, joint: str) -> int:
+    def _first_coordinate(self, joint: str) -> int:
         """Index of a joint's first coordinate among all, or where it would be if the joint has none."""
         before = self.order[: self.order.index(self.joints[joint].body)]
         sizes = (len(self.joints[self.holding[body]].coordinates) + self._size(body) for body in before)
@@ -398,18 +400,16 @@ class System(Value):
             Of the rate along which it acts: ``joint.angle``, or ``joint.wx``.
         """
         joint, _, rate = name.rpartition(".")
-        return self._first(joint) + self.joints[joint].row(rate)
+        return self._first_coordinate(joint) + self.joints[joint].row(rate)
 
     def _prescribed(self) -> list[Prescribed]:
-        """Groups of coordinates that are prescribed together: the joint, their indices in it, and their
-        rates' names.
-        """
+        """Groups of coordinates that are prescribed together: joint, their indices in it, and their rates' names."""
         groups = []
         for name, joint in self.joints.items():
-            rates_of = dict[tuple[int, ...], list[str]]()
+            rates_by_numbers = dict[tuple[int, ...], list[str]]()
             for rate in joint.rates:
-                rates_of.setdefault(joint.numbers(rate), []).append(rate)
-            groups += [(name, numbers, tuple(rates)) for numbers, rates in rates_of.items()]
+                rates_by_numbers.setdefault(joint.numbers(rate), []).append(rate)
+            groups += [(name, numbers, tuple(rates)) for numbers, rates in rates_by_numbers.items()]
         return groups
 
     @property
@@ -424,7 +424,7 @@ class System(Value):
         return xp.concatenate(q), xp.concatenate(qd)
 
     @property
-    def at_start(self) -> State:
+    def start_state(self) -> State:
         """Frames of the bodies on a ground at rest, with the joints at the start and bodies undeformed."""
         q, zero, still = self.start[0], np.zeros(3), np.zeros(self.tree.size)
         return State(self.tree, q, still, still, Frame(np.eye(3), zero, zero, zero, zero, zero))
@@ -432,7 +432,7 @@ class System(Value):
     @property
     def undeformed(self) -> Floats:
         """Places of all points, (points, 3) m, with the joints at the start and bodies undeformed."""
-        return np.asarray(self.at_start.places)
+        return np.asarray(self.start_state.places)
 
     def corners(self, step: float) -> Floats:
         """Return the times that steps should not pass unseen, s.
@@ -476,7 +476,7 @@ class System(Value):
             else:
                 rate, change = joint.rates[rates[0]].derivatives(t)
                 turned = Hub(radius=0.0, rate=joint.rates[rates[0]]).angle(t)
-                parts = tuple(each[..., None] for each in (joint.start[numbers[0]] + turned, rate, change))
+                parts = tuple(values[..., None] for values in (joint.start[numbers[0]] + turned, rate, change))
             prescribed.append(namespace(*parts).stack(parts, axis=-2))
         columns = {}
         for name, joint in self.joints.items():
@@ -484,8 +484,8 @@ class System(Value):
                 columns[self.row(f"{name}.{rate_name}")] = profile(t)
         if columns:
             none = xp.zeros(shape)
-            of_equations = [columns.get(k, none) for k in range(self.tree.size)]
-            efforts = namespace(*columns.values()).stack(of_equations, axis=-1)
+            rows = [columns.get(k, none) for k in range(self.tree.size)]
+            efforts = namespace(*columns.values()).stack(rows, axis=-1)
         wrenches = [concatenated([profile(t) for profile in force.history]) for force in self.forces.values()]
         loads = tuple(
             None if isinstance(body, RigidBody) or body.history is None else body.history(t)
