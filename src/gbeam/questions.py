@@ -138,7 +138,7 @@ class Question:
 
 def refuse_rigid(case: Case, verb: str) -> None:
     """Raise InputError if the only body is held and rigid, and so has no coordinates."""
-    body = case.system.alone
+    body = case.system.only_structure
     if body is not None and not body.size:
         fix = "ask for run, which has the load at its corners, or plan; or give it as a solid"
         raise InputError(f"bodies.{case.system.order[0]}", f"is rigid, and {verb} is of what deforms", fix)
@@ -201,7 +201,7 @@ def reduced(case: Case, needs: Needs) -> Case:
     """
     if needs.errors or case.automatic:
         return case
-    compared = case.system.alone is None and case.tracks  # whose comparisons read the loads of its beams
+    compared = case.system.only_structure is None and case.tracks  # whose comparisons read the loads of its beams
     loads = case.over_time.loads and bool(needs.loads or compared)
     return replace(case, response=replace(case.over_time, estimate=False, loads=loads))
 
@@ -284,7 +284,7 @@ def modes(
     gyroscopic: Annotated[bool, "Keep Coriolis coupling."] = True,
 ) -> Modes:
     """Small vibrations about the equilibrium."""
-    from gbeam.analysis.automatic import of_lowest, sufficient
+    from gbeam.analysis.automatic import lowest_errors, sufficient
     from gbeam.analysis.steady import modal
 
     name = motion_of(case.environments, motion)
@@ -297,7 +297,7 @@ def modes(
         structure = _subject(case, replace(needs, errors=True))  # the source has the sections: twist shows at edges
         return modal.modes(structure, base, time, **options)
 
-    return sufficient(case, ask, lambda modes: [of_lowest(modes.frequency, modes.errors)])[1]
+    return sufficient(case, ask, lambda modes: [lowest_errors(modes.frequency, modes.errors)])[1]
 
 
 _TURNING = "Of a system, the angle that turns, base.angle; else its only prescribed one, or only one."

@@ -28,7 +28,7 @@ def test_peaks_and_differences_are_those_of_all_times() -> None:
     other, size = force + departure, np.linalg.norm(departure, axis=1)
     assert size[chosen.at].max() == size.max()
     expected = peak_difference(TIME, force, other)
-    assert chosen.peaks_apart(force[chosen.at], other[chosen.at]) == pytest.approx(expected, rel=1e-6)
+    assert chosen.peak_difference(force[chosen.at], other[chosen.at]) == pytest.approx(expected, rel=1e-6)
 
 
 def test_all_of_few_times_are_looked_at() -> None:

@@ -34,7 +34,7 @@ def test_matrices_are_finite_differences(kind):
     subject = subject_of(structure, None)
     at = placed(subject.system, Drive(base=BASE), q, None)
     point, linear, outputs = at.point, at.linear, outputs_of(structure, at, ())
-    u = outputs.held
+    u = outputs.holding_inputs
     forces = outputs.matrices(point)[2]
     state = [np.asarray(x) for x in (point.y, point.yd, point.ydd, u)]
     for which, matrix in ((0, linear.stiffness), (1, linear.velocity), (2, linear.mass), (3, -forces)):
@@ -54,7 +54,7 @@ def test_a_free_hub_keeps_its_momentum():
     subject = subject_of(structure, FREE_2009)
     state = settled(subject.system, Drive(coordinate="hinge.angle", rate=1.3))
     linear = state.linear
-    assert float(outputs_of(structure, state, ()).held[0]) == pytest.approx(0, abs=1e-9)
+    assert float(outputs_of(structure, state, ()).holding_inputs[0]) == pytest.approx(0, abs=1e-9)
     assert np.abs(linear.stiffness[:, 0]).max() == 0
 
 

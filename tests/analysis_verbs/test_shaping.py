@@ -186,7 +186,7 @@ def test_a_refinement_that_cannot_be_run_keeps_the_command_before_it(monkeypatch
     """A free body under a constant thrust had a refined command so large that its run broke off: an IndexError."""
     from gbeam.analysis.control.plants import Plant
 
-    about, rounds = Plant.about, []
+    about, rounds = Plant.perturbed_runs, []
 
     def breaking(self: Plant, *of: Any) -> Any:
         rounds.append(of)
@@ -194,7 +194,7 @@ def test_a_refinement_that_cannot_be_run_keeps_the_command_before_it(monkeypatch
             raise gb.ComputationError("diverged", "the run of a command ends at 0.01 s, before its time")
         return about(self, *of)
 
-    monkeypatch.setattr(Plant, "about", breaking)
+    monkeypatch.setattr(Plant, "perturbed_runs", breaking)
     options: dict[str, Any] = {"distance": 5.0, "duration": 8.0, "point": "load.hook"}
     shaped = gb.shape_command(crane(effort=0.0), "rail.displacement", **options)
     assert len(rounds) == 2 and shaped.outcome == "done"

@@ -35,7 +35,7 @@ def test_cycles_of_an_oscillation() -> None:
 
 
 def damage(flight: Response, machine: Response) -> Fatigue | None:
-    return fatigue(Quantities.of("flight", flight), Quantities.of("centrifuge", machine))
+    return fatigue(Quantities.from_response("flight", flight), Quantities.from_response("centrifuge", machine))
 
 
 def flown(amplitude: float) -> Response:

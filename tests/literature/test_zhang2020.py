@@ -30,7 +30,7 @@ from gbeam.integrate.equations import LinearEquations
 from gbeam.integrate.schemes import gauss
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.motion import Base, Profile
-from gbeam.motion.rigid import moved
+from gbeam.motion.rigid import shift_base
 from validation.published.specimens import strip_beam
 from validation.published.zhang2020 import COUNTS, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 
@@ -137,7 +137,7 @@ def test_variants_of_the_shift() -> None:
     """Erratum 14: the sign of the excess shows that the acceleration is shifted to the root, the right way."""
     flight = tip(in_flight(6.0))
     unshifted = on_centrifuge(6.0, control_point=0.0)
-    wrong_way = moved(unshifted, np.array([MIDDLE, 0.0, 0.0]))
+    wrong_way = shift_base(unshifted, np.array([MIDDLE, 0.0, 0.0]))
     for variant, kind, independent in (
         (unshifted, "FOAM", -0.0067e-2),
         (wrong_way, "FOAM", -0.0336e-2),
@@ -231,7 +231,7 @@ class FromRest:
     def base(self, t: Any) -> Base:
         load, rate, spin, o = self.jerk * t, np.sqrt(self.jerk * t / ARM), np.sqrt(self.jerk / (ARM * t)) / 2, 0 * t
         middle = Base(np.stack([-ARM * spin, o, load], -1), np.stack([o, rate, o], -1), np.stack([o, spin, o], -1))
-        return moved(middle, np.array([-MIDDLE, 0.0, 0.0]))
+        return shift_base(middle, np.array([-MIDDLE, 0.0, 0.0]))
 
 
 @pytest.mark.parametrize("jerk", [4.0, 8.0, 10.0])

@@ -11,7 +11,7 @@ from scipy.constants import g as STANDARD_GRAVITY
 import gbeam as gb
 import gbeam.arrays.jax_setup  # JAX knows the records, in whatever order modules were imported
 from gbeam.motion.centrifuge.histories import axis_angles
-from gbeam.motion.rigid import moved
+from gbeam.motion.rigid import shift_base
 
 G, R, XC = STANDARD_GRAVITY, 3.3, 0.15
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
@@ -36,7 +36,7 @@ def f16() -> gb.Centrifuge:
 def test_root_has_the_control_points_motion_moved() -> None:
     turning, t = machine(), np.linspace(0, 12, 61)
     root, actual = turning.base(t), turning.actual(t)
-    back = moved(root, [XC, 0.0, 0.0])
+    back = shift_base(root, [XC, 0.0, 0.0])
     np.testing.assert_allclose(back.a_WO_B, actual, atol=1e-11)
     scalar = turning.base(3.0)
     np.testing.assert_allclose(scalar.a_WO_B, root.a_WO_B[15], atol=1e-12)

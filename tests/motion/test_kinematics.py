@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
-from gbeam.motion.centrifuge.kinematics import Axes, forward
-from gbeam.motion.rigid import moved
+from gbeam.motion.centrifuge.kinematics import Axes, forward_kinematics
+from gbeam.motion.rigid import shift_base
 
 
 def turn(angle: jax.Array, axis: int) -> jax.Array:
@@ -54,7 +54,7 @@ def test_forward_and_shift_against_double_differentiation(seed: int, gravity: fl
     a_W = a_W + np.array([0, 0, gravity])  # a − g, g down
 
     axes = Axes(r[0], dd[0], a[1], r[1], dd[1], a[2], r[2], dd[2])
-    base = moved(forward(axes, ARM, gravity), offset)
+    base = shift_base(forward_kinematics(axes, ARM, gravity), offset)
     np.testing.assert_allclose(base.w_WB_B, [w[2, 1], w[0, 2], w[1, 0]], atol=1e-12)
     np.testing.assert_allclose(base.alpha_WB_B, [skew[2, 1], skew[0, 2], skew[1, 0]], atol=1e-12)
     np.testing.assert_allclose(base.a_WO_B, R_WB.T @ a_W, atol=1e-12)
@@ -62,7 +62,7 @@ def test_forward_and_shift_against_double_differentiation(seed: int, gravity: fl
 
 def test_many_times_at_once() -> None:
     states = jnp.asarray(np.random.default_rng(1).normal(size=(8, 4, 5)))
-    whole, one = forward(Axes(*states), 3.3, 9.8), forward(Axes(*states[:, 2, 3]), 3.3, 9.8)
+    whole, one = forward_kinematics(Axes(*states), 3.3, 9.8), forward_kinematics(Axes(*states[:, 2, 3]), 3.3, 9.8)
     assert whole.a_WO_B.shape == (4, 5, 3)
     np.testing.assert_allclose(whole.alpha_WB_B[2, 3], one.alpha_WB_B, atol=1e-14)
-    np.testing.assert_allclose(moved(whole, np.zeros(3)).a_WO_B, whole.a_WO_B)
+    np.testing.assert_allclose(shift_base(whole, np.zeros(3)).a_WO_B, whole.a_WO_B)

@@ -252,7 +252,7 @@ def test_what_keeps_the_rows_keeps_the_limits_at_all_times_and_they_are_not_much
 
     def use(x: np.ndarray, about: np.ndarray) -> float:
         """Largest use of a row; idle and turning back are another matter."""
-        rows, lower, upper = kept.evaluate(about)
+        rows, lower, upper = kept.linearise(about)
         value, least = rows @ x, np.where(lower < 0, lower, -np.inf)
         return float(np.max(np.maximum(value / np.where(upper > 0, upper, np.inf), value / least)))
 

@@ -9,7 +9,7 @@ from scipy.constants import g as STANDARD_GRAVITY
 import gbeam as gb
 from gbeam.motion import Base, Profile
 from gbeam.motion.centrifuge.inverses.spin_up import LEAST_TURNED, USUAL_TURNED
-from gbeam.motion.centrifuge.kinematics import Axes, forward
+from gbeam.motion.centrifuge.kinematics import Axes, forward_kinematics
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
@@ -36,7 +36,13 @@ def machine(
 
 def seen(spin: gb.Centrifuge, t: np.ndarray) -> tuple[Axes, np.ndarray, Base, np.ndarray, np.ndarray]:
     axes, jerk = spin.axes_and_jerks(t)
-    return axes, jerk, spin.base(t), spin.reference(t), forward(axes, spin.geometry.arm, spin.geometry.gravity).a_WO_B
+    return (
+        axes,
+        jerk,
+        spin.base(t),
+        spin.reference(t),
+        forward_kinematics(axes, spin.geometry.arm, spin.geometry.gravity).a_WO_B,
+    )
 
 
 def states(axes: Axes) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion.rigid import moved
+from gbeam.motion.rigid import shift_base
 from gbeam.results.parts import Base
 
 LOAD = gb.Sum((gb.constant(20.0), gb.trapezoid(30.0, jerk=25.0, start=1.0, hold=2.0)))
@@ -39,7 +39,7 @@ def test_half_a_turn_about_z_is_the_other_mounting_and_a_roll_changes_nothing() 
 def test_the_control_point_feels_the_flight_whichever_way_round(turn: tuple[float, float, float]) -> None:
     place = np.array([0.02, -0.03, 0.05])
     machine = gb.Centrifuge(TURN, **OPTIONS, control_point=place, turn=turn)
-    base = moved(machine.base(TIMES), place)
+    base = shift_base(machine.base(TIMES), place)
     followed = ~machine.not_followed(TIMES)
     flown = machine.reference(TIMES)
     np.testing.assert_allclose(base.a_WO_B[followed], flown[followed], atol=1e-5 * np.abs(flown).max())

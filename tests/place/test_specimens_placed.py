@@ -91,7 +91,7 @@ def test_static_answers_are_those_of_equilibrium() -> None:
         masses=[gb.PointMass(0.02, 0.2, offset=(0.0, 0.03, 0.01))],
     )  # fmt: skip
     structure = gb.assemble(beam, "exact", axial=1, y=2, z=2, twist=2)
-    specimen = Specimen.of(gb.System.of(structure), NOW)
+    specimen = Specimen.from_system(gb.System.of(structure), NOW)
     from gbeam.analysis.imitation.accounting import gradients
     from gbeam.results.parts import Base
 
@@ -99,7 +99,7 @@ def test_static_answers_are_those_of_equilibrium() -> None:
     for _ in range(3):
         a, w, alpha = 1e-3 * rng.normal(size=3), 3e-2 * rng.normal(size=3), 1e-3 * rng.normal(size=3)
         rest = gb.solve_equilibrium(structure, Base(a, w, alpha))
-        answer = specimen.displacement["body.tip"].at(a, gradients(w, alpha))
+        answer = specimen.displacement["body.tip"].evaluate(a, gradients(w, alpha))
         np.testing.assert_allclose(answer, structure.tip(np.asarray(rest.q)), atol=1e-4 * np.abs(answer).max())
 
 
@@ -304,7 +304,7 @@ def test_a_camera_beside_a_boom_bends_it_less_where_it_is_placed() -> None:
 
 def test_vibration_is_of_the_mode_that_the_flight_calls_on() -> None:
     """Along the strip's width it is five times as stiff as through its thickness, and the second mode is as quick."""
-    modes = Specimen.of(gb.System.of(gb.assemble(STRIP, "FOAM", axial=0, y=1, z=2)), NOW).modes
+    modes = Specimen.from_system(gb.System.of(gb.assemble(STRIP, "FOAM", axial=0, y=1, z=2)), NOW).modes
     assert modes is not None
     for axis, ratio in ((2, 1.0), (1, 5.0)):
         along = modes.foremost(0, 9.81 * np.eye(3)[[axis]], np.zeros((1, 3, 3)))
@@ -319,12 +319,12 @@ def test_bare_matrices_are_placed_by_their_points() -> None:
         np.array([1.0, 2.0]), np.array([[0.0, 0.3, 0.1], [0.0, 0.4, -0.1]]), first, np.diag([1e4, 2e4]),
         second=np.zeros((2, 3, 2, 2)), damping_ratio=0.02, stations=np.array([0, 1]), points=("a", "tip"),
     )  # fmt: skip
-    specimen = Specimen.of(gb.System.of(structure), NOW)
+    specimen = Specimen.from_system(gb.System.of(structure), NOW)
     assert list(specimen.ends) == ["the root", "a", "tip"]
     np.testing.assert_allclose(specimen.extent, [[0, 0, -0.1], [0, 0.4, 0.1]])
     # A particle of 2 kg on a spring along y, at its place: the force of its load over the spring.
     load, growth = np.array([1.0, 2.0, 3.0]), np.arange(9.0).reshape(3, 3)
     felt = load + growth @ [0.0, 0.4, -0.1]
     np.testing.assert_allclose(
-        specimen.displacement["body.tip"].at(load, growth), [0.0, -2 * felt[1] / 2e4, 0.0], atol=1e-15
+        specimen.displacement["body.tip"].evaluate(load, growth), [0.0, -2 * felt[1] / 2e4, 0.0], atol=1e-15
     )

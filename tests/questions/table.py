@@ -232,7 +232,7 @@ def _gradients(scenario: Scenario) -> Any:
     def moved(level: Any) -> Any:
         flight = gb.Flight(z=gb.SmoothStep(level, 0.002))
         response = gb.simulate(case.subject, flight, settings)
-        return (response.tip if case.system.alone is not None else response.place[:, 0]).sum()
+        return (response.tip if case.system.only_structure is not None else response.place[:, 0]).sum()
 
     # Followed, not compiled, which takes ten seconds each: tests of gradients have the numbers.
     with jax.enable_x64(True):

@@ -11,7 +11,7 @@ import pytest
 from scipy.signal import lsim
 
 import gbeam as gb
-from gbeam.analysis.imitation.fatigue import cyclic_at
+from gbeam.analysis.imitation.fatigue import cyclic_stress
 from gbeam.analysis.imitation.quantities import Quantities
 from gbeam.report.study import comparison_lines
 from gbeam.solids.stress import critical_plane_stress
@@ -171,7 +171,7 @@ def test_every_section_has_its_fibre() -> None:
     assert all(a > b for a, b in pairwise(sizes[[0, 1]])) and sizes[0] == pytest.approx(
         loads.stress[:, 0].max(), rel=1e-9
     )
-    cyclic = cyclic_at(Quantities.of("flight", flight), "half")
+    cyclic = cyclic_stress(Quantities.from_response("flight", flight), "half")
     assert cyclic is not None and cyclic.exponent == 4.0
 
 

@@ -270,7 +270,7 @@ def test_nafems_le10_thick_plate() -> None:
     stiffness = csc_matrix(stiffness_matrix(mesh.points, mesh.blocks))[~held][:, ~held]
     moved = np.zeros(len(held))
     moved[~held] = spsolve(stiffness, load.ravel()[~held])
-    stress = NodalStress.of(mesh, moved.reshape(-1, 3, 1))
+    stress = NodalStress.from_shapes(mesh, moved.reshape(-1, 3, 1))
     (corner,) = np.flatnonzero(np.linalg.norm(mesh.points - (2.0, 0.0, 0.6), axis=1) < 1e-9)
     assert 1e-6 * stress.table[corner, 1, 0] == pytest.approx(LE10, rel=0.01)
 

@@ -256,7 +256,7 @@ def test_newtons_method_goes_in_shares_where_it_fails_at_once() -> None:
         panels(gb.assemble(heavy, "exact", y=2, z=2), SPIN, "rim"),
         Path(Drive(None, 0.0, "spin.angle"), turning_at),
     )
-    _, thick, *_ = Richer(path(system, 0.0)).by_theories(system)[0]
+    _, thick, *_ = Richer(path(system, 0.0)).systems_by_theory(system)[0]
     steady, beam = path(thick, 800.0), thick.bodies["panel_rim"]
     alone = gb.solve_equilibrium(beam, gb.Hub(radius=0.5, rate=800.0).base(0.0))
     stretched = steady.frames[-2].p - (0.8, 0, 0)

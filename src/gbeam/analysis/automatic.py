@@ -47,7 +47,7 @@ def sufficient(
     return case, answer
 
 
-def of_lowest(frequency: Floats, errors: FrequencyErrors | None) -> FrequencyErrors | None:
+def lowest_errors(frequency: Floats, errors: FrequencyErrors | None) -> FrequencyErrors | None:
     """Errors of the `LOWEST` frequencies of (k,) Hz, and of unseen ones below the highest of these; None if none."""
     if errors is None or not len(frequency):
         return None

@@ -168,7 +168,7 @@ class Case(OneBody, Value):
 
     def _refuse_motion(self, where: str, name: str, motion: Motion) -> None:
         """Raise InputError for a motion of the base that the system cannot have."""
-        body = self.system.alone
+        body = self.system.only_structure
         if motion.free and body is None:
             fix = "give it as a body on a revolute joint"
             raise InputError(where, "is a hub that turns freely, and carries a system", fix)
@@ -237,7 +237,7 @@ class Case(OneBody, Value):
 
     def require_motion(self) -> None:
         """Raise InputError where a body is held by a base that nothing moves."""
-        if not self.motions and self.system.alone is not None:
+        if not self.motions and self.system.only_structure is not None:
             fix = 'add what the base does, each [motion.NAME], such as kind = "flight"; `gbeam new` shows how'
             raise InputError("motion", "is missing", fix)
 

@@ -88,7 +88,7 @@ def describe(case: Case) -> Description:
 
 def _doubts(case: Case) -> tuple[str, ...]:
     """Warnings of what is implausible in the bodies and, where one is alone on its base, in the motions."""
-    body = case.system.alone
+    body = case.system.only_structure
     if body is None:
         return case.system.warnings
 
@@ -115,7 +115,7 @@ def _mass(body: RigidBody | Structure) -> tuple[float, Any]:
 def _body(system: System, name: str) -> BodyDescription:
     """Describe a body: its mass and points and, if it deforms, its frequencies and what its model has."""
     body = system.bodies[name]
-    points = system.points_of(name) if system.alone is None else points_of(system)
+    points = system.points_of(name) if system.only_structure is None else points_of(system)
     mass, centre = _mass(body)
     described: dict[str, Any] = {"mass": mass, "centre": centre, "points": points}
     if isinstance(body, RigidBody):

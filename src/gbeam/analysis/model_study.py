@@ -116,7 +116,7 @@ def compare_models(
     rows, direction = [], {}
     for name in case.environments:
         reference = answers[REFERENCE, name][0]
-        axis = _most_moved(answers, name) if isinstance(reference, Failure) else _axis(reference.peak)
+        axis = _largest_axis(answers, name) if isinstance(reference, Failure) else _axis(reference.peak)
         direction[name] = f"{point} {'xyz'[axis]}" if point else "xyz"[axis]
         rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in KINDS if kind in chosen]
     notes = notes_on(case.motions)
@@ -147,12 +147,12 @@ def _refuse(case: Case, point: str | None) -> None:
 def _counterpart(case: Case, kind: ModelKind) -> Case | Failure:
     """The case with its beams in one kind of model, or the reason why there is none."""
     try:
-        return replace(case, system=of_kind(case.system, kind))
+        return replace(case, system=convert_models(case.system, kind))
     except InputError as error:
         return Failure("cannot", str(error))
 
 
-def of_kind(system: System, kind: ModelKind) -> System:
+def convert_models(system: System, kind: ModelKind) -> System:
     """The system with all of its beams in one kind of model, each with as many shapes as before."""
     beams = {name: body for name, body in system.flexible.items() if body.source is not None}
     other = {name: remade(body, counterpart(model_of(body), kind), body.stations[:-1]) for name, body in beams.items()}
@@ -236,7 +236,7 @@ def _axis(moved: Floats) -> int:
     return int(np.argmax(moved))
 
 
-def _most_moved(answers: dict[tuple[str, str], tuple[_Tip | Failure, float]], name: str) -> int:
+def _largest_axis(answers: dict[tuple[str, str], tuple[_Tip | Failure, float]], name: str) -> int:
     """Number of the axis along which the models with an answer move the tip most in an environment."""
     peaks = [answer.peak for (_, where), (answer, _) in answers.items() if where == name and isinstance(answer, _Tip)]
     return _axis(np.sum(peaks, axis=0)) if peaks else 0

@@ -27,12 +27,12 @@ def structure_of(beam: Beam, model: Model, stations: Sequence[float] = ()) -> St
 
 def points_of(system: System) -> tuple[str, ...]:
     """Names of the points that results have: ``tip`` of a body alone on the base, else ``body.point``."""
-    return system.points if system.alone is None else system.points_of(system.order[0])[:-1]
+    return system.points if system.only_structure is None else system.points_of(system.order[0])[:-1]
 
 
 def refuse_no_point(system: System, where: str, name: str) -> tuple[str, int]:
     """Body and index of a point by its name in results; InputError at `where` if there is none."""
-    if system.alone is None:
+    if system.only_structure is None:
         return system.point(where, name)
     names = points_of(system)
     if name not in names:
@@ -51,18 +51,18 @@ class OneBody:
         """Argument of the analyses: the structure of the only body where nothing but its base moves it, else the
         system. Nothing but this property says which of the two a case is computed as.
         """
-        return self.system if self.system.alone is None else self.system.alone
+        return self.system if self.system.only_structure is None else self.system.only_structure
 
     @property
     def only_beam(self) -> Structure | None:
         """Structure of the only body, where that is a beam and nothing but its base moves it."""
-        body = self.system.alone
+        body = self.system.only_structure
         return None if body is None or body.source is None else body
 
     def require_beam(self) -> Structure:
         """Return the structure of the beam that the base holds by its root; InputError where the case has none."""
         if self.only_beam is None:
-            body, names = self.system.alone, ", ".join(self.system.order)
+            body, names = self.system.only_structure, ", ".join(self.system.order)
             what = f"{names} is {body.kind}" if body is not None else f"it is of {names} on joints"
             raise InputError("case", f"needs a beam that the base holds by its root, and {what}", "give one [beam]")
         return self.only_beam

@@ -284,7 +284,7 @@ def _gauges_at(system: System, text: str) -> list[Gauge]:
     from gbeam.guards.checks import choice, index_of
     from gbeam.results.state_space import Gauge
 
-    body, name, structure = "", text, system.alone
+    body, name, structure = "", text, system.only_structure
     if structure is None:
         body, _, name = text.partition(".")
         choice("--strain-at", body, system.flexible)

@@ -363,8 +363,9 @@ def _nodes(kind: Kind, shapes: int) -> int:
 
 
 def _refuse_traced_places(beam: Beam, *, adapted: bool) -> None:
-    """Raise InputError where JAX traces the length or a position: shapes and quadrature need their numbers. Adapted
-    shapes need numbers of the material and the section, too.
+    """Raise InputError where JAX traces the length or a position: shapes and quadrature need their numbers.
+
+    Adapted shapes need numbers of the material and the section, too.
     """
     places: dict[str, Any] = {
         "length": beam.length,

@@ -101,7 +101,7 @@ def direction(where: str, value: Any) -> Floats:
     return np.asarray(along / np.linalg.norm(along))
 
 
-def across(load: Floats, up: Floats) -> bool:
+def has_part_across(load: Floats, up: Floats) -> bool:
     """Tell if a direction has a part across another, both of length one."""
     return bool(np.linalg.norm(up - (up @ load) * load) > PARALLEL)
 
@@ -111,7 +111,7 @@ def mounted(load: Any, up: Any) -> tuple[float, float, float]:
     from scipy.spatial.transform import Rotation  # 0.2 s to import, which few motions need
 
     inward, upward = direction("load", load), direction("up", up)
-    if not across(inward, upward):
+    if not has_part_across(inward, upward):
         raise InputError("up", f"is {up!r}, along load = {load!r}", "give a direction across it")
     upward = upward - (upward @ inward) * inward
     upward /= np.linalg.norm(upward)

@@ -13,7 +13,7 @@ from gbeam.guards.checks import vector
 from gbeam.results.parts import Base
 
 
-def moved(base: Base, offset: Any) -> Base:
+def shift_base(base: Base, offset: Any) -> Base:
     """Return the motion at another point (3,) m of the same rigid base: a + α × r + ω × (ω × r)."""
     xp = namespace(base.a_WO_B, base.w_WB_B, offset)
     r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gbeam import motion
 from gbeam.errors import InputError
 from gbeam.guards.parameters import parameters_of
-from gbeam.motion.arm import across, direction
+from gbeam.motion.arm import direction, has_part_across
 from gbeam.motion.flight import body_rates
 from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.parameters import Conditioning, Rates
@@ -99,7 +99,7 @@ def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: A
     several = isinstance(up, tuple) and isinstance(up[0], str)
     upwards = up if several else (up,)
     inward = direction("load", load)
-    chosen = next((candidate for candidate in upwards if across(inward, direction("up", candidate))), None)
+    chosen = next((candidate for candidate in upwards if has_part_across(inward, direction("up", candidate))), None)
     if chosen is None:
         words = " and ".join(map(str, upwards))
         fix = 'give a direction across it, or several, such as up = ["+z", "+x"], of which one always is'
@@ -129,7 +129,7 @@ def _recording(*, time: str | None = None, **columns: Any) -> Recording:
     return Recording.read(
         time=time,
         **columns,
-        rates=Rates.together(**rates),
+        rates=Rates.from_columns(**rates),
         instrument=Instrument(**instrument),
         conditioning=Conditioning(**conditioning),
     )

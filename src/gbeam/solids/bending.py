@@ -15,7 +15,7 @@ import numpy as np
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.equations.linear import Bending
 from gbeam.numerics.sparse import add_to_rows
-from gbeam.solids.elements import FEW, TENSOR, chunks, geometric_stiffness, near
+from gbeam.solids.elements import FEW, TENSOR, chunks, geometric_stiffness, nearby_modes
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.linked import Linked
 
@@ -44,7 +44,7 @@ def bending(
     squares, basis = squares[reached], basis[:, reached]
     count, r, b = len(mesh.points), len(squares), min(SOFT, len(squares))
     moved = linked.displacements(shapes @ basis)[:count]
-    forces, quartic = _of_higher_order(mesh, moved, b)
+    forces, quartic = _higher_order_terms(mesh, moved, b)
     loads = linked.condensed(forces.reshape(3 * count, b * r))
     answers = -solve(loads)
     condensed = (loads.T @ answers).reshape(b, r, b, r).swapaxes(1, 2)
@@ -54,7 +54,7 @@ def bending(
     halves = geometric_stiffness(mesh.points, mesh.blocks, static, moved)
     halves = halves + halves.swapaxes(2, 3)
     linear, of_second = np.split(halves.sum(axis=0), [b])
-    close = near(squares)
+    close = nearby_modes(squares)
     first = (linear - halves[0, :b]) * ~close  # the model has it between modes near in frequency
     alone = quartic + of_second.reshape(b, b, r, r) / 2 + condensed
     by_modes = np.einsum("kim,lmj->klmij", linear, linear)
@@ -75,7 +75,7 @@ def bending(
     return Bending(basis, drawn, bent, second, places)
 
 
-def _of_higher_order(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
+def _higher_order_terms(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
     """Forces of second order on the nodes, (k, 3, b, r), and stiffness of fourth degree, (b, b, r, r).
 
     The solid moves in shapes (k, 3, r) while the first b of them bend it. The stiffness is that by the strains of

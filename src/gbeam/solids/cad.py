@@ -59,7 +59,7 @@ def meshed(path: Path, size: float) -> FileMesh:
     with tempfile.TemporaryDirectory() as folder, Bar(f"meshing {path.name}", patience=PATIENCE):
         out = os.path.join(folder, "solid.msh")
         limits = {"memory": MESHER_BYTES, "seconds": MESHER_SECONDS}
-        return FileMesh.of(read_confined(_mesh_into, path, size, out, refuse=refuse, **limits))
+        return FileMesh.from_parts(read_confined(_mesh_into, path, size, out, refuse=refuse, **limits))
 
 
 def _mesh_into(path: str, size: float, out: str) -> dict[str, Any]:

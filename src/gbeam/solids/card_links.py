@@ -106,7 +106,7 @@ def with_cards(
             mass * spring.stiffness * np.repeat([1.0, size**2], 3),
             place_of[spring.nodes[0]],
         )
-    bodies = dict(links.bodies) | {name: _together(name, parts) for name, parts in carried.items()}
+    bodies = dict(links.bodies) | {name: _join_parts(name, parts) for name, parts in carried.items()}
     used = {*bodies, *(name for between, *_ in springs.values() for name in between)}
     members = {name: points for name, points in members.items() if len(points) or name in used}
     tied = Links(
@@ -133,7 +133,7 @@ def _refuse_unheld(name: str, links: Links) -> None:
         raise refused(name, "is on no node of the solid, and its springs leave it a way to move", "hold it")
 
 
-def _together(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody:
+def _join_parts(name: str, parts: list[tuple[float, Floats, Floats]]) -> RigidBody:
     """Join parts into one body. Each part is its mass, kg, centre (3,) m and inertia (3, 3) about that, kg m²."""
     whole = sum(mass for mass, *_ in parts)
     moment = sum((mass * part_centre for mass, part_centre, _ in parts), np.zeros(3))

@@ -14,7 +14,7 @@ import numpy as np
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.solids.shape_functions import DIMENSIONS, SHAPES, shared_area
-from gbeam.solids.stress import on_face
+from gbeam.solids.stress import face_nodes
 from gbeam.solids.texts import ABAQUS, NASTRAN, TextMesh, alike, ending_of, members, real
 
 Options = Mapping[str, str]
@@ -70,7 +70,7 @@ class Cards:
         return {"rigid": self.rigid, "lumps": lumps, "springs": springs, "mean": mean, "words": self.words}
 
     @classmethod
-    def of(cls, nodes: Any, parts: Mapping[str, Any]) -> Cards:
+    def from_parts(cls, nodes: Any, parts: Mapping[str, Any]) -> Cards:
         """Make the statements of what :meth:`parts` returned; there are none for a mesh of another kind of file."""
         if not parts:
             return cls(nodes)
@@ -318,7 +318,7 @@ def _surface(mesh: TextMesh, name: str) -> dict[int, float]:
         for number in members([[part]], mesh.groups):
             kind, nodes = mesh.elements[number]
             if DIMENSIONS[kind] == 3:
-                nodes = tuple(nodes[i] for i in on_face(kind, int(face[0][1:]) - 1)[:8])
+                nodes = tuple(nodes[i] for i in face_nodes(kind, int(face[0][1:]) - 1)[:8])
             elif face and face[0].upper() not in ("SPOS", "SNEG", "S1", "S2"):
                 raise refused(f"surface {name!r}", f"has the edge {face[0]} of a shell", "give its nodes")
             areas = shared_area(SHAPES[2][len(nodes)], np.array([mesh.nodes[node] for node in nodes]))

@@ -8,24 +8,24 @@ from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.solids.elements import Block
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.shape_functions import jacobians, reference, shapes_at
-from gbeam.solids.stress import FACES, corners_of, on_face, outer_faces
+from gbeam.solids.stress import FACES, corners_of, face_nodes, outer_faces
 
 SHARP = np.cos(np.radians(30.0))  # between the normals of two faces; in a fillet's elements they are nearer
 
 
-def without_limit(mesh: Mesh) -> Flags:
+def singular_nodes(mesh: Mesh) -> Flags:
     """Flags (k,) of nodes where stress has no limit as a mesh gets finer.
 
     They are on the edges of clamps and rigid links, where the stress grows slowly, and in the elements at re-entrant
     edges.
     """
-    flags, corner = _edges_of_held(mesh), _re_entrant(mesh)
+    flags, corner = _held_edges(mesh), _re_entrant(mesh)
     for block in mesh.blocks:
         flags[block.nodes[corner[block.nodes].any(axis=1)]] = True
     return flags
 
 
-def _edges_of_held(mesh: Mesh) -> Flags:
+def _held_edges(mesh: Mesh) -> Flags:
     """Flags (k,) of nodes at the edge of a clamp or rigid link: those on an outer face that is held in part."""
     flags = np.zeros(len(mesh.points), dtype=bool)
     rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
@@ -33,7 +33,7 @@ def _edges_of_held(mesh: Mesh) -> Flags:
         held = np.zeros_like(flags)
         held[nodes] = True
         for block, face, elements in outer_faces(mesh):
-            on = block.nodes[elements][:, on_face(block.kind, face)]  # nodes of each face
+            on = block.nodes[elements][:, face_nodes(block.kind, face)]  # nodes of each face
             flags[on[held[on] & ~held[on].all(axis=1, keepdims=True)]] = True
     return flags
 
@@ -62,7 +62,7 @@ def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> t
     Returns the nodes (m, 3) at their ends, ascending, and in their middle, or at an end once more; the outward normals
     at both ends, (m, 2, 3); and the middle of the face, (m, 3).
     """
-    on, places = on_face(block.kind, face), reference(block.kind)
+    on, places = face_nodes(block.kind, face), reference(block.kind)
     count = len(FACES[corners_of(block.kind)][face])
     corners = on[:count]
     # The outward normal in the reference element, which maps to places by the inverse of the Jacobian.

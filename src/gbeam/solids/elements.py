@@ -39,8 +39,9 @@ class Block(Value):
 
 class Part(NamedTuple):
     """Elements of a block at the q points of a rule: nodes (e, k), volumes (e, q), gradients (e, q, k, 3) of the shape
-    functions, and elasticity (..., 6, 6). Shells have strains (e, q, 6, k, 3) assumed per displacement, in place of
-    those of the gradients.
+    functions, and elasticity (..., 6, 6).
+
+    Shells have strains (e, q, 6, k, 3) `assumed` per displacement, in place of those of the gradients.
     """
 
     block: Block
@@ -158,44 +159,43 @@ def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
 
 
 def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats) -> Floats:
-    """Geometric stiffness of static displacements (k, 3, m) in `shapes` (k, 3, n), to first order, as two halves (2, m,
-    n, n).
+    """Geometric stiffness, to first order, of static displacements (k, 3, m) in `shapes` (k, 3, n).
 
-    With Green's strain the first is the static stress in the squares of the shapes' slopes, and the second the stress
-    of the shapes in their slopes as the static displacement turns them; :func:`coupled` joins them.
+    It has two halves, (2, m, n, n). With Green's strain the first is the static stress in the squares of the shapes'
+    slopes, and the second the stress of the shapes in their slopes as the static displacement turns them.
+    :func:`coupled` joins them.
     """
     m, n = static.shape[-1], shapes.shape[-1]
     stressed, turned = np.zeros((2, m, n, n))
     for part in chunks(points, blocks, "stiffness", FEW):
         weights = part.volume.ravel()[:, None, None, None]
         slopes, moved = part.slopes(shapes), part.slopes(static)
-        of_shapes = part.stress(shapes, slopes).reshape(len(weights), 6, -1)[:, TENSOR] * weights
-        of_static = part.stress(static, moved).reshape(len(weights), 6, -1)[:, TENSOR] * weights
+        shape_stress = part.stress(shapes, slopes).reshape(len(weights), 6, -1)[:, TENSOR] * weights
+        static_stress = part.stress(static, moved).reshape(len(weights), 6, -1)[:, TENSOR] * weights
         # Arrays of points, axes, components and shapes, flat in all but one of these.
         tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
         across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
         # Load by load in one piece each: products of small matrices that lie apart take four times as long.
-        pulls = np.moveaxis(of_static.reshape(-1, 3, 3, m), -1, 0).copy()
+        pulls = np.moveaxis(static_stress.reshape(-1, 3, 3, m), -1, 0).copy()
         turns = np.moveaxis(moved.reshape(-1, 3, 3, m), -1, 0).copy()
         for load in range(m):
             stressed[load] += tall.T @ (pulls[load] @ wide).reshape(-1, n)
-            turned[load] += of_shapes.reshape(-1, n).T @ (turns[load] @ across).reshape(-1, n)
+            turned[load] += shape_stress.reshape(-1, n).T @ (turns[load] @ across).reshape(-1, n)
     return np.stack([stressed / 2, turned])
 
 
 def coupled(halves: Floats, stiffness: Floats) -> Floats:
-    """Geometric stiffness (m, n, n) from its two halves (2, m, n, n), in coordinates of unit mass with a stiffness (n,
-    n).
+    """Join the two halves (2, m, n, n) of a geometric stiffness, in coordinates of unit mass with a stiffness (n, n).
 
     The second half couples soft modes with stiff ones in proportion to the stiff ones' stiffness. That acts to second
     order, where terms of fourth degree, which are left out, would cancel it. So only modes near in frequency are
     coupled.
     """
     squares, modes = np.linalg.eigh(stiffness)
-    total = halves[0] + modes @ (modes.T @ halves[1] @ modes * near(squares)) @ modes.T
+    total = halves[0] + modes @ (modes.T @ halves[1] @ modes * nearby_modes(squares)) @ modes.T
     return np.asarray(total + total.swapaxes(1, 2))
 
 
-def near(squares: Floats) -> Flags:
+def nearby_modes(squares: Floats) -> Flags:
     """Flags (n, n) of pairs of modes that are near in frequency, from the squares (n,) of the frequencies."""
     return np.maximum.outer(squares, squares) < NEAR**2 * np.minimum.outer(squares, squares)

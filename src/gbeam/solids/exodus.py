@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.guards.hdf5_files import open_hdf5
 from gbeam.solids.shape_functions import DIMENSIONS, EXODUS_ORDER, KINDS, SHAPES
-from gbeam.solids.stress import corners_of, on_face
+from gbeam.solids.stress import corners_of, face_nodes
 from gbeam.solids.texts import Cells, TextMesh
 
 ENDINGS = (".e", ".ex2", ".exo", ".g", ".gen")
@@ -33,7 +33,7 @@ class _Variable(NamedTuple):
 
 def read_exodus(path: Path) -> TextMesh:
     """Read a mesh whose groups are its blocks and sets, by their names or as `block 1`, `node set 1`, `side set 1`."""
-    read = _classic if path.read_bytes()[:3] == CLASSIC else _of_hdf5
+    read = _classic if path.read_bytes()[:3] == CLASSIC else _hdf5_variables
     stored, mesh = read(path), TextMesh()
     coordinates = [stored[f"coord{axis}"].values for axis in "xyz" if f"coord{axis}" in stored]
     places = np.array(coordinates or stored["coord"].values, dtype=float)
@@ -59,7 +59,7 @@ def read_exodus(path: Path) -> TextMesh:
         parts = [np.empty(0, dtype=int)]
         for i, number in np.unique(np.stack([block, side]), axis=1).T:
             cells, chosen = mesh.cells[i], element[(block == i) & (side == number)] - ends[i]
-            parts.append(cells.data[chosen][:, _on_side(cells.type, types[i], int(number))].ravel())
+            parts.append(cells.data[chosen][:, _side_nodes(cells.type, types[i], int(number))].ravel())
         mesh.point_sets.setdefault(_name(stored, "ss", k), np.unique(np.concatenate(parts)))
     return mesh
 
@@ -76,7 +76,7 @@ def _classic(path: Path) -> dict[str, _Variable]:
         }
 
 
-def _of_hdf5(path: Path) -> dict[str, _Variable]:
+def _hdf5_variables(path: Path) -> dict[str, _Variable]:
     """Variables of a file of netCDF 4."""
     with open_hdf5(path) as file:
         chosen = {name: data for name, data in file.items() if _READ.fullmatch(name)}
@@ -117,12 +117,12 @@ def _kind(element_type: str, count: int) -> str:
     return SHAPES[dim][count]
 
 
-def _on_side(kind: str, element_type: str, side: int) -> Any:
+def _side_nodes(kind: str, element_type: str, side: int) -> Any:
     """Indices of an element's nodes on a side, by the side's number. They are all nodes where the element has no sides,
     or is of a kind that is not computed.
     """
     if DIMENSIONS[kind] == 3 and kind in KINDS:
-        return on_face(kind, _SIDES[corners_of(kind)][side - 1])
+        return face_nodes(kind, _SIDES[corners_of(kind)][side - 1])
     corners = 3 if kind.startswith("triangle") else 4
     faces = 2 if "SHELL" in element_type.upper() else 0  # the first sides of shells
     edge = side - 1 - faces

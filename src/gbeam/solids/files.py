@@ -72,10 +72,10 @@ class FileMesh:
     info: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, parts: Mapping[str, Any]) -> FileMesh:
+    def from_parts(cls, parts: Mapping[str, Any]) -> FileMesh:
         """Make a mesh of the parts that :func:`parts_of` returned in another process."""
         cells = [Cells(*values) for values in parts["cells"]]
-        return cls(**{**parts, "cells": cells, "cards": Cards.of(parts["numbers"], parts["cards"])})
+        return cls(**{**parts, "cells": cells, "cards": Cards.from_parts(parts["numbers"], parts["cards"])})
 
 
 def read_mesh(source: str | os.PathLike[str] | Any, *, cards: bool = False) -> Any:
@@ -95,7 +95,7 @@ def read_mesh(source: str | os.PathLike[str] | Any, *, cards: bool = False) -> A
     limits = dict[str, int]()
     if ending_of(path) in TEXTS:
         limits = {"memory": READER_BYTES + TEXT_TIMES * size, "seconds": READER_SECONDS + size // TEXT_RATE}
-    return FileMesh.of(read_cached(parts_of, path, cards, refuse=refuse, **limits))
+    return FileMesh.from_parts(read_cached(parts_of, path, cards, refuse=refuse, **limits))
 
 
 def _refuse_unread(path: str) -> None:
@@ -172,7 +172,7 @@ def _read(path: Path) -> Any:
         with open_hdf5(path):  # which refuses a file with links to others
             pass
     mesh = meshio.read(path)
-    return _with_masks(_of_med(mesh) if ending == ".med" else mesh)
+    return _with_masks(_adapt_med(mesh) if ending == ".med" else mesh)
 
 
 def _refuse_node_0(path: Path) -> None:
@@ -216,7 +216,7 @@ def _refuse_in_parts(path: Path) -> None:
         parser.ParseFile(file)
 
 
-def _of_med(mesh: Any) -> Any:
+def _adapt_med(mesh: Any) -> Any:
     """Give a mesh of MED its groups by their names, and its elements the order of nodes of VTK.
 
     In MED elements and nodes belong to families, and a family belongs to any number of groups. Elements of negative
@@ -260,7 +260,7 @@ def skin(path: str) -> dict[str, Any]:
     Each group has its name, the number of its nodes that belong to elements, and the indices of its vertices.
     """
     _refuse_unread(path)
-    mesh = FileMesh.of(parts_of(path, False))
+    mesh = FileMesh.from_parts(parts_of(path, False))
     points = np.asarray(mesh.points, dtype=float)
     no_solids = not any(block.dim == 3 and len(block.data) for block in mesh.cells) and points.size
     elements = elements_of(mesh, SHEET * float(np.ptp(points)) if no_solids else None)

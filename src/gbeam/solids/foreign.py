@@ -41,7 +41,7 @@ def unit_size(where: str, unit: str, kind: str) -> float:
         raise InputError(where, f"is {unit!r}: {error.problem}", fix) from None
 
 
-def left_out(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
+def ignored_statements(source: Any, mesh: Any, read: Collection[str] = ()) -> list[str]:
     """Warn of a file's statements on masses, stiffness and constraints, but for those with names in `read`."""
     counts = {name: count for name, count in getattr(mesh, "carrying", {}).items() if name not in read}
     if not counts:

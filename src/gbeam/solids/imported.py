@@ -32,7 +32,7 @@ from gbeam.solids.matrices import (
     every_unknown,
     extent_of,
     fields_of,
-    left_out,
+    mass_defect,
     mass_of_nodes,
     refuse_held,
     rigid_body,
@@ -326,7 +326,7 @@ class ImportedModel(Value):
         """
         nodes, rows = displaced(np.asarray(self.unknowns), len(np.asarray(self.nodes)))
         of_nodes, moved = mass_of_nodes(self.mass, rows), shapes[rows]
-        sums, moments, missing = products[:, 0], products[:, 1:], left_out(of_nodes, moved)
+        sums, moments, missing = products[:, 0], products[:, 1:], mass_defect(of_nodes, moved)
         unknown = missing > MOST and (np.asarray(self.unknowns)[:, 1] == OWN).any()
         if unknown:
             mass, *paths = equivalent_particles(body, sums, moments)

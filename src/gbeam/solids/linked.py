@@ -85,7 +85,7 @@ class Linked:
         free = np.concatenate([np.repeat(~mesh.clamped[untied], 3), moving[unknown]])
         # Of links' displacements and rotations (l, 6) numbers among the unknowns, −1 of none, and those of tied points.
         numbers = np.where(unknown, 3 * len(untied) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
-        move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._about(self._arms)], axis=2)
+        move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._turn_displacements(self._arms)], axis=2)
         used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
         row = np.broadcast_to((3 * self._tied[:, None] + np.arange(3))[..., None], move.shape)[used]
         column = np.broadcast_to(numbers[of][:, None], move.shape)[used]
@@ -125,7 +125,7 @@ class Linked:
         rows = (3 * np.array(members)[:, None] + np.arange(3)).ravel()
         self._map = self._map + on_unknowns(rows, moved, points)
 
-    def _about(self, arms: Floats) -> Floats:
+    def _turn_displacements(self, arms: Floats) -> Floats:
         """Displacements (p, 3, 3) of tied points by unit rotations about their links' axes, in columns."""
         return np.einsum("pai,pb,abc->pci", self._axes[self._of], arms, CROSS, optimize=True)
 
@@ -190,7 +190,7 @@ class Linked:
         """Rows of the tied points in matrices of all points."""
         return np.asarray((3 * self._tied[:, None] + np.arange(3)).ravel())
 
-    def held(self, stiffness: Any) -> Any:
+    def tied_rows(self, stiffness: Any) -> Any:
         """Rows of the tied points in a stiffness of all points: what they take up of a displacement."""
         return stiffness[self._rows]
 

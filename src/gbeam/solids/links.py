@@ -93,7 +93,7 @@ class Links(Value):
     weights: dict[str, Floats] = field(default_factory=dict)
 
     @classmethod
-    def of(
+    def read(
         cls,
         group: Callable[[str, str], Indices],
         links: Mapping[str, str | Sequence[str]],
@@ -165,6 +165,6 @@ class Links(Value):
         return np.concatenate([np.ones(3, dtype=bool), turns])
 
     @property
-    def on_base(self) -> list[Indices]:
+    def base_nodes(self) -> list[Indices]:
         """Nodes that springs hold to the base."""
         return [self.nodes[between[0]] for between, *_ in self.springs.values() if len(between) == 1]

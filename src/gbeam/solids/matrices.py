@@ -158,7 +158,7 @@ def mass_of_nodes(mass: Any, rows: Indices) -> Any:
     return sum(mass[way][:, way] for way in rows.T) / 3
 
 
-def left_out(of_nodes: Any, moved: Floats) -> float:
+def mass_defect(of_nodes: Any, moved: Floats) -> float:
     """Largest difference from 1 of the modal masses that the mass (d, d) of the nodes has in modes (d, 3, n)."""
     kept = sum(np.einsum("kn,kn->n", moved[:, i], of_nodes @ moved[:, i]) for i in range(3))
     return float(np.abs(1 - kept).max())

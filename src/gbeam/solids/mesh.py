@@ -36,7 +36,7 @@ from gbeam.solids.elements import coupled, geometric_stiffness, mass_matrix, sti
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.linked import Linked
 from gbeam.solids.links import WAYS, LinkSpring
-from gbeam.solids.model import SolidModel, beside, hardly_coarser
+from gbeam.solids.model import SolidModel, attach_coarser, hardly_coarser
 from gbeam.solids.plausibility import locking
 from gbeam.solids.reading import read_solid
 from gbeam.solids.stations import Stations
@@ -263,10 +263,10 @@ class SolidMesh(Mesh):
         mass = (linked.widened(mass_matrix(self.points, self.blocks), 1) + diags_array(linked.masses)).tocsr()
         # Body forces −1, −x, −y and −z along x, then along y, then along z.
         loads = inertial_loads(mass @ linear_fields(linked.points))
-        named = Stations.of(self)
+        named = Stations.from_mesh(self)
         loads = np.concatenate([loads, linked.widened_loads(named.forces)], axis=1)
         stiffness = linked.elastic(stiffness_matrix(self.points, self.blocks))
-        held, stiffness = linked.held(stiffness), linked.condensed_stiffness(stiffness)
+        held, stiffness = linked.tied_rows(stiffness), linked.condensed_stiffness(stiffness)
         reduced = reduce(
             stiffness,
             linked.condensed(kron(mass, eye_array(3), format="csr")),
@@ -286,7 +286,7 @@ class SolidMesh(Mesh):
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
         locked = coarser is not None and bool(locking(self))
         doubts = () if coarser is None else (*hardly_coarser(coarser.mesh, self), *[LOCKED] * locked)
-        nodal, length = NodalStress.of(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
+        nodal, length = NodalStress.from_shapes(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
 
         def build(n: int, damping_ratio: Any) -> Structure:
             """Structure in the first coordinates."""
@@ -313,6 +313,6 @@ class SolidMesh(Mesh):
 
         structure = reduced.structure(build, damping_ratio)
         if coarser is not None:
-            structure = beside(coarser, structure)
+            structure = attach_coarser(coarser, structure)
             structure = replace(structure, coarser=None) if locked else structure
         return SolidModel(self, structure, frequency)

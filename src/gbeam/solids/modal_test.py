@@ -21,7 +21,7 @@ from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import Geometric, coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure, linear_structure
-from gbeam.solids.matrices import EXACT, left_out, with_tip
+from gbeam.solids.matrices import EXACT, mass_defect, with_tip
 
 LOOSE = 0.5  # of a modal mass, which the masses of the nodes do not have
 CURVED = 0.1  # of a shape, which moves out of phase
@@ -154,7 +154,7 @@ class ModalTest(Value):
         if weights.shape != (len(at),) or not (np.isfinite(weights).all() and (weights >= 0).all() and weights.any()):
             raise InputError("mass", f"has the shape {weights.shape}, or is negative", f"give {len(at)} masses in kg")
         modal = np.asarray(self.modal_mass)
-        missing = left_out(np.diag(weights), shapes / np.sqrt(modal))
+        missing = mass_defect(np.diag(weights), shapes / np.sqrt(modal))
         if missing > LOOSE:
             problem = f"of the nodes gives a mode a mass that is {100 * missing:.0f} % away from its modal mass"
             raise InputError("mass", problem, "are the shapes scaled with the modal masses? Measure at more nodes")

@@ -15,7 +15,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.results.equilibrium import Rest
 from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
-from gbeam.solids.edges import without_limit
+from gbeam.solids.edges import singular_nodes
 from gbeam.solids.elements import mass_matrix
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.plausibility import locking
@@ -118,7 +118,7 @@ class SolidModel(Value):
         return solid_stress(self._nodal, time, q, **origin)
 
 
-def beside(coarser: SolidModel, finer: Structure) -> Structure:
+def attach_coarser(coarser: SolidModel, finer: Structure) -> Structure:
     """Join the structure of a coarser mesh to the `finer` one as its `coarser`.
 
     The coarser one is expressed in coordinates whose shapes are most like the finer one's, with the same named points,
@@ -154,7 +154,7 @@ def beside(coarser: SolidModel, finer: Structure) -> Structure:
     basis = np.zeros((structure.size, n))
     basis[:size_of_basis] = turn * np.where(np.diagonal(size) < 0, -1.0, 1.0)
     padded = np.pad(basis, ((0, rough.every_shape.shape[-1] - len(basis)), (0, 0)))
-    without = without_limit(fine.mesh)
+    without = singular_nodes(fine.mesh)
     excess = int(without.sum()) if without.mean() > MOST else 0
     singular = without[fine.node] & (excess == 0)
     # Where both have a node: stress changes fast near those where it is largest.

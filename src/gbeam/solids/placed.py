@@ -39,7 +39,9 @@ class Placed:
     points_of: list[Indices]
 
     @classmethod
-    def of(cls, mesh: Any, size: float, thickness: Any, *, origin: Numbers, turn: Numbers, scale: Numbers) -> Placed:
+    def from_mesh(
+        cls, mesh: Any, size: float, thickness: Any, *, origin: Numbers, turn: Numbers, scale: Numbers
+    ) -> Placed:
         """Place a mesh with a unit of a `size`, m: scale it, move its origin, and turn it by a rotation vector."""
         from scipy.spatial.transform import Rotation
 

@@ -75,7 +75,7 @@ def refuse_loose(mesh: Mesh) -> None:
     count, part = connected_components(graph, directed=False)
     for i in range(count):
         nodes = part == i
-        if any(nodes[sprung].any() for sprung in mesh.links.on_base):
+        if any(nodes[sprung].any() for sprung in mesh.links.base_nodes):
             continue  # the factorisation says whether the springs hold it
         held = mesh.points[nodes & mesh.clamped]
         size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
@@ -107,8 +107,8 @@ def doubts_of(mesh: Mesh, unit: str) -> list[str]:
 
 def locking(mesh: Mesh) -> list[str]:
     """Warn of elements that are too stiff by more than meshes of them differ from one another."""
-    doubts, of_blocks = list[str](), _slenderness(mesh)
-    linear = [ratios for block, ratios in zip(mesh.blocks, of_blocks, strict=True) if KINDS[block.kind].linear]
+    doubts, slenderness = list[str](), _slenderness(mesh)
+    linear = [ratios for block, ratios in zip(mesh.blocks, slenderness, strict=True) if KINDS[block.kind].linear]
     if linear:
         ratios = np.concatenate(linear)
         thin = ratios[np.isfinite(ratios)]
@@ -127,10 +127,10 @@ def locking(mesh: Mesh) -> list[str]:
         )
     locking = [
         ratios[np.isfinite(ratios) & (ratios > KINDS[block.kind].long)]
-        for block, ratios in zip(mesh.blocks, of_blocks, strict=True)
+        for block, ratios in zip(mesh.blocks, slenderness, strict=True)
     ]
     long = np.concatenate(locking)
-    if len(long) > SLIVERS * sum(map(len, of_blocks)):
+    if len(long) > SLIVERS * sum(map(len, slenderness)):
         doubts.append(
             f"{len(long)} elements fill a thickness alone and are up to {long.max():.2g} times as long as it: they may "
             "lock in bending; make them shorter, or use hexahedra of 27 nodes"

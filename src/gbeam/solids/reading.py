@@ -15,7 +15,7 @@ from gbeam.mechanics.tree.rigid_body import Place, RigidBody
 from gbeam.solids.cad import mesh_of
 from gbeam.solids.card_links import with_cards
 from gbeam.solids.cards import Cards
-from gbeam.solids.foreign import THICKNESS, left_out, node_numbers_of, unit_size
+from gbeam.solids.foreign import THICKNESS, ignored_statements, node_numbers_of, unit_size
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.links import Links, LinkSpring, refuse_names
 from gbeam.solids.placed import Placed, shared_names
@@ -48,7 +48,7 @@ def read_solid(
 ) -> M:
     """Read a solid of some type. :meth:`gbeam.SolidMesh.read` explains the arguments."""
     mesh, size = mesh_of(source, unit, element_size, cards=mass_unit is not None)
-    placed = Placed.of(mesh, size, thickness, origin=origin, turn=turn, scale=scale)
+    placed = Placed.from_mesh(mesh, size, thickness, origin=origin, turn=turn, scale=scale)
     clamps = {name: placed.group("clamp", name) for name in ([clamp] if isinstance(clamp, str) else clamp)}
     clamped = np.isin(np.arange(len(placed.points)), np.concatenate([np.zeros(0, dtype=int), *clamps.values()]))
     named = {name: placed.nearest(name, getattr(place, "at", place)) for name, place in points.items()}
@@ -61,7 +61,7 @@ def read_solid(
     kinds = {names[name]: material for name, material in by_group.items()}
     refuse_names(interfaces, stations)
     hung = {name: placed.group(f"interfaces.{name}", group) for name, group in interfaces.items()}
-    tied = Links.of(placed.group, links, carried, springs, placed.points, clamped)
+    tied = Links.read(placed.group, links, carried, springs, placed.points, clamped)
     statements = tuple[str, ...]()
     if mass_unit is not None:
         cards, weight = getattr(mesh, "cards", Cards()), unit_size("mass_unit", mass_unit, "mass")
@@ -86,7 +86,7 @@ def read_solid(
     refuse_folded(solid)
     refuse_twice(solid)
     refuse_loose(solid)
-    doubts = [*doubts_of(solid, unit or "that of the file"), *left_out(source, mesh, statements)]
+    doubts = [*doubts_of(solid, unit or "that of the file"), *ignored_statements(source, mesh, statements)]
     for name, material in by_group.items():
         doubts += implausible_material(f"materials.{name}" if name else "material", material)
     return replace(solid, warnings=tuple(doubts))

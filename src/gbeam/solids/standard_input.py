@@ -130,7 +130,7 @@ def _coefficients(body: Mapping[str, Any], path: str) -> Coefficients:
         damping=body["De"]["m0"] if "De" in body and body["De"]["m0"].any() else np.zeros((n, n)),
         stiffness=body["Ke"]["m0"],
         gyroscopic=np.moveaxis(ge, -1, 0),
-        k_ww=_by_pairs(np.moveaxis(_slope(body["Oe"], n), -1, 0), order),
+        k_ww=_pair_coefficients(np.moveaxis(_slope(body["Oe"], n), -1, 0), order),
         k_al=np.moveaxis(_slope(body["Cr"], n), -1, 0),
         k_a=np.moveaxis(_slope(body["Ct"], n), -1, 0),
         f_ww=f_ww,
@@ -148,16 +148,16 @@ def _centrifugal(body: Mapping[str, Any], path: str, n: int) -> tuple[Floats, An
     f_ww = np.moveaxis(_slope(body["J"], n), 1, -1) / 2
     along = -body["Oe"]["m0"]
     for order in ORDERS:
-        f_oe = _by_pairs(along.T[:, :, None], order)[..., 0]
+        f_oe = _pair_coefficients(along.T[:, :, None], order)[..., 0]
         if np.abs(f_oe - f_ww).max() <= ALIKE * np.abs(along).max():
             return f_ww, order
     if f_ww.any():
         fix = "export it again: ½ dJ/dq is the force of a rotation"
         raise InputError("path", f"{path} has centrifugal terms Oe that its inertia J contradicts", fix)
-    return _by_pairs(along.T[:, :, None], ORDERS[0])[..., 0], ORDERS[0]
+    return _pair_coefficients(along.T[:, :, None], ORDERS[0])[..., 0], ORDERS[0]
 
 
-def _by_pairs(columns: Floats, order: Any) -> Floats:
+def _pair_coefficients(columns: Floats, order: Any) -> Floats:
     """Symmetric coefficients (3, 3, ...) of pairs of rates, from those (6, ...) of their six products in an order."""
     full = np.zeros((3, 3, *columns.shape[1:]))
     for column, (i, j) in zip(columns, order, strict=True):

@@ -26,8 +26,8 @@ class Stations:
     forces: Floats
 
     @classmethod
-    def of(cls, mesh: Mesh) -> Stations:
-        """Named points of a mesh. The clamp takes the forces that interfaces have on its nodes."""
+    def from_mesh(cls, mesh: Mesh) -> Stations:
+        """Take the named points of a mesh. The clamp takes the forces that interfaces have on its nodes."""
         centres, forces = attached(mesh.points, mesh.interfaces)
         forces[np.repeat(mesh.clamped, 3)] = 0.0
         nodes = np.array([*mesh.stations.values()])
@@ -35,7 +35,7 @@ class Stations:
 
     def displacements(self, fields: Floats) -> Floats:
         """Displacements (s + i, 3, m) of the points from those (k, 3, m) of all nodes."""
-        return self._before_tip(fields[self.nodes], self._mean(fields)[:, 0])
+        return self._insert_before_tip(fields[self.nodes], self._mean(fields)[:, 0])
 
     def expansion(self, shapes: Floats, pushed: Floats) -> tuple[Places, Floats | None]:
         """Places of the points as functions of the coordinates, and rotations (s + i, 3, n) per coordinate.
@@ -44,12 +44,12 @@ class Stations:
         Rotations are NaN where unknown, and None without interfaces.
         """
         count, n = len(self.centres), shapes.shape[-1]
-        r0, first = self._before_tip(self.places, self.centres), self.displacements(shapes)
+        r0, first = self._insert_before_tip(self.places, self.centres), self.displacements(shapes)
         if not count:
             return Places(r0, first), None
         # Work of a force in displacements of second order: what its stress adds to the stiffness, with the other sign.
-        second = self._before_tip(np.zeros((len(self.nodes), 3, n, n)), -pushed.reshape(count, 3, n, n))
-        turns = self._before_tip(np.full((len(self.nodes), 3, n), np.nan), self._mean(shapes)[:, 1])
+        second = self._insert_before_tip(np.zeros((len(self.nodes), 3, n, n)), -pushed.reshape(count, 3, n, n))
+        turns = self._insert_before_tip(np.full((len(self.nodes), 3, n), np.nan), self._mean(shapes)[:, 1])
         return Places(r0, first, second), turns
 
     def _mean(self, fields: Floats) -> Floats:
@@ -57,6 +57,6 @@ class Stations:
         columns = fields.shape[-1]
         return (self.forces.T @ fields.reshape(-1, columns)).reshape(len(self.centres), 2, 3, columns)
 
-    def _before_tip(self, of_nodes: Floats, of_interfaces: Floats) -> Floats:
+    def _insert_before_tip(self, node_values: Floats, interface_values: Floats) -> Floats:
         """Insert the values of the interfaces into those of the nodes, before the tip's."""
-        return np.insert(of_nodes, [len(self.nodes) - 1] * len(self.centres), of_interfaces, axis=0)
+        return np.insert(node_values, [len(self.nodes) - 1] * len(self.centres), interface_values, axis=0)

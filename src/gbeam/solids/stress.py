@@ -56,9 +56,10 @@ class NodalStress(Value):
     excess: int = 0
 
     @classmethod
-    def of(cls, mesh: Mesh, shapes: Floats) -> Self:
-        """Stresses in shapes (k, 3, n) of the nodes. They are extrapolated to the nodes in each element, and averaged
-        over the elements of one material.
+    def from_shapes(cls, mesh: Mesh, shapes: Floats) -> Self:
+        """Compute the stresses in shapes (k, 3, n) of the nodes.
+
+        They are extrapolated to the nodes in each element, and averaged over the elements of one material.
         """
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
@@ -232,7 +233,7 @@ def corners_of(kind: str) -> int:
 
 
 @cache
-def on_face(kind: str, face: int) -> Indices:
+def face_nodes(kind: str, face: int) -> Indices:
     """Nodes of a solid element on a face: its corners, then those in the middles of its edges and in its own middle."""
     places, corners = reference(kind), list(FACES[corners_of(kind)][face])
     middles = [*(places[corners] + places[np.roll(corners, -1)]) / 2, places[corners].mean(axis=0)]

@@ -125,7 +125,7 @@ class Neighbourhood:
     def grid(self, name: str) -> Grid:
         """Steps of the run of a motion."""
         case = self.case
-        return Grid.of(case.system, case.environments[name], case.settings_of(name), self.require_response(name))
+        return Grid.from_run(case.system, case.environments[name], case.settings_of(name), self.require_response(name))
 
     def _differentiated(self, name: str, grid: Grid) -> Differentiated:
         motion, settings = self.case.environments[name], self.case.settings_of(name)

@@ -13,7 +13,7 @@ import numpy as np
 from gbeam.analysis.case import Case
 from gbeam.analysis.control.plants import DRIVES, movable
 from gbeam.analysis.control.shaping import profile_of, shape_command
-from gbeam.analysis.model_study import of_kind
+from gbeam.analysis.model_study import convert_models
 from gbeam.arrays.tree import altered
 from gbeam.constants import ModelKind
 from gbeam.errors import InputError
@@ -128,7 +128,7 @@ def shape_hub_command(
             angle, distance = None, angle
     if duration is None:
         duration = _end(hub, where)
-    tested = replace(case, system=of_kind(case.system, check)).subject if check else None
+    tested = replace(case, system=convert_models(case.system, check)).subject if check else None
     try:
         shaped = shape_command(
             case.subject, command.drive, angle=angle, rate=rate, distance=distance, duration=duration, limit=limit,
@@ -155,7 +155,7 @@ class Driven:
 def driven_of(case: Case, motion: str | None, joint: str | None) -> Driven:
     """Hub or joint that a command drives: a hub that turns a single body, or a coordinate of a joint of a system."""
     notes = notes_on(case.motions)
-    if case.system.alone is None:
+    if case.system.only_structure is None:
         name, hub = driven_joint(case.system, joint)
         gravity = f"motion.{motion_of(case.motions, motion)}" if case.motions else "system.gravity"
         grounded = replace(case, system=_grounded(case, motion), motions={}, tracks={}, accept={})

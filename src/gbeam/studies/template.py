@@ -172,7 +172,7 @@ class CaseTemplate:
                 bodies[name] = body
             elif body.source is not None:  # None: made of particles, without values to vary
                 bodies[name] = _BeamBody(body, body.source.beam)
-        if system.alone is not None:  # a body on the base, without joints to vary
+        if system.only_structure is not None:  # a body on the base, without joints to vary
             return ({"bodies": bodies} if bodies else {}) | common
         gravity = {} if system.gravity is None else {"gravity": system.gravity}
         parts = {name: getattr(system, name) for name in ("joints", "forces", "controllers")}

@@ -34,8 +34,7 @@ Begun = Callable[[Departures, Within, Floats], State | None]
 
 
 class Lacking(NamedTuple):
-    """Largest difference of each quantity between slender and thick beams. It is empty where thick beams have no
-    answer.
+    """Largest difference of each quantity between slender and thick beams; empty where thick beams have no answer.
 
     By beam there are the share of each cause in the energy, and the displacements (b,) m of the masses on it between
     the two. Over time there is the difference of each quantity's peaks.
@@ -51,7 +50,7 @@ class Lacking(NamedTuple):
         sizes, peaks = _larger(self.sizes, other.sizes), _larger(self.peaks, other.peaks)
         return Lacking(sizes, self.causes, _larger(self.bodies, other.bodies), peaks)
 
-    def counts_beside(self, most: Lacking) -> bool:
+    def is_significant(self, most: Lacking) -> bool:
         """True if the difference of a quantity is more than a LESSER part of the largest."""
         return any(size > LESSER * most.sizes[key] for key, size in self.sizes.items())
 
@@ -63,14 +62,14 @@ def _larger(one: Mapping[_K, Any], other: Mapping[_K, Any]) -> dict[_K, Any]:
 
 def thick_beam_differences(
     solved: Posed,
-    of: Trajectory,
+    trajectory: Trajectory,
     theories: Mapping[str, Theory],
     pose: Callable[[Mapping[str, Structure]], Posed],
     begun: Begun,
     look: Callable[[Floats], Looks],
     again: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
-    """Differences between slender and thick beams at a solution `of` the equations `solved`.
+    """Differences between slender and thick beams at a solution of the equations `solved`, their `trajectory`.
 
     `pose` returns equations with other beams, `begun` the difference of their initial states, and `look` the times to
     read, chosen by sizes of departures.
@@ -79,13 +78,13 @@ def thick_beam_differences(
     Thick beams run with and without plate action, unless the answers without controllers say that one of the two makes
     only a LESSER part of every difference.
     """
-    compared = _Compared.of(solved, of, theories, pose)
+    compared = _Compared.from_solution(solved, trajectory, theories, pose)
     try:
         linear = compared.answered(begun, look)
         most = reduce(Lacking.or_larger, linear)
         if again is None:
             return most
-        worth_a_run = (lacking.counts_beside(most) for lacking in linear)
+        worth_a_run = (lacking.is_significant(most) for lacking in linear)
         plated = [*compress(compared.plated, worth_a_run)] or compared.plated
         run = compared.run(again, plated)
     except (ComputationError, np.linalg.LinAlgError):
@@ -108,41 +107,41 @@ class _Compared(NamedTuple):
     plated: Sequence[bool]
 
     @classmethod
-    def of(
+    def from_solution(
         cls,
         solved: Posed,
-        of: Trajectory,
+        trajectory: Trajectory,
         theories: Mapping[str, Theory],
         pose: Callable[[Mapping[str, Structure]], Posed],
     ) -> _Compared:
-        """Put a solution `of` the equations `solved` into those of slender and of thick beams."""
+        """Put a solution of the equations `solved` into those of slender and of thick beams."""
         slender = {name: theory.slender for name, theory in theories.items()}
         thick = {name: theory.thick for name, theory in theories.items()}
-        thin = Within.lifted(pose(slender), solved, of)
-        full = Within.lifted(pose(thick), thin.richer, thin.of)
+        thin = Within.lifted(pose(slender), solved, trajectory)
+        full = Within.lifted(pose(thick), thin.richer, thin.trajectory)
         columns = {name: [k for k, body in enumerate(full.richer.bodies) if body == name] for name in theories}
-        plates = {name: theory.plate(full.of.q[:, columns[name]]) for name, theory in theories.items()}
+        plates = {name: theory.plate(full.trajectory.q[:, columns[name]]) for name, theory in theories.items()}
         plated = (False, True) if any(plate.any() for plate in plates.values()) else (False,)
         return cls(theories, thin, full, columns, plates, plated)
 
     def answered(self, begun: Begun, look: Callable[[Floats], Looks]) -> list[Lacking]:
         """Differences by the small departures of thick beams that cancel the residual, for each flag of `plated`."""
-        of, residual = self.full.of, self.full.residual()
-        shares, stiffness = dict[str, Mapping[str, float]](), np.zeros((of.q.shape[1],) * 2)  # of all plates
+        q, residual = self.full.trajectory.q, self.full.residual()
+        shares, stiffness = dict[str, Mapping[str, float]](), np.zeros((q.shape[1],) * 2)  # of all plates
         for name, theory in self.theories.items():
             columns, plate = self.columns[name], self.plates[name]
-            bent = of.q[:, columns]
+            bent = q[:, columns]
             shares[name] = causes(theory, bent, residual[:, columns], bent @ plate)
             stiffness[np.ix_(columns, columns)] = plate
         departures, answers = self.full.departures(), list[Correction]()
         for plated in self.plated:
             added = plated * stiffness
             stiffer = departures.stiffer(added)
-            answers.append(stiffer.answer(residual + of.q @ added, begun(stiffer, self.full, added)))
+            answers.append(stiffer.answer(residual + q @ added, begun(stiffer, self.full, added)))
         looks = look(np.concatenate([self.full.richer.sizes(answer) for answer in answers], axis=1))
         without, differences = self.thin.read(looks.at), list[Lacking]()
         for answer in answers:
-            sizes, peaks = _differences(looks, without, self.full.moved(answer, looks.at))
+            sizes, peaks = _differences(looks, without, self.full.read_corrected(answer, looks.at))
             bodies = dict[str, Floats]()
             for name, theory in self.theories.items():
                 moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, self.columns[name]])
@@ -156,7 +155,7 @@ class _Compared(NamedTuple):
         answers = list[Lacking]()
         for flag in plated:
             stiff = {name: theory.variants(self.plates[name])[flag] for name, theory in self.theories.items()}
-            sizes, peaks = _differences(Looks.at_all(self.full.of.time), without, again(stiff))
+            sizes, peaks = _differences(Looks.all_times(self.full.trajectory.time), without, again(stiff))
             answers.append(Lacking(sizes, peaks=peaks))
         return answers
 
@@ -165,7 +164,7 @@ def _differences(looks: Looks, without: Reading, truth: Reading) -> tuple[dict[Q
     """Largest differences of readings, and over time the differences of their peaks."""
     sizes = {key: largest(truth[key] - values) for key, values in without.items()}
     judged = [key for key in without if len(looks.at) > 1 and key[1] not in MOVED]
-    return sizes, {key: looks.peaks_apart(without[key], truth[key]) for key in judged}
+    return sizes, {key: looks.peak_difference(without[key], truth[key]) for key in judged}
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:

@@ -76,7 +76,7 @@ class Correction(NamedTuple):
         """This correction minus another."""
         return Correction(*(a - b for a, b in zip(self, other, strict=True)))
 
-    def at(self, times: Indices) -> Correction:
+    def select(self, times: Indices) -> Correction:
         """Return the correction at indices of its times."""
         return Correction(*(history[times] for history in self))
 
@@ -156,7 +156,7 @@ class Departures:
         change[active] = np.linalg.solve(np.where(bent, self.k[0], self.m[0])[inside], -residual[active])
         return np.where(bent, change, 0.0), np.zeros_like(residual)
 
-    def of_state(self, start: State) -> State:
+    def modal_state(self, start: State) -> State:
         """Modal coordinates and rates (n,) of a state."""
         displaced, moving = (np.asarray(np.linalg.solve(self.vibration.modes, values)) for values in start)
         return displaced, moving
@@ -169,7 +169,7 @@ class Departures:
         """
         square, modes, kept = self.vibration
         rate, force = np.sqrt(square[~kept]), residual @ modes[:, ~kept]
-        displaced, moving = (values[~kept] for values in self.of_state(start or self.settled(residual[0])))
+        displaced, moving = (values[~kept] for values in self.modal_state(start or self.settled(residual[0])))
         by_start = np.abs(displaced + force[0] / rate**2) + np.abs(moving) / rate
         by_corners = np.abs(np.diff(force, n=2, axis=0)).max(axis=0) / rate**2
         return rate, modes[:, ~kept] * (by_corners + by_start)
@@ -188,14 +188,14 @@ class Departures:
         k, c, m = (phi.T @ matrices @ phi for matrices in (self.k, self.c, self.m))
         inverse, count = np.linalg.inv(m), len(self.time)
         c, k = inverse @ c, inverse @ k
-        force = -(_between(self.at, inverse, self.time) @ (residual @ phi)[..., None])[..., 0]
+        force = -(_interpolate(self.at, inverse, self.time) @ (residual @ phi)[..., None])[..., 0]
 
         def matrices(t: Any) -> tuple[Floats, Floats, Floats]:
-            return _between(self.at, c, t), _between(self.at, k, t), _between(self.time, force, t)
+            return _interpolate(self.at, c, t), _interpolate(self.at, k, t), _interpolate(self.time, force, t)
 
         rest = symmetric(c.mean(axis=0)), np.diag(square[kept])
         equations = LinearEquations(np.eye(phi.shape[1]), matrices, np.asarray, rest=rest)
-        first, rate = (values[kept] for values in self.of_state(start or self.settled(residual[0])))
+        first, rate = (values[kept] for values in self.modal_state(start or self.settled(residual[0])))
         moved = integrate(
             equations, gauss(), first, rate, step=self.interval, count=count - 1, start=float(self.time[0])
         )
@@ -205,7 +205,7 @@ class Departures:
         return Correction(moved.q @ phi.T + static, moved.qd @ phi.T, moved.qdd @ phi.T)
 
 
-def _between(at: Floats, values: Any, time: Floats) -> Floats:
+def _interpolate(at: Floats, values: Any, time: Floats) -> Floats:
     """Interpolate values (k, ...) at the times `at` (k,) linearly to other times (t,)."""
     place = np.interp(time, at, np.arange(len(at)))
     low = np.minimum(place.astype(int), len(values) - 2)
@@ -214,33 +214,34 @@ def _between(at: Floats, values: Any, time: Floats) -> Floats:
 
 
 class Within(NamedTuple):
-    """A solution of the equations `simpler`, as a trajectory `of` the equations `richer`, which have more shapes.
+    """A solution of the equations `simpler`, as a `trajectory` of the equations `richer`, which have more shapes.
+
     `shared` are the indices of its unknowns among theirs.
     """
 
     richer: Posed
     simpler: Posed
     shared: IntArray
-    of: Trajectory
+    trajectory: Trajectory
 
     @classmethod
-    def lifted(cls, richer: Posed, simpler: Posed, of: Trajectory, shared: IntArray | None = None) -> Within:
+    def lifted(cls, richer: Posed, simpler: Posed, solution: Trajectory, shared: IntArray | None = None) -> Within:
         """Put a solution into richer equations, whose unknowns have its names, or have it at the indices `shared`."""
         if shared is None:
             shared = np.array([richer.names.index(name) for name in simpler.names], dtype=int)
-        states = np.zeros((3, len(of.time), len(richer.names)))
-        for state, values in zip(states, (of.q, of.qd, of.qdd), strict=True):
+        states = np.zeros((3, len(solution.time), len(richer.names)))
+        for state, values in zip(states, (solution.q, solution.qd, solution.qdd), strict=True):
             state[:, shared] = values
-        return cls(richer, simpler, shared, Trajectory(of.time, *states))
+        return cls(richer, simpler, shared, Trajectory(solution.time, *states))
 
     def residual(self) -> Floats:
         """Residual (t, n) of the solution in the `richer` equations, minus that in its own."""
-        parts = pieces(len(self.of.time), len(self.richer.names))
-        return np.concatenate([self._residual_at(times, self.of.select(times)) for times in parts])
+        parts = pieces(len(self.trajectory.time), len(self.richer.names))
+        return np.concatenate([self._residual_at(times, self.trajectory.select(times)) for times in parts])
 
     def held_residual(self, accelerated: Flags) -> Floats:
         """Residual (n,) at the start if only the unknowns that are `accelerated` had an acceleration."""
-        first = self.of.select(slice(1))
+        first = self.trajectory.select(slice(1))
         return self._residual_at(slice(1), replace(first, known=np.where(accelerated, first.qdd, 0.0)))[0]
 
     def _residual_at(self, times: slice, at: Trajectory) -> Floats:
@@ -253,10 +254,8 @@ class Within(NamedTuple):
         residual[:, self.shared] -= self.simpler.residual(*state, self.simpler.inputs(times))
         return residual
 
-    def of_new(self, residual: Floats) -> Floats:
-        """Part of a residual (..., n) in the new coordinates, left by too few shapes; that in the others is the
-        model's.
-        """
+    def new_part(self, residual: Floats) -> Floats:
+        """Part of a residual (..., n) in the new coordinates, which too few shapes leave; the rest is the model's."""
         new = residual.copy()
         new[..., self.shared] = 0.0
         return new
@@ -264,21 +263,21 @@ class Within(NamedTuple):
     def departures(self, equations: Posed | None = None) -> Departures:
         """Linear equations of small departures from the solution, by the `richer` or by other `equations`."""
         richer = equations or self.richer
-        chosen = matrix_times(len(self.of.time))
-        at = self.of.select(chosen)
+        chosen = matrix_times(len(self.trajectory.time))
+        at = self.trajectory.select(chosen)
         elastic = np.array([".q" in name for name in self.richer.names], dtype=bool)
         k, c, m = slopes(richer.residual, at.q, at.qd, at.qdd, richer.inputs(chosen))
         balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.richer.names]
         faster = {ball for ball, accelerated in zip(balls, at.qdd.any(axis=0), strict=True) if ball and accelerated}
         turned = np.array([ball in faster for ball in balls], dtype=bool)
-        return Departures(self.of.time, at.time, k, c, m, elastic, turned)
+        return Departures(self.trajectory.time, at.time, k, c, m, elastic, turned)
 
     def read(self, times: Indices) -> Reading:
         """Read the solution in the `richer` equations at indices of its times."""
-        return self.richer.read(self.of.select(times), times)
+        return self.richer.read(self.trajectory.select(times), times)
 
-    def moved(self, by: Correction, times: Indices) -> Reading:
+    def read_corrected(self, by: Correction, times: Indices) -> Reading:
         """Read the solution with a correction added, at indices of its times."""
-        of, change = self.of.select(times), by.at(times)
-        moved = replace(of, q=of.q + change.value, qd=of.qd + change.rate, known=of.qdd + change.acceleration)
-        return self.richer.read(moved, times)
+        at, change = self.trajectory.select(times), by.select(times)
+        corrected = replace(at, q=at.q + change.value, qd=at.qd + change.rate, known=at.qdd + change.acceleration)
+        return self.richer.read(corrected, times)

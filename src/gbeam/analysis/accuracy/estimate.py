@@ -210,7 +210,7 @@ class Judgement(NamedTuple):
         # From what is computed to the exact model with more shapes; what lies between is no solution.
         first, last = (self.model, self.shapes) if self.shapes[0] is self.model[1] else (self.shapes, self.model)
         pairs = [(first[0], last[1]), *([] if self.mesh is None else [self.mesh])]
-        difference = sum(self.looks.peaks_apart(less[key], more[key]) for less, more in pairs)
+        difference = sum(self.looks.peak_difference(less[key], more[key]) for less, more in pairs)
         by_run = self.peaks_by_step.get(key, 0.0), self.friction.get(key, 0.0)
         causes = (difference + self.theory.peaks.get(key, 0.0)) / self.sizes[key], *by_run
         return min(max(float(np.nansum(causes)), ROUNDING), total)

@@ -29,7 +29,7 @@ class Looks(NamedTuple):
     interval: float
 
     @classmethod
-    def at_all(cls, time: Floats) -> Self:
+    def all_times(cls, time: Floats) -> Self:
         """Look at all times."""
         every = np.arange(len(time))
         return cls(every, every[None], float(time[-1] - time[0]) / max(len(time) - 1, 1))
@@ -39,7 +39,7 @@ class Looks(NamedTuple):
         """Look at times (t,) beside the first and those in `near`, which were found `spacing` s apart, where `sizes`
         (t, k) of departures are largest, and at some between.
         """
-        every, count = cls.at_all(time), len(time)
+        every, count = cls.all_times(time), len(time)
         if count <= FEW:
             return every
         half = FEWEST // 2 + math.ceil(spacing / every.interval - 1e-6)
@@ -49,7 +49,7 @@ class Looks(NamedTuple):
         at = np.unique(np.concatenate([windows.ravel(), highest(sizes, SINGLE), between]))
         return cls(at, np.searchsorted(at, windows), every.interval)
 
-    def peaks_apart(self, values: Floats, others: Floats) -> float:
+    def peak_difference(self, values: Floats, others: Floats) -> float:
         """Largest difference of the peaks of two histories at the times that are read."""
         time = self.interval * np.arange(self.windows.shape[1], dtype=np.float64)
         return largest_peak_difference(time, values[self.windows], others[self.windows])

@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.analysis.control.plants import Goal, Plant
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
-from gbeam.motion.profiles.pulse import SplineProfile, through
+from gbeam.motion.profiles.pulse import SplineProfile, fit_spline
 from gbeam.numerics.bspline import DEGREE, Spline
 
 _FINE = 200  # pieces of a spline that approximates another form
@@ -65,10 +65,10 @@ class Commands:
         """The command of a drive (t,): the effort itself, or the rate whose derivative it is."""
         if not self.plant.free:
             drive = np.concatenate([[0.0], np.cumsum((drive[1:] + drive[:-1]) / 2 * np.diff(self.time))])
-        return through(self.goal.duration, self.time, drive, _FINE)
+        return fit_spline(self.goal.duration, self.time, drive, _FINE)
 
-    def of(self, inner: Floats) -> SplineProfile:
-        """The command with these inner coefficients of its spline."""
+    def command(self, inner: Floats) -> SplineProfile:
+        """Return the command with these inner coefficients of its spline."""
         coefficients = self.ends.copy()
         coefficients[DEGREE:-DEGREE] = inner
         return SplineProfile(self.goal.duration, coefficients)
@@ -76,16 +76,17 @@ class Commands:
 
 @dataclass(frozen=True)
 class Vibration:
-    """Modes at rest: eigenvalues λ (k,), and gains (k,) of the tip's amplitude by a drive u, gain · |∫ exp(−λt) u
-    dt|.
+    """Modes at rest: eigenvalues λ (k,), and gains (k,).
+
+    A drive u leaves the tip with the amplitude gain · |∫ exp(−λt) u dt|.
     """
 
     eigenvalue: Complex
     gain: Floats
 
     @staticmethod
-    def of(plant: Plant) -> Vibration:
-        """Modes that the drive of a plant excites, by ascending frequency; InputError if there are none."""
+    def from_plant(plant: Plant) -> Vibration:
+        """Find the modes that the drive of a plant excites, by ascending frequency; InputError if there are none."""
         small = plant.small
         values, right = np.linalg.eig(small.a)
         excited = np.linalg.solve(right, small.column)

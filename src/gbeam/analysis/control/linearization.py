@@ -143,7 +143,7 @@ def linearize(
             from gbeam.analysis.steady.loop_errors import JudgedLoops  # takes SciPy's linear algebra
             from gbeam.analysis.system.closed_loop import Loops
 
-            loops, cut = Loops.of(state, **options), None if loop == "closed" else loop
+            loops, cut = Loops.from_state(state, **options), None if loop == "closed" else loop
             computed = loops.state_space(cut)
             tell(progress, BY_RICHER, 0.5)
             return JudgedLoops(state, loops, cut).judge(computed)
@@ -192,9 +192,9 @@ def _linearized(
     a, drive, out, through = linear._replace(inputs=forces).state_space(
         *np.split(d, len(linear.mass) * np.arange(1, 4), axis=1)
     )
-    states, held = coordinate_signals(structure, measured.first), measured.held
+    states, held = coordinate_signals(structure, measured.first_coordinate), measured.holding_inputs
     begun = np.concatenate([point.y, point.yd])
-    if not measured.first:
+    if not measured.first_coordinate:
         # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
         acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
         kept = [i for i in range(len(held)) if not 3 <= i < 6]
@@ -282,7 +282,7 @@ def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[G
     structure.require_coordinates()
     system, _ = moving_system(structure, motion)
     outputs = outputs_of(structure, undeformed(system), gauges)
-    states = coordinate_signals(structure, outputs.first) + (() if outputs.first else BASE_RATES)
+    states = coordinate_signals(structure, outputs.first_coordinate) + (() if outputs.first_coordinate else BASE_RATES)
 
     def update(t: float, x: Any, u: Any, params: Any) -> Any:
         return outputs.rates(np.asarray(x, dtype=float), np.asarray(u, dtype=float))[0]

@@ -99,22 +99,22 @@ class Outputs:
     drives: Inputs
 
     @property
-    def first(self) -> int:
+    def first_coordinate(self) -> int:
         """Index of the body's first coordinate in y: 1 behind the angle of a free hub."""
         return len(self.tree.unknowns) - self.structure.size
 
     @property
-    def held(self) -> Array:
+    def holding_inputs(self) -> Array:
         """Inputs u (m,) that hold the state."""
         drives, ground = self.drives, self.drives.ground
         efforts: Any = drives.efforts
-        driven = [efforts[self.tree.unknowns[:1]]] if self.first else [ground.a, ground.w, ground.alpha]
+        driven = [efforts[self.tree.unknowns[:1]]] if self.first_coordinate else [ground.a, ground.w, ground.alpha]
         loads = [] if drives.loads[-1] is None else [np.ravel(drives.loads[-1])]
         return np.concatenate([*driven, *loads])
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (t, p) of states (t, n) and inputs (t, m)."""
-        i, inputs = self.first, self.inputs(u)
+        i, inputs = self.first_coordinate, self.inputs(u)
         q, qd, qdd = y[:, i:], yd[:, i:], ydd[:, i:]
         root = self.tree.motion(y, yd, ydd, inputs).roots[-1]
         base = Base(root.a, root.w, root.alpha)
@@ -129,7 +129,7 @@ class Outputs:
     def inputs(self, u: Array) -> Inputs:
         """Inputs of the tree from vectors u (..., m): torque on a free hub or motion of the base, then loads."""
         drives, ground = self.drives, self.drives.ground
-        if self.first:
+        if self.first_coordinate:
             driven, loads = np.split(u, [1], axis=-1)
             efforts = driven * np.equal(np.arange(self.tree.size), self.tree.unknowns[0])
             drives = replace(drives, efforts=efforts)
@@ -146,7 +146,7 @@ class Outputs:
 
         The derivatives are taken by complex steps.
         """
-        u = self.held
+        u = self.holding_inputs
         state = np.concatenate([point.y, point.yd, point.ydd, u])
         moved = np.concatenate([state[None] + 0j, state + 1j * STEP * np.eye(len(state))])
         y, yd, ydd, drive = np.split(moved, len(point.y) * np.arange(1, 4), axis=1)
@@ -156,7 +156,7 @@ class Outputs:
 
     def rates(self, x: Array, u: Array) -> tuple[Array, Array]:
         """Rates of a state x, and outputs. x is (y, ẏ) and, unless on a free hub, the base's angular velocity."""
-        i = self.first
+        i = self.first_coordinate
         n = self.structure.size + i
         y, yd, rate = x[:n], x[n : 2 * n], x[2 * n :]
         full = (u if i else np.concatenate([u[:3], rate, u[3:]]))[None]  # with the angular velocity, a state
@@ -221,13 +221,13 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
     measured, shares = structure.sections, np.zeros((0, structure.size))
     strains, at, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # rows of the sections: root and tip
     if measured is None:
-        by_gauge = [_of_solid(structure, i, gauge) for i, gauge in enumerate(gauges)]
+        by_gauge = [_solid_gauge(structure, i, gauge) for i, gauge in enumerate(gauges)]
         shares, gauges = np.array(by_gauge).reshape(-1, structure.size), ()
         mass, count = structure.mass, len(structure.stations)
         outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
         measured = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
     if gauges:
-        positions, strains = _of_beam(structure, dict(enumerate(gauges)))
+        positions, strains = _beam_gauges(structure, dict(enumerate(gauges)))
         structure = replace_stations(structure, positions)
         measured = structure.sections
         assert measured is not None
@@ -255,9 +255,9 @@ def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, 
     for name, on_body in by_body.items():
         body = flexible[name]
         if body.sections is None:
-            by_number |= {i: Strained(name, _of_solid(body, i, gauge)) for i, gauge in on_body.items()}
+            by_number |= {i: Strained(name, _solid_gauge(body, i, gauge)) for i, gauge in on_body.items()}
             continue
-        positions, shares = _of_beam(body, on_body)
+        positions, shares = _beam_gauges(body, on_body)
         bodies[name] = body = replace_stations(body, np.union1d(body.stations, positions))
         for i, share, section in zip(on_body, shares, _nearest(body, positions), strict=True):
             by_number[i] = Strained(name, share, int(section))
@@ -269,7 +269,7 @@ def _nearest(structure: Structure, positions: Floats) -> Any:
     return np.abs(np.append(0.0, structure.stations) - positions[:, None]).argmin(axis=1)
 
 
-def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats, Floats]:
+def _beam_gauges(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats, Floats]:
     """Positions (g,), m, of numbered gauges on a beam, and strains (g, 6) per unit force and moment there."""
     assert structure.source is not None
     beam, unit = structure.source.beam, np.eye(6)[:, None]
@@ -283,7 +283,7 @@ def _of_beam(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Floats,
     return at, fibre_strain(beam, at, unit[..., :3], unit[..., 3:], y, z).T
 
 
-def _of_solid(structure: Structure, i: int, gauge: Gauge) -> Floats:
+def _solid_gauge(structure: Structure, i: int, gauge: Gauge) -> Floats:
     """Strains (n,) at gauge number i on a solid per unit coordinate; InputError if the body is no mesh."""
     if structure.recovery is None:
         fix = "leave them out: particles, matrices and modes have no strain"

@@ -98,11 +98,11 @@ class Plant:
     point: str  # whose vibration is made least
 
     @staticmethod
-    def on_hub(system: System, hub: Hub, point: str | None) -> Plant:
+    def from_hub(system: System, hub: Hub, point: str | None) -> Plant:
         """Make the plant of a hub that carries the only body, whose tip is to rest. InputError if the body is rigid,
         the hub turns already, or there are other bodies.
         """
-        body = system.alone
+        body = system.only_structure
         if body is None:
             raise InputError("hub", "is a hub, and carries a system", 'name what moves, such as "joint.angle"')
         if point is not None:
@@ -114,7 +114,7 @@ class Plant:
         return Plant(hub_system(body, hub, system.order[0]), f"{HINGE}.angle", f"{system.order[0]}.tip")
 
     @staticmethod
-    def of(system: System, coordinate: str, point: str | None) -> Plant:
+    def from_coordinate(system: System, coordinate: str, point: str | None) -> Plant:
         """Make the plant of a system's coordinate. If no point is named, it is the tip of the only flexible body."""
         if not movable(system):
             problem = f"is {coordinate!r}, and no joint moves {', '.join(system.order)}"
@@ -155,7 +155,7 @@ class Plant:
         if goal.to_rate and self._deflection(self.system.start[0][None]) is None:
             fix = "name a point of a flexible body, or give no rate"
             raise InputError("point", f"is {self.point!r}, which goes on at the rate that is reached", fix)
-        rest = self._held(0.0)
+        rest = self._resting_state(0.0)
         start = dict(zip(rest.system.coordinates, rest.system.start[0], strict=True))
         for name, value in zip(rest.names, rest.local.y, strict=True):
             joint, _, kind = name.rpartition(".")
@@ -164,12 +164,12 @@ class Plant:
                 raise InputError(f"joints.{joint}.initial.{kind}", problem, "let it begin there")
         if self.system.gravity is not None and np.any(np.asarray(self.system.gravity)):
             way = goal.value * goal.duration / 2 if goal.to_rate else goal.value
-            sags = [self._held(share * way).local.y for share in _PLACES]
+            sags = [self._resting_state(share * way).local.y for share in _PLACES]
             if np.ptp(sags, axis=0).max(initial=0.0) > _SAG * max(np.abs(sags).max(initial=0.0), _LEAST):
                 raise InputError("gravity", *_BENT)
 
-    def _held(self, moved: float) -> SteadySystem:
-        """The system at rest with the driven coordinate held at its start plus `moved`, rad or m."""
+    def _resting_state(self, moved: float) -> SteadySystem:
+        """Find the system at rest with the driven coordinate held at its start plus `moved`, rad or m."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
         initial = {key: value + moved * (key == coordinate) for key, value in joint.start_values.items()}
@@ -252,11 +252,12 @@ class Plant:
             tip = np.asarray(system.tree.motion(y, 0 * y, 0 * y, system.inputs(time)).every_point[k].p)
         return tip, float(np.linalg.norm(half_ranges(time, tip, settings.residual_from or 0.0)))
 
-    def about(
+    def perturbed_runs(
         self, profile: Profile, settings: ResponseSettings, pairs: Sequence[Pair], width: float, share: Share
     ) -> tuple[Ran, Iterator[tuple[Ran, Ran]]]:
-        """Run a command by given steps, and iterate over pairs of runs of commands that differ from one another by a
-        `width`. The pairs follow from exact derivatives of the run.
+        """Run a command by given steps, and iterate over pairs of runs of commands that differ by a `width`.
+
+        The pairs follow from exact derivatives of the run.
         """
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
@@ -299,10 +300,10 @@ class Plant:
 
         ends = np.append(0, 1 + np.flatnonzero(grid.kept))
 
-        def moved(by: Floats | float) -> Ran:
-            """The run with `by` added to its free coordinates."""
+        def read(change: Floats | float) -> Ran:
+            """Read the run with a change added to its unknown coordinates."""
             q = np.zeros((len(ends), tree.size))
-            q[:, tree.unknowns] = run.q[ends] + by
+            q[:, tree.unknowns] = run.q[ends] + change
             tip, residual = self._tip(system, run.time[ends], q, settings)
             return Ran(run.time[ends], tip, "done", "", residual, settings.step or np.nan)
 
@@ -311,6 +312,6 @@ class Plant:
             still = np.zeros((len(tree.unknowns), len(pairs)))
             changes = tangent(linear, scheme, steps, run, still, still, accelerations=False)[0]
             for change in np.moveaxis(width / 2 * changes[ends], -1, 0):
-                yield moved(-change), moved(change)
+                yield read(-change), read(change)
 
-        return moved(0.0), varied()
+        return read(0.0), varied()

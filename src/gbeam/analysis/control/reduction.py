@@ -168,9 +168,13 @@ def truncation(
     error = _largest_gains(difference, np.concatenate([[0.0, end], over, poles[poles <= end]]))
     peaks = _largest_gains(system, over)
     # A gain is compared with the largest of those between the same units.
-    to = np.array([signal.unit for signal in system.outputs])
-    by = np.array([signal.unit for signal in system.inputs])
-    gain = np.array([[peaks[np.ix_(to == a, by == b)].max() for b in by] for a in to]).reshape(peaks.shape)
+    output_units = np.array([signal.unit for signal in system.outputs])
+    input_units = np.array([signal.unit for signal in system.inputs])
+    gain = np.empty(peaks.shape)
+    for output in set(output_units.tolist()):
+        for source in set(input_units.tolist()):
+            block = np.ix_(output_units == output, input_units == source)
+            gain[block] = peaks[block].max()
     return Truncation(method, states, hankel, start / (2 * np.pi), end / (2 * np.pi), error, gain)
 
 

@@ -137,20 +137,22 @@ def shape_command(
         raise InputError("robust", f"is {robust:g}", "give a share from 0 to less than 1, such as 0.2")
     if not limit > 0:
         raise InputError("limit", f"is {limit:g}", "give a positive number")
-    commands, vibration = Commands(plant, goal, pieces), Vibration.of(plant)
+    commands, vibration = Commands(plant, goal, pieces), Vibration.from_plant(plant)
     others = reference_drives(commands, vibration)
     scale = float(np.mean(vibration.amplitude(commands.time, others["smooth-step"], np.ones(1))))
     design = _Design(commands, vibration, limit, robust, scale)
     inner = design.linear()
     if robust == 0:
         inner = _refined(plant, design, inner, progress)
-    profiles = {"shaped": commands.of(inner), **{name: commands.profile(drive) for name, drive in others.items()}}
+    profiles = {"shaped": commands.command(inner), **{name: commands.profile(drive) for name, drive in others.items()}}
     drives = {"shaped": commands.fixed + commands.drive @ inner, **others}
     tested = plant if check is None else _plant(check, hub, point)
     settings = _settings(vibration, goal.duration)
     runs, warnings = [], list[str]()
     for name, profile in profiles.items():
-        response = tested.run(profile, replace(settings, step=None), name, _within(progress, f"{tested.kind}: {name}"))
+        response = tested.run(
+            profile, replace(settings, step=None), name, _part_progress(progress, f"{tested.kind}: {name}")
+        )
         warnings += _missed(response, goal, name) if plant.free else []
         runs.append(
             CommandRun(
@@ -251,14 +253,16 @@ def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
 def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
     """The plant of a command, a hub with its beam or a joint of a system. InputError if they do not go together."""
     system = subject_of(structure, None).system
-    return Plant.on_hub(system, hub, point) if isinstance(hub, Hub) else Plant.of(system, hub, point)
+    return Plant.from_hub(system, hub, point) if isinstance(hub, Hub) else Plant.from_coordinate(system, hub, point)
 
 
 def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -> Floats:
     """Coefficients improved by Gauss-Newton steps on the vibration that the plant's own run leaves."""
     commands = design.commands
-    settings = _settings(Vibration.of(plant), commands.goal.duration)
-    first = plant.run(commands.of(inner), settings, progress=_within(progress, f"{plant.kind}: the linear design"))
+    settings = _settings(Vibration.from_plant(plant), commands.goal.duration)
+    first = plant.run(
+        commands.command(inner), settings, progress=_part_progress(progress, f"{plant.kind}: the linear design")
+    )
     if first.outcome != "done":
         raise ComputationError(first.outcome, first.message)
     settings = replace(settings, step=first.step)
@@ -268,9 +272,13 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         words = f"{plant.kind}: refining, round {k + 1} of at most {_ROUNDS}"
         tell(progress, words, 0.0)
         width = _MOVED * np.abs(commands.drive @ inner + commands.fixed).max()
-        pairs = [(commands.of(inner - width / 2 * move), commands.of(inner + width / 2 * move)) for move in moves.T]
+        pairs = [
+            (commands.command(inner - width / 2 * move), commands.command(inner + width / 2 * move)) for move in moves.T
+        ]
         try:
-            nominal, varied = plant.about(commands.of(inner), settings, pairs, width, partial(tell, progress, words))
+            nominal, varied = plant.perturbed_runs(
+                commands.command(inner), settings, pairs, width, partial(tell, progress, words)
+            )
         except ComputationError:
             if not k:
                 raise
@@ -295,7 +303,7 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
     return best
 
 
-def _within(progress: Progress, words: str) -> Progress:
+def _part_progress(progress: Progress, words: str) -> Progress:
     """Progress of a part, which is told with `words` before its own."""
     return lambda what, share: tell(progress, f"{words}, {what}", share)
 

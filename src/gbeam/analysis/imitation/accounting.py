@@ -12,7 +12,7 @@ from gbeam.arrays.namespace import namespace
 from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.constants import ToleranceOf
 from gbeam.guards.checks import choice, positive
-from gbeam.motion.rigid import moved
+from gbeam.motion.rigid import shift_base
 from gbeam.numerics.samples import separate_peaks, true_runs
 from gbeam.results.accounting import TOLERANCE_OF, Accounting, LoadPeak, NotFollowed, Overload, PeakPair
 from gbeam.results.machine import Imitated, used_up
@@ -76,7 +76,7 @@ def judge(
     if ends:
         largest = largest_pair(largest_load(run.time[during], flown, ends), largest_load(run.time, run.machine, ends))
     span = max(span[0], float(run.time[0])), min(span[1], float(run.time[-1]))
-    axes, time, places = run.axes, run.time[during], beside_root(ends)
+    axes, time, places = run.axes, run.time[during], far_ends(ends)
     load = machine.a_WO_B if axes is None else axes.actual[during]
     histories = (
         History(flown.a_WO_B, flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B), places),
@@ -252,7 +252,7 @@ _ALIKE = 1e-9  # of the load: points whose loads differ by less have the same
 Largest = tuple[float, float, str]  # m/s², s, place; "" if every point has the same load
 
 
-def beside_root(ends: Mapping[str, Floats]) -> Floats:
+def far_ends(ends: Mapping[str, Floats]) -> Floats:
     """Places (p, 3) m of the ends of a specimen other than "the root"; one of NaN if there is no other."""
     places = np.array([place for name, place in ends.items() if name != "the root"]).reshape(-1, 3)
     return places if len(places) else np.full((1, 3), np.nan)
@@ -261,7 +261,7 @@ def beside_root(ends: Mapping[str, Floats]) -> Floats:
 def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: float = 0.0) -> Largest:
     """Largest size of a base's load over time (t,) at points from the root, whose x is `origin`, m, in the base."""
     away = np.array([-origin, 0.0, 0.0])
-    loads = np.array([np.linalg.norm(moved(base, place + away).a_WO_B, axis=-1) for place in points.values()])
+    loads = np.array([np.linalg.norm(shift_base(base, place + away).a_WO_B, axis=-1) for place in points.values()])
     place, i = np.unravel_index(int(np.argmax(loads)), loads.shape)
     alike = np.ptp(loads[:, i]) <= _ALIKE * loads[place, i]
     return float(loads[place, i]), float(time[i]), "" if alike else list(points)[place]

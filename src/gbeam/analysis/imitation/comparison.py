@@ -38,7 +38,7 @@ def peak_pairs(flight: Quantities, machine: Quantities, during: slice, tip: int)
 
     NaN stands for a size that a run does not have.
     """
-    in_flight, on_machine = flight.peaks(_until(flight, machine, during), tip), machine.peaks(during, tip)
+    in_flight, on_machine = flight.peaks(_compared_times(flight, machine, during), tip), machine.peaks(during, tip)
     pairs = dict[str, PeakPair]()
     for name, (size, time) in in_flight.items():
         machine_size, machine_time = on_machine[name]
@@ -46,7 +46,7 @@ def peak_pairs(flight: Quantities, machine: Quantities, during: slice, tip: int)
     return pairs
 
 
-def _until(flight: Quantities, machine: Quantities, during: slice) -> Flags:
+def _compared_times(flight: Quantities, machine: Quantities, during: slice) -> Flags:
     """Flags of the flight's times up to the last one that is compared."""
     last = machine.response.time[during][-1]
     return flight.response.time <= last + _ROUNDING * abs(last)
@@ -55,7 +55,7 @@ def _until(flight: Quantities, machine: Quantities, during: slice) -> Flags:
 def _stresses_at(at: str, flight: Quantities, machine: Quantities, during: slice) -> PeakPair:
     """Largest stress at a named point over the flight's times in each run; NaN if either has none there."""
     peaks = list[Peak]()
-    for run, part in ((flight, _until(flight, machine, during)), (machine, during)):
+    for run, part in ((flight, _compared_times(flight, machine, during)), (machine, during)):
         stress = run.stress_at("stress_at", at)
         if stress is None:
             return PeakPair(place_flight=at, place_machine=at)
@@ -147,7 +147,7 @@ def compare(
     0.26%
     """
     limits = checked_limits(accept)
-    flown, spun = Quantities.of("flight", flight), Quantities.of("centrifuge", centrifuge)
+    flown, spun = Quantities.from_response("flight", flight), Quantities.from_response("centrifuge", centrifuge)
     if flown.points != spun.points:
         raise InputError("centrifuge", "is of another specimen than flight", "give two responses of one specimen")
     chosen = point or flown.farthest
@@ -187,7 +187,7 @@ def compare(
     growth = in_flight(gradients(flown.base.w_WB_B, flown.base.alpha_WB_B))
     turning = gradients(spun.base.w_WB_B[during], spun.base.alpha_WB_B[during])
     run = None if axes is None else axes.imitated
-    if run is None or not _of_flight(run, flight.time[_until(flown, spun, during)], flown.base):
+    if run is None or not _has_flight_load(run, flight.time[_compared_times(flown, spun, during)], flown.base):
         # By the steps of the responses.
         run = Imitated(centrifuge.time, _interpolated(centrifuge.time, flight.time, flown.base), spun.base, axes)
     within = float(time[0]), float(time[-1])
@@ -226,7 +226,7 @@ def compare(
 _ALIKE = 1e-3  # of the largest load: flights whose loads differ by less are one
 
 
-def _of_flight(run: Imitated, time: Floats, base: Base) -> bool:
+def _has_flight_load(run: Imitated, time: Floats, base: Base) -> bool:
     """True if the flight that a machine imitates has the load of a base at the first times (t,), s, of its motion."""
     load = base.a_WO_B[: len(time)]
     imitated = interpolated(time, run.time, run.flight.a_WO_B)
@@ -316,8 +316,9 @@ def _load_difference(covered: Flags, machine: Quantities, gradient: Floats, tip:
 
 
 def _best_control_points(influence: Influence) -> tuple[float, float]:
-    """Least and largest of the control points x_c at which a field g (x − x_c) across the beam leaves the root without
-    a moment, or the tip at rest.
+    """Least and largest of the best control points x_c.
+
+    There a field g (x − x_c) across the beam leaves the root without a moment, or the tip at rest.
     """
     uniform = np.concatenate([influence.moment_uniform[1:], influence.tip_uniform[1:]])
     linear = np.concatenate([influence.moment_linear[1:], influence.tip_linear[1:]])

@@ -34,7 +34,7 @@ def fatigue(flight: Quantities, machine: Quantities, at: str | None = None) -> F
         place = max(candidates, key=lambda name: np.ptp(candidates[name].stress), default="")
         in_flight, on_machine = candidates.get(place), places_of(machine.response).get(place)
     else:
-        place, in_flight, on_machine = f"at {at}", cyclic_at(flight, at), cyclic_at(machine, at)
+        place, in_flight, on_machine = f"at {at}", cyclic_stress(flight, at), cyclic_stress(machine, at)
     if in_flight is None or on_machine is None:
         return None
     if not np.array_equal(in_flight.exponent, on_machine.exponent, equal_nan=True):
@@ -54,19 +54,19 @@ def places_of(response: Response) -> dict[str, Cyclic]:
         if solid is not None:
             places |= _worst(solid, f"{name}'s " if several else "")
         elif loads is not None:
-            places[f"of the root of {name}" if several else "of the root"] = _of_section(loads, 0)
+            places[f"of the root of {name}" if several else "of the root"] = _section_stress(loads, 0)
     return places
 
 
-def cyclic_at(run: Quantities, at: str) -> Cyclic | None:
+def cyclic_stress(run: Quantities, at: str) -> Cyclic | None:
     """Normal stress and exponent at a named point; None if the point is neither on a beam nor on a mesh."""
     solid, loads, k = run.stressed("damage_at", at)
     if solid is not None:
         return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
-    return None if loads is None else _of_section(loads, k)
+    return None if loads is None else _section_stress(loads, k)
 
 
-def _of_section(loads: Loads, section: int) -> Cyclic:
+def _section_stress(loads: Loads, section: int) -> Cyclic:
     """Stress on the fibre of a section where it ranges most."""
     assert loads.fibre is not None
     return Cyclic(loads.fibre[:, section], loads.fatigue_exponent)

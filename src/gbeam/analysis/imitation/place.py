@@ -88,7 +88,7 @@ def verify(
         return response
 
     in_flight = simulated(flight, "flight")
-    tip = Quantities.of("flight", in_flight).index("point", answers.tip)
+    tip = Quantities.from_response("flight", in_flight).index("point", answers.tip)
     # Machines at different control points share their axis motions, and the current one may be at the middle.
     carried: dict[int, Response] = {}  # by axis motions
     responses: dict[tuple[int, bytes], Response] = {}  # by axis motions and control point
@@ -99,7 +99,7 @@ def verify(
         if (motion, key) not in responses:
             responses[motion, key] = simulated(machine, name)
         response = responses[motion, key]
-        of_tip = Quantities.of(name, response).displacement[:, tip]
+        of_tip = Quantities.from_response(name, response).displacement[:, tip]
         comparison = compare(in_flight, response, point=answers.tip or None)
         compared = np.isin(response.time, comparison.time[comparison.covered])
         vibration, moved = np.nan, np.nan
@@ -109,7 +109,7 @@ def verify(
             if motion not in carried:
                 carried[motion] = simulated(_Carried(machine), f"{name}, carried")
             # Interpolated, since automatic steps may differ.
-            free = Quantities.of(name, carried[motion]).displacement[:, tip]
+            free = Quantities.from_response(name, carried[motion]).displacement[:, tip]
             swing = of_tip - interpolated(response.time, carried[motion].time, free)
             swing -= low_pass(swing, step, cutoff)
             difference = comparison.difference[comparison.covered]

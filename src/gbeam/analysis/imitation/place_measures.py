@@ -228,11 +228,11 @@ class Answers:
     def __init__(self, system: System, flight: Flight, settings: ResponseSettings) -> None:
         """Find the point and the mode that the flight moves most, and times that are close enough for that mode."""
         span = np.linspace(settings.start, settings.start + settings.duration, SAMPLES)
-        self.specimen, flown = Specimen.of(system, span), flight.base(span)
+        self.specimen, flown = Specimen.from_system(system, span), flight.base(span)
         loads = flown.a_WO_B, gradients(flown.w_WB_B, flown.alpha_WB_B)
         displacement, modes, self.tip, self.mode = self.specimen.displacement, self.specimen.modes, "", None
         if modes is not None:
-            moved = [_largest(answer.at(*loads)) for answer in displacement.values()]
+            moved = [_largest(answer.evaluate(*loads)) for answer in displacement.values()]
             point = int(np.argmax(moved))
             self.tip, self.mode = list(displacement)[point], modes.foremost(point, *loads)
             self.reach = float(np.linalg.norm(self.mode.shape[point]))
@@ -251,16 +251,16 @@ class Answers:
         answers = {"root-shear": specimen.force, "root-moment": specimen.moment}
         if self.tip:
             answers |= dict.fromkeys(("vibration", "tip"), specimen.displacement[self.tip])
-        felt = [name for name, answer in answers.items() if _largest(self._across(answer).at(*loads)) > 0]
+        felt = [name for name, answer in answers.items() if _largest(self._lateral_part(answer).evaluate(*loads)) > 0]
         felt.append("load")
         for name, weight in weights.items():
             if weight and name not in felt:
                 problem = f"is {name}, of which the flight makes none"
                 raise InputError("measure", problem, f"choose of {', '.join(felt)}")
 
-    def _across(self, answer: Answer) -> Answer:
-        """The answer of a straight beam without its component along x, in which it is stiff; others as they are."""
-        return answer.onto(np.diag([0.0, 1.0, 1.0])) if self.specimen.straight else answer
+    def _lateral_part(self, answer: Answer) -> Answer:
+        """Return the answer of a straight beam without its component along x, which is stiff; others as they are."""
+        return answer.map(np.diag([0.0, 1.0, 1.0])) if self.specimen.straight else answer
 
     def histories(
         self, flight: Flight, centrifuge: Centrifuge
@@ -279,14 +279,14 @@ class Answers:
 
         def histories(answer: Answer, shaped: Callable[[Floats], Floats], scale: float) -> Histories:
             """Histories of an answer, whose values (t, ...) are `shaped` into those of the measure."""
-            at_c = shaped(answer.at(error, 0 * growing))
-            grown = shaped(answer.at(0 * error, growing))
-            uniform = np.stack([shaped(answer.at(column, 0 * growing)) for column in columns])
+            at_c = shaped(answer.evaluate(error, 0 * growing))
+            grown = shaped(answer.evaluate(0 * error, growing))
+            uniform = np.stack([shaped(answer.evaluate(column, 0 * growing)) for column in columns])
             return Histories(at_c, grown, uniform, scale)
 
         def quasi_static(answer: Answer) -> Histories:
-            answer = self._across(answer)
-            in_flight = answer.at(self.load, self.growth)
+            answer = self._lateral_part(answer)
+            in_flight = answer.evaluate(self.load, self.growth)
             return histories(answer, lambda values: values[covered], _largest(in_flight[covered]))
 
         measures = {"root-shear": quasi_static(specimen.force), "root-moment": quasi_static(specimen.moment)}
@@ -304,8 +304,8 @@ class Answers:
         frequency, damping = float(self.mode.frequency), float(self.mode.damping)
 
         def vibration(force: Floats) -> Floats:
-            riding = displacement(force, frequency, damping, self.step) - force / frequency**2
-            return np.asarray(self.reach * riding[covered, None])
+            deviation = displacement(force, frequency, damping, self.step) - force / frequency**2
+            return np.asarray(self.reach * deviation[covered, None])
 
         return vibration
 

@@ -41,9 +41,10 @@ class Quantities:
     body: BodyResponse | None = None
 
     @classmethod
-    def of(cls, where: str, response: Response) -> Quantities:
-        """Quantities of a response, passed as the argument `where`. InputError if the ground rests, or if loads are
-        lacking where bodies hang on joints.
+    def from_response(cls, where: str, response: Response) -> Quantities:
+        """Take the quantities of a response, which is passed as the argument `where`.
+
+        InputError if the ground rests, or if loads are lacking where bodies hang on joints.
         """
         deforming = sum(body.q.shape[1] for body in response.bodies.values())
         away = np.any(response.place[0, -1]) or np.any(response.attitude[0, -1, 1:])  # of an only body the root
@@ -52,7 +53,7 @@ class Quantities:
             fix = "simulate it on a flight, and on a centrifuge that tracks it, with loads"
             raise InputError(where, "is on a ground at rest, or without loads", fix)
         if jointed:
-            return cls._of_points(response, response.base)
+            return cls._from_points(response, response.base)
         body, loads = response.body, response.body.loads
         return cls(
             response,
@@ -65,7 +66,7 @@ class Quantities:
         )
 
     @classmethod
-    def _of_points(cls, response: Response, base: Base) -> Quantities:
+    def _from_points(cls, response: Response, base: Base) -> Quantities:
         """Quantities of a response of several bodies, or of one on a joint, by its points."""
         from scipy.spatial.transform import Rotation  # 0.2 s to import, which no comparison of one body needs
 
@@ -113,11 +114,11 @@ class Quantities:
             del histories["tip"]  # a rigid one stays
         largest = dict[str, Peak]()
         for name, vectors in histories.items():
-            peak = _within(time, recorded[name].size) if name in recorded else None
+            peak = _peak_in_part(time, recorded[name].size) if name in recorded else None
             if peak is None:
-                peak = UNKNOWN if vectors is None else _first(*vector_peaks(time, vectors[part]))
+                peak = UNKNOWN if vectors is None else _largest_peak(*vector_peaks(time, vectors[part]))
             largest[name] = peak
-        return largest | {"stress": max(self._stresses(time, part), key=_by_size, default=UNKNOWN)}
+        return largest | {"stress": max(self._stresses(time, part), key=_peak_size, default=UNKNOWN)}
 
     def _recorded(self, point: int) -> dict[str, VectorPeaks]:
         """Peaks over all steps that the response has, by name. "tip" is the point of number `point`."""
@@ -140,7 +141,7 @@ class Quantities:
                 yield largest(time, solid.von_mises[part, None]) if solid.known else UNKNOWN
             elif loads is not None and body.peaks.loads is not None:
                 stress = body.peaks.loads.stress
-                peak = _within(time, stress, int(np.argmax(stress.value)))
+                peak = _peak_in_part(time, stress, int(np.argmax(stress.value)))
                 if peak is None:
                     sizes = np.concatenate([loads.stress_tension[part], -loads.stress_compression[part]], axis=1)
                     peak = largest(time, sizes)
@@ -212,21 +213,21 @@ def largest(time: Floats, values: Floats) -> Peak:
     """
     if not np.isfinite(values).all():
         return UNKNOWN
-    return _first(*maxima(time, values, *seven_point(time, values, near_maxima(time, values))))
+    return _largest_peak(*maxima(time, values, *seven_point(time, values, near_maxima(time, values))))
 
 
-def _within(time: Floats, extremes: Extremes, k: Any = ()) -> Peak | None:
+def _peak_in_part(time: Floats, extremes: Extremes, k: Any = ()) -> Peak | None:
     """A peak over all of a run, the `k`-th of several; None if unknown, or outside the part with times (t,), s."""
     value, when = float(extremes.value[k]), float(extremes.time[k])
     return (value, when) if np.isfinite(value) and time[0] <= when <= time[-1] else None
 
 
-def _first(values: Floats, times: Floats) -> Peak:
+def _largest_peak(values: Floats, times: Floats) -> Peak:
     """Largest of values (k,), and its time."""
     most = int(np.argmax(values))
     return float(values[most]), float(times[most])
 
 
-def _by_size(peak: Peak) -> float:
+def _peak_size(peak: Peak) -> float:
     """Sort key of peaks by their sizes. One that is unknown counts as the largest."""
     return math.inf if math.isnan(peak[0]) else peak[0]

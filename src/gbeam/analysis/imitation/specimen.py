@@ -34,9 +34,9 @@ class Answer(NamedTuple):
     growth: Floats
 
     @classmethod
-    def of(cls, a: Floats, alpha: Floats, ww: Floats) -> Answer:
-        """Make the answer from values by unit accelerations and unit angular accelerations (3, ...), and by unit
-        products of rates (3, 3, ...).
+    def from_units(cls, a: Floats, alpha: Floats, ww: Floats) -> Answer:
+        """Combine the answers to unit accelerations and unit angular accelerations (3, ...), and to unit products of
+        rates (3, 3, ...).
 
         The growth G = α× + ω ωᵀ − ω² 1 has its antisymmetric part from α, and its symmetric part from ω.
         """
@@ -48,11 +48,11 @@ class Answer(NamedTuple):
         pairs = symmetric_part - trace / 2 * np.eye(3)  # ω ωᵀ of each
         return cls(a, np.tensordot(turning, alpha, 1) + np.tensordot(pairs, ww, 2))
 
-    def onto(self, values: Any) -> Answer:
+    def map(self, values: Any) -> Answer:
         """Return the answer with its values mapped by a matrix (..., k)."""
         return Answer(self.a @ values, self.growth @ values)
 
-    def at(self, a: Floats, growth: Floats) -> Floats:
+    def evaluate(self, a: Floats, growth: Floats) -> Floats:
         """Values at accelerations (..., 3) and growths (..., 3, 3) of the root."""
         return np.asarray(np.tensordot(a, self.a, 1) + np.tensordot(growth, self.growth, 2))
 
@@ -75,7 +75,7 @@ class Modes:
 
     def foremost(self, point: int, a: Floats, growth: Floats) -> Modes:
         """Return the slowest of the modes that displace a point most, statically, under loads (t, 3), (t, 3, 3)."""
-        force = np.abs(self.force.at(a, growth)).max(axis=0)
+        force = np.abs(self.force.evaluate(a, growth)).max(axis=0)
         moved = np.linalg.norm(self.shape[point], axis=0) * force / self.frequency**2
         return self.one(int(np.argmax(moved >= (1 - ALIKE) * moved.max())))
 
@@ -95,9 +95,9 @@ class Specimen:
     corners: Callable[[float], Floats]
 
     @classmethod
-    def of(cls, system: System, times: Floats) -> Specimen:
-        """Answers of a system about its equilibrium on a ground at rest; InputError if it moves at times (t,), s."""
-        _refuse_moved(system, times)
+    def from_system(cls, system: System, times: Floats) -> Specimen:
+        """Find the answers of a system about its rest on a ground at rest; InputError if it moves at times (t,), s."""
+        _refuse_drives(system, times)
         state = steady(system, Drive(time=float(times[0])))
         local, stiffness = state.local, state.linear.stiffness
         forces, force, moment = _answers(local)
@@ -111,7 +111,7 @@ class Specimen:
             judged = _judged(system)
             moved = state.slopes_of_points[[system.points.index(name) for name in judged]]
             by_load = np.linalg.solve(stiffness, moved.reshape(-1, free).T).reshape(free, -1, 3)
-            displacement = {name: forces.onto(by_load[:, k]) for k, name in enumerate(judged)}
+            displacement = {name: forces.map(by_load[:, k]) for k, name in enumerate(judged)}
             mass, damping, stiffness = (symmetric(matrix) for matrix in state.linear[:3])
             modes = _modes(mass, damping, stiffness, forces, moved)
         beams = [None if body.source is None else body.source.beam for body in system.flexible.values()]
@@ -138,10 +138,10 @@ def _modes(mass: Floats, damping: Floats, stiffness: Floats, forces: Answer, mov
     """Modes from M, C and K (n, n), and from forces and displacements (p, 3, n) of points per coordinate."""
     frequency, modes = rest_modes(mass, stiffness)
     ratio = np.einsum("nk,nm,mk->k", modes, damping, modes) / (2 * frequency)
-    return Modes(frequency, ratio, forces.onto(modes), moved @ modes)
+    return Modes(frequency, ratio, forces.map(modes), moved @ modes)
 
 
-def _refuse_moved(system: System, times: Floats) -> None:
+def _refuse_drives(system: System, times: Floats) -> None:
     """Raise InputError if controllers or prescribed rates move a system, which then has no place of rest."""
     if system.controllers:
         fix = "give the joints springs in their place, and compare runs with them by `gbeam sweep`"
@@ -176,6 +176,6 @@ def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
         for k, (i, j) in enumerate(PAIRS):
             product = change[7 + k] if i == j else (change[7 + k] - change[7 + i] - change[7 + j]) / 2
             ww[i, j] = ww[j, i] = product
-        return Answer.of(change[1:4], change[4:7], ww)
+        return Answer.from_units(change[1:4], change[4:7], ww)
 
     return answer(rows[:, local.tree.unknowns]), answer(ground.force), answer(ground.moment)

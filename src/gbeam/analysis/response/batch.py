@@ -137,13 +137,13 @@ def simulate_batch(
 
 
 def _told(responses: Iterator[tuple[int, Any]], cases: Iterable[Any], progress: Progress) -> Iterator[tuple[int, Any]]:
-    """The responses, and a word after each."""
+    """Yield the responses, and tell how many are done after each."""
     count = len(cases) if isinstance(cases, Sized) else 0
-    of = f" of {count}" if count else ""
+    total = f" of {count}" if count else ""
     with Bar() if progress is True else nullcontext(progress) as told:
-        tell(told, f"0{of} cases, compiling first", 0.0)
+        tell(told, f"0{total} cases, compiling first", 0.0)
         for done, answer in enumerate(responses, 1):
-            tell(told, f"{done}{of} cases", done / count if count else 0.0)
+            tell(told, f"{done}{total} cases", done / count if count else 0.0)
             yield answer
 
 
@@ -156,21 +156,23 @@ def _responses(
     """Yield index and response of each case, integrating `together` cases as soon as so many of one shape wait."""
     waiting: dict[Hashable, list[_Case]] = {}
 
-    def full(case: _Case) -> list[_Case]:
+    def enqueue(case: _Case) -> list[_Case]:
         """Put a case into its queue; return the queue if it is full, else an empty list."""
         queue = waiting.setdefault(case.shape, [])
         queue.append(case)
         return waiting.pop(case.shape) if len(queue) == together else []
 
-    def through(queue: list[_Case]) -> Iterator[tuple[int, Any]]:
+    def run(queue: list[_Case]) -> Iterator[tuple[int, Any]]:
         """Integrate a queue together, then the queues that its cases fill as they wait for their next runs."""
         ready = [queue]
         while ready:
-            for answer in _together(ready.pop(), together):
+            for answer in _integrate_queue(ready.pop(), together):
                 if not isinstance(answer, _Case):
                     yield answer
-                elif more := full(answer):
-                    ready.append(more)
+                    continue
+                full_queue = enqueue(answer)
+                if full_queue:
+                    ready.append(full_queue)
 
     first, last, traced = None, None, False
     structure: Any
@@ -191,16 +193,18 @@ def _responses(
             yield index, simulate(structure, subject.motion, settings)
             continue
         common = [body.equations for body in posed.system.flexible.values()] if one_structure else None
-        case = _going_on(index, posed, common, posed.plan())
+        case = _advance(index, posed, common, posed.plan())
         if isinstance(case, _Ended):
             yield from _responses_of([case])
-        elif queue := full(case):
-            yield from through(queue)
+            continue
+        full_queue = enqueue(case)
+        if full_queue:
+            yield from run(full_queue)
     while waiting:
-        yield from through(waiting.pop(next(iter(waiting))))
+        yield from run(waiting.pop(next(iter(waiting))))
 
 
-def _going_on(
+def _advance(
     index: int,
     posed: Posed,
     common: Any,
@@ -208,8 +212,10 @@ def _going_on(
     run: Run | None = None,
     known: dict[str, Any] | None = None,
 ) -> _Case | _Ended:
-    """Send a run to a plan; return the case with the run that it wants next, or ended. `known` belongs to the run sent,
-    and is kept if that counts. Runs that cannot be integrated together are made at once.
+    """Send a run to a plan; return the case with the run that it wants next, or ended.
+
+    `known` belongs to the run that is sent, and is kept if the plan chooses that run. Runs that cannot be integrated
+    together are made at once.
     """
     from gbeam.integrate import side_by_side
 
@@ -228,7 +234,7 @@ def _going_on(
     return _Ended(index, posed, chosen, errors, known if known and chosen is run else {})
 
 
-def _together(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Any]]:
+def _integrate_queue(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Any]]:
     """Integrate a queue; yield cases that wait for another run, and index and response of those that have ended."""
     from gbeam.integrate.side_by_side import integrate_together
 
@@ -246,28 +252,27 @@ def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, dict[str, Any]()
-        if trajectory is None or posed.too_far(trajectory.q, moved) is not None:
+        if trajectory is None or posed.steps_in_bounds(trajectory.q, moved) is not None:
             run = Run.by_steps(posed, case.step)  # which stops where its model ceases to hold
         else:
             run = Run(trajectory, case.step, posed)
             known = dict(moved)
-        after = _going_on(case.index, posed, case.run.common, case.plan, run, known)
-        if isinstance(after, _Case):
-            yield after
+        next_case = _advance(case.index, posed, case.run.common, case.plan, run, known)
+        if isinstance(next_case, _Case):
+            yield next_case
         else:
-            ended.append(after)
+            ended.append(next_case)
     yield from _responses_of(ended)
 
 
 def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> list[dict[str, Any]]:
-    """For each trajectory the displacements (t, s, 3) m of the stations of each body at every step; none for None."""
+    """Displacements (t, s, 3) m of the stations of each body at every step, by name, for each trajectory."""
     displacements: list[dict[str, Any]] = [{} for _ in queue]
-    completed = [
-        (k, body, case.posed.columns(name), name, trajectory)
-        for k, (case, trajectory) in enumerate(zip(queue, trajectories, strict=True))
-        for name, body in case.posed.system.flexible.items()
-        if trajectory is not None
-    ]
+    completed = []  # index, body, its columns, its name, and the trajectory
+    for k, (case, trajectory) in enumerate(zip(queue, trajectories, strict=True)):
+        if trajectory is not None:
+            for name, body in case.posed.system.flexible.items():
+                completed.append((k, body, case.posed.columns(name), name, trajectory))
     for group in _alike(completed, lambda item: (id(item[1]), len(item[-1].time))):
         body = group[0][1]
         q = np.stack([trajectory.q[:, columns] for _, _, columns, _, trajectory in group])
@@ -296,10 +301,10 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Any]]:
         moved = np.stack([ended[k].known[name] for k, *_ in group])
         trajectories, late = [ended[k].run.flight for k, *_ in group], ended[first].posed.settings.residual_from
         peaks = displacement_peaks(body, trajectories, columns, moved, late)
-        for (k, of, *_), displacement, of_case in zip(group, moved, peaks, strict=True):
-            known[k][of] = displacement.copy(), of_case
-    for case, of_bodies in zip(ended, known, strict=True):
-        yield case.index, response_of(case.run, case.errors, "", known=of_bodies)
+        for (k, name, *_), displacement, case_peaks in zip(group, moved, peaks, strict=True):
+            known[k][name] = displacement.copy(), case_peaks
+    for case, known_bodies in zip(ended, known, strict=True):
+        yield case.index, response_of(case.run, case.errors, "", known=known_bodies)
 
 
 def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:

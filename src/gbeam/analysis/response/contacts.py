@@ -81,7 +81,7 @@ def _states(
             yield names[body], system.joints[names[body]], link, q[:-1], qd[:-1]  # the last are the body's own
 
 
-def _held(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
+def _held_coordinates(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
     """Yield name, joint, held coordinates (t, h) over the times of a run and their rates; of a ball the rotation vector
     is held.
     """
@@ -98,7 +98,7 @@ def missed_stop(system: System, run: Trajectory, inputs: Callable[[], Inputs]) -
         return ()
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
 
-    for name, joint, values, rates in _held(system, run, inputs()):
+    for name, joint, values, rates in _held_coordinates(system, run, inputs()):
         held = zip(joint.values, values.T, rates.T, joint.holder.low, joint.holder.high, strict=True)
         for value, q, qd, low, high in held:
             for sign, end in ((1.0, high), (-1.0, -low)):
@@ -116,11 +116,11 @@ def missed_stop(system: System, run: Trajectory, inputs: Callable[[], Inputs]) -
     return ()
 
 
-def turned_over(system: System, run: Trajectory, inputs: Callable[[], Inputs]) -> tuple[str, ...]:
+def half_turn_warnings(system: System, run: Trajectory, inputs: Callable[[], Inputs]) -> tuple[str, ...]:
     """Warn of a ball that turns beyond 180°, from where its springs and stops act in the opposite direction."""
     if not any(joint.holds_turns for joint in system.joints.values()):
         return ()
-    for name, joint, values, _ in _held(system, run, inputs()):
+    for name, joint, values, _ in _held_coordinates(system, run, inputs()):
         jumps = np.linalg.norm(np.diff(values[:, -3:], axis=0), axis=1) > math.pi
         if joint.holds_turns and jumps.any():
             words = (

@@ -107,7 +107,7 @@ class Grid:
     stride: int
 
     @staticmethod
-    def of(structure: Structure | System, motion: Motion | None, settings: ResponseSettings, done: Any) -> Grid:
+    def from_run(structure: Structure | System, motion: Motion | None, settings: ResponseSettings, done: Any) -> Grid:
         """Grid of the run that a response comes from."""
         if settings.step is not None:
             return Grid(done.step, 1)
@@ -161,7 +161,7 @@ class Differentiated:
     def unvaried(self) -> Any:
         """Response of the run itself; diverged where a displacement is not finite, or the model ceases to hold."""
         response = self._response(self.nominal, None)
-        if np.isfinite(self.run.q).all() and self.nominal.too_far(self.run.q) is None:
+        if np.isfinite(self.run.q).all() and self.nominal.steps_in_bounds(self.run.q) is None:
             return response
         return replace(response, outcome="diverged", message="a displacement exceeded the length of its body")
 

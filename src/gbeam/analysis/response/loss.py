@@ -42,27 +42,29 @@ class Drive(NamedTuple):
     alpha_WB_B: Array
     loads: Array | None = None
 
-    def at(self, times: Any) -> Drive:
+    def select(self, times: Any) -> Drive:
         """Base and loads at an index, slice or array of the times."""
         return Drive(*(None if values is None else values[times] for values in self))
 
-    def between(self, before: int, after: int, share: float) -> Drive:
+    def interpolate(self, before: int, after: int, share: float) -> Drive:
         """Base and loads interpolated a share of the way between two times, given by their indices."""
-        ends = zip(self.at(before), self.at(after), strict=True)
+        ends = zip(self.select(before), self.select(after), strict=True)
         return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
 
 
 def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss | None:
-    """Stretch of time in which a disturbance grows most, or None; about q (t, n) of a complete model, of which growth
-    that ends within a stretch does not count: there it is on its way to a stable shape.
+    """Find the stretch of time in which a disturbance grows most about q (t, n); None if none grows.
+
+    Of a complete model, growth that ends within a stretch does not count: there it is on its way to a stable shape.
     """
     c = structure.coefficients
     loads = None if c.loads is None or structure.history is None else structure.history(time)
     drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
 
     def matrices(i: int) -> tuple[Array, Array, Array]:
-        about = c if structure.linear else expanded(structure, q[i])[0]
-        return about.mass, *about.frozen(*drive.at(i))
+        """M, C and K that decide on growth at a time's index."""
+        departures = c if structure.linear else expanded(structure, q[i])[0]
+        return departures.mass, *departures.frozen(*drive.select(i))
 
     def loss(part: Array) -> Loss | None:
         """Loss over a stretch of indices, by growth rates at some of them."""
@@ -85,7 +87,7 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
             end=float(time[until[worst[-1]]]),
             growth=float(growth.max()),
             flutter=unsymmetric(matrices(first)[2]),
-            causes=_causes(structure, drive.between(before, first, share), matrices(first)),
+            causes=_causes(structure, drive.interpolate(before, first, share), matrices(first)),
         )
 
     if not c.size:
@@ -93,8 +95,8 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
     doubtful, most = _doubtful(c, drive)
     stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
     stretches.sort(key=lambda part: -most[part].sum())
-    losses = [lost for part in stretches[:_STRETCHES] if (lost := loss(part)) is not None]
-    return max(losses, key=lambda lost: lost.growth, default=None)
+    losses = [loss(part) for part in stretches[:_STRETCHES]]
+    return max(filter(None, losses), key=lambda stretch: stretch.growth, default=None)
 
 
 def holds(structure: Structure, time: float, base: Base, q: Array) -> bool:
@@ -107,9 +109,10 @@ def holds(structure: Structure, time: float, base: Base, q: Array) -> bool:
 
 
 def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
-    """Indices of times at which the straight beam may be unstable, and bounds (t,) 1/s of the growth. Eigenvalues are
-    computed only where the sum of the terms' bounds reaches the elastic stiffness; loads that follow the beam, which
-    these bounds do not cover, make the growth infinite.
+    """Indices of times at which the straight beam may be unstable, and bounds (t,) 1/s of the growth.
+
+    Eigenvalues are computed only where the sum of the terms' bounds reaches the elastic stiffness. Loads that follow
+    the beam, which these bounds do not cover, make the growth infinite.
     """
     scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # by which the elastic stiffness is one
     w, most = drive.w_WB_B, np.zeros(len(drive.w_WB_B))
@@ -127,7 +130,7 @@ def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
     taken = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
     large = np.flatnonzero((taken >= 1.0) & (most == 0))
     for block in (large[i : i + _BLOCK] for i in range(0, len(large), _BLOCK)):
-        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, drive.at(block)), 0))
+        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, drive.select(block)), 0))
     return np.flatnonzero(most), most
 
 
@@ -143,7 +146,7 @@ def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Ar
     value, modes = eigenvalues(*matrices)
     mode = modes[:, value.real.argmax()]
 
-    def taken(stiffness: Array) -> float:
+    def stiffness_share(stiffness: Array) -> float:
         """Share of the mode's elastic stiffness that a term takes away, or feeds by asymmetry."""
         share = (mode.conj() @ stiffness @ mode) / (mode.conj() @ c.stiffness @ mode).real
         return float(max(-share.real, abs(share.imag)))
@@ -160,5 +163,5 @@ def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Ar
             size = f"{force:.4g} N" if force > 0 else f"{moment:.4g} N m"
             words = f"beam.loads[{k}] acts with {size}{'/m' if points[k] > 1 else ''}"
             terms[words] = -np.tensordot(values, slope, 1)
-    shares = {words: taken(stiffness) for words, stiffness in terms.items()}
+    shares = {words: stiffness_share(stiffness) for words, stiffness in terms.items()}
     return tuple(words for words, share in shares.items() if share > min(_SHARE, max(shares.values()) / 2))

@@ -150,7 +150,7 @@ def stressed_and_bent(run: Run, bodies: Mapping[str, BodyResponse]) -> tuple[str
         warnings += yielding(each.peaks.loads, "" if subject.body else f" of {body}")
         if body == subject.body:
             warnings += far_bent(subject.structure, each.peaks.max_size)
-    return (*warnings, *(() if subject.body else run.solution(1).left_out))
+    return (*warnings, *(() if subject.body else run.solution(1).stiffness_warnings))
 
 
 def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
@@ -160,7 +160,7 @@ def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
         return ()
     if math.isnan(errors.displacement.step) and not run.missed:
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
-    if run.posed.system.alone is not None:  # all that its points move is its deflection
+    if run.posed.system.only_structure is not None:  # all that its points move is its deflection
         errors = replace(errors, place=ErrorEstimate())
     return doubts(errors, settings.tolerance, _cure_of_step(settings))
 

@@ -47,7 +47,8 @@ def displacement_peaks(
         values = measure(moved[:, begin:])
         chosen = near_maxima(time[begin:], values)
         run, sample = np.divmod(chosen, len(time) - begin)
-        qdd = np.stack([_beside(each, begin + sample[run == k]) for k, each in enumerate(trajectories)])
+        samples = [begin + sample[run == k] for k in range(len(trajectories))]
+        qdd = np.stack([_nearby_accelerations(*pair) for pair in zip(trajectories, samples, strict=True)])
         part = np.s_[:, begin:, columns]
         t, y = quintic_hermite(time[begin:], q[part], qd[part], qdd[part], chosen)
         return maxima(time[begin:], values, t, measure(np.asarray(structure.displacement(y))), chosen)
@@ -57,18 +58,18 @@ def displacement_peaks(
         highest, _ = largest(start, lambda u: np.concatenate([u[..., -1, :], -u[..., -1, :]], axis=-1))
         residual = (highest[:, :3] + highest[:, 3:]) / 2
     vectors = [_vectors(value, when, stations) for value, when in zip(*largest(0, sizes), strict=True)]
-    return [_of_stations(*run) for run in zip(vectors, residual, strict=True)]
+    return [_station_peaks(*run) for run in zip(vectors, residual, strict=True)]
 
 
-def _beside(trajectory: Trajectory, samples: Indices) -> Floats:
+def _nearby_accelerations(trajectory: Trajectory, samples: Indices) -> Floats:
     """Accelerations (t, n) at samples (u,) and their neighbours; NaN elsewhere."""
     qdd, near = np.full(trajectory.q.shape, np.nan), np.unique(samples[:, None] + np.arange(-1, 2))
     qdd[near] = trajectory.select(near).qdd
     return qdd
 
 
-def _of_stations(stations: VectorPeaks, residual: Floats) -> Peaks:
-    """Peaks of a response by those of the displacement at every station, the last of which is the tip."""
+def _station_peaks(stations: VectorPeaks, residual: Floats) -> Peaks:
+    """Peaks of a response from those of the displacement at every station, the last of which is the tip."""
     tip = stations[-1]
     return Peaks(
         max_abs=tip.components.value,
@@ -83,11 +84,11 @@ def _of_stations(stations: VectorPeaks, residual: Floats) -> Peaks:
 def _samples(time: Floats, tip: Any, start: int | None) -> Peaks:
     """Peaks of the tip's displacement (t, 3) at samples alone; residual vibration from index `start` on, if any."""
     xp = namespace(tip)
-    each, times = xp.abs(tip), xp.asarray(time)
+    size, times = xp.abs(tip), xp.asarray(time)
     length = xp.sqrt((tip**2).sum(axis=1).max())
     residual = np.full(3, np.nan) if start is None else (tip[start:].max(axis=0) - tip[start:].min(axis=0)) / 2
     when = times[(tip**2).sum(axis=1).argmax()]
-    return Peaks(each.max(axis=0), times[each.argmax(axis=0)], residual, length, when)
+    return Peaks(size.max(axis=0), times[size.argmax(axis=0)], residual, length, when)
 
 
 def load_peaks(
@@ -145,7 +146,7 @@ def maxima_of(system: System, time: Floats, over_time: Mapping[str, Floats]) -> 
     length, when_longest = length_peaks(time, np.moveaxis(vectors, 2, 1))
     distance = np.where(length[0] <= _ROUNDING * np.abs(place).max(initial=0.0), 0.0, length[0])
     columns = -q, q, np.abs(over_time["qd"]), np.abs(over_time["effort"])
-    highest, when_highest = (each.reshape(4, -1) for each in column_peaks(time, np.concatenate(columns, axis=1)))
+    highest, when_highest = (values.reshape(4, -1) for values in column_peaks(time, np.concatenate(columns, axis=1)))
     on_ground = vector_peaks(time, np.stack([over_time["ground_force"], over_time["ground_moment"]]))
     force, moment = (
         VectorPeaks(Extremes(value[:3], when[:3]), Extremes(value[3], when[3]))
@@ -187,12 +188,12 @@ def half_ranges(time: Floats, values: Any, start: float) -> Any:
     return value.reshape(2, -1).sum(axis=0) / 2
 
 
-def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, of: Callable[[Floats], Floats]) -> Floats:
-    """Largest sizes (4,) of components and length of a vector `of` q, of which the samples are `vectors` (t, 3)."""
+def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, vector: Callable[[Floats], Floats]) -> Floats:
+    """Largest sizes (4,) of components and length of a `vector` of q, which has the values `vectors` (t, 3)."""
     time, measured = trajectory.time, sizes(vectors[:, None])
     near = near_maxima(time, measured)
-    t, q = quintic_hermite(time, trajectory.q, trajectory.qd, _beside(trajectory, near), near)
-    value, _ = maxima(time, measured, t, sizes(of(q)[:, :, None]))
+    t, q = quintic_hermite(time, trajectory.q, trajectory.qd, _nearby_accelerations(trajectory, near), near)
+    value, _ = maxima(time, measured, t, sizes(vector(q)[:, :, None]))
     return value
 
 

@@ -26,7 +26,7 @@ from gbeam.analysis.response.stepping import (
 )
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.feedback import SystemControllers
-from gbeam.analysis.system.initial import STATE_WORDS, Initial, on_bodies
+from gbeam.analysis.system.initial import STATE_WORDS, Initial, assign_to_bodies
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.start import started, started_traced, unknown_at_start
 from gbeam.arrays.namespace import Array, holds_jax
@@ -171,7 +171,7 @@ class Posed:
         """Integrate by steps of a length, s, until the model of a body ceases to hold."""
         y, yd, steps = self.start.y, self.start.yd, self.steps(step, cut)
         scheme = scheme_of(self.settings)
-        return integrate_steps(self.equations, scheme, y, yd, steps, stop=self.too_far, progress=progress)
+        return integrate_steps(self.equations, scheme, y, yd, steps, stop=self.steps_in_bounds, progress=progress)
 
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
@@ -184,7 +184,7 @@ class Posed:
         chosen = deforming(self.system.unknown_coordinates, body)
         return slice(chosen[0], chosen[-1] + 1) if chosen else slice(0, 0)
 
-    def too_far(self, y: Floats, moved: Mapping[str, Floats] = MappingProxyType({})) -> int | None:
+    def steps_in_bounds(self, y: Floats, moved: Mapping[str, Floats] = MappingProxyType({})) -> int | None:
         """Number of steps until the displacement of a body exceeds the length of a beam, or the bound of particles,
         where its model ceases to hold; None if none does. `moved` (t, s, 3) m are the displacements of bodies by name
         at unknowns y (t, n), where they are known.
@@ -202,7 +202,7 @@ class Posed:
         limit = math.inf if body.kind == "exact" else BOUNDLESS if body.field is None else body.length
         return np.abs(displaced).max(axis=(1, 2), initial=0.0) > limit
 
-    def of(self, system: System) -> Posed:
+    def replace_system(self, system: System) -> Posed:
         """Return the problem of another system, which begins at its own initial state."""
         subject = replace(self.subject, system=system)
         return replace(self, subject=subject, start=begun(subject, self.settings, self.begin))
@@ -224,7 +224,7 @@ def prepared(structure: Structure | System, motion: Motion | None, settings: Res
         fix = "leave one out: a motion carries its own, as specific force"
         raise InputError("gravity", "is given beside a motion of the base", fix)
     for moved in (settings.begin.displaced, settings.begin.moving):
-        on_bodies(subject.system.flexible, moved)  # raises what it refuses
+        assign_to_bodies(subject.system.flexible, moved)  # raises what it refuses
     return subject
 
 

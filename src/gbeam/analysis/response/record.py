@@ -69,8 +69,9 @@ def influence(structure: Structure) -> Influence:
 
 @dataclass(frozen=True)
 class Histories:
-    """Quantities of a run at steps that are looked at, `over_time` by key and `bodies` in their states by name, of
-    which those at the indices `kept` are the response's. Every `every`-th step of the flight is among them.
+    """Quantities of a run at steps that are looked at: `over_time` by key, and the states of `bodies` by name.
+
+    Those at the indices `kept` are the response's. Every `every`-th step of the flight is among them.
     """
 
     run: Run
@@ -83,10 +84,10 @@ class Histories:
     known: Known
 
     @classmethod
-    def of(cls, run: Run, name: str, known: Known = MappingProxyType({})) -> Histories:
-        """Histories of a run at every step, of 50,000 at most: among more those near peaks are looked at again."""
+    def from_run(cls, run: Run, name: str, known: Known = MappingProxyType({})) -> Histories:
+        """Read a run at every step, or at 50,000 of more: the steps near peaks are looked at again."""
         fewest = min(run.stride, -(-len(run.flight.time) // LOADS_STEPS))
-        every = next(each for each in range(fewest, run.stride + 1) if run.stride % each == 0)
+        every = next(count for count in range(fewest, run.stride + 1) if run.stride % count == 0)
         steps = run.sampled(every)
         kept = slice(None) if every == run.stride else np.searchsorted(steps, run.sampled(run.stride))
         return cls(run, name, every, steps, kept, *run.histories(steps), known)
@@ -106,7 +107,7 @@ class Histories:
         run, posed, traced = self.run, self.run.posed, self.run.traced
         structure, state, settings = posed.system.flexible[name], self.bodies[name], posed.settings
         motion = posed.subject.motion if name == posed.subject.body else None  # what carries a body that is alone
-        kept, columns = state.at(self.kept), posed.columns(name)
+        kept, columns = state.select(self.kept), posed.columns(name)
         if name in self.known:
             moved, peaks = self.known[name]
         else:
@@ -114,7 +115,7 @@ class Histories:
             (peaks,) = displacement_peaks(structure, [run.flight], columns, moved[None], settings.residual_from)
         loads = self._loads_in(name, state, self.time) if settings.loads else None
         if loads is not None and not traced:
-            at = self._loads_between(name)
+            at = self._load_reader(name)
             peaks = replace(peaks, loads=load_peaks(loads.select_times(self.flown), run.flight.time, at, self.every))
         beyond = len(run.trajectory.time) > len(run.flight.time)
         source, acceleration = structure.source, None
@@ -164,8 +165,8 @@ class Histories:
         loads = loads_of(subject.system.flexible[name], state, time)
         return add_hub_torques(loads, subject.motion, state.base.alpha_WB_B) if name == subject.body else loads
 
-    def _loads_between(self, name: str) -> Callable[[Indices], Loads]:
-        """Function that returns the loads along a body at indices of all steps of the flight."""
+    def _load_reader(self, name: str) -> Callable[[Indices], Loads]:
+        """Return a function that computes the loads along a body at indices of all steps of the flight."""
         first = self.run.in_flight.start or 0
 
         def loads(steps: Indices) -> Loads:
@@ -201,7 +202,8 @@ class Histories:
             fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
             return HubResult(angle, rate, acceleration, motion.torque(time), fastest=fastest)
         axis = motion.mount.R_HB[2]
-        torque = next((each.loads.drive_torque for each in bodies.values() if each.loads is not None), None)
+        loads = [body.loads for body in bodies.values() if body.loads is not None]
+        torque = loads[0].drive_torque if loads else None
         level = None if self.run.traced else level_of(motion)
         on_ground = over_time["ground_force"][self.kept], over_time["ground_moment"][self.kept]
         return HubResult(
@@ -245,26 +247,28 @@ def response_of(
     axes_of: AxesOf = axes_result,
     known: Known = MappingProxyType({}),
 ) -> Response:
-    """Response at the results' times through spin-up, flight and spin-down, with errors and warnings; of bodies that
-    are `known` the displacements are not computed again.
+    """Response at the results' times through spin-up, flight and spin-down, with errors and warnings.
+
+    The displacements of bodies that are `known` are not computed again.
     """
     posed, traced, entire = run.posed, run.traced, run.trajectory
     subject, system, settings = posed.subject, posed.system, posed.settings
-    motion, read = subject.motion, Histories.of(run, name, known)
+    motion, read = subject.motion, Histories.from_run(run, name, known)
     time = read.time[read.kept]
     bodies = {body: read.body(body) for body in system.flexible}
     base = None if posed.motion is None else posed.motion.base(time)
     axes = None if traced or not isinstance(motion, Centrifuge) else axes_of(motion, time)
     outcome, message, errors, warnings = "done", "", Errors(), tuple[str, ...]()
     if not traced:
-        free = {body: (each.base, each.q) for body, each in bodies.items() if each.q.size and body not in system.laden}
+        unladen = {body: answer for body, answer in bodies.items() if answer.q.size and body not in system.laden}
+        free = {body: (answer.base, answer.q) for body, answer in unladen.items()}
         ending = ending_of(run, free, time)
         outcome, message, from_run = ending.outcome, ending.message, ending.warnings
         if ending.done:
             from_run += stressed_and_bent(run, bodies)
             errors, of_bodies = run.errors(step_errors, read.reading(bodies), progress)
             from_run += of_bodies + inaccuracies(run, errors) + effort(settings, len(run.flight.time) - 1, run.stride)
-        root = next((each.base for body, each in bodies.items() if body == subject.body), None)
+        root = bodies[subject.body].base if subject.body in bodies else None
         inputs = subject.doubts(name, root, span=(time[0], time[-1]))
         warnings = inputs + settings.warnings + run.doubts + from_run + (() if axes is None else axes.warnings)
     flown = motion.flight if isinstance(motion, Centrifuge) else motion

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.analysis.accuracy.beam_theory import largest
 from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity, Reading, pieces
 from gbeam.analysis.accuracy.estimate import NOTHING, UNMOVED
-from gbeam.analysis.response.contacts import creeping, missed_stop, turned_over
+from gbeam.analysis.response.contacts import creeping, half_turn_warnings, missed_stop
 from gbeam.analysis.response.peaks import peaks_of_coordinates
 from gbeam.analysis.response.posed import Posed, begun
 from gbeam.analysis.response.step_errors import difference
@@ -137,7 +137,7 @@ class Run:
             places = np.concatenate([solution.read(())[PLACE], solution.turning()], axis=1)
             moved = places - places[0]
             histories.append(np.zeros_like(moved) if unmoved(np.abs(moved).max(initial=0.0), places) else moved)
-        return [np.asarray(each).reshape(len(each), -1) for each in histories]
+        return [np.asarray(history).reshape(len(history), -1) for history in histories]
 
     @cached_property
     def peaks(self) -> list[Floats]:
@@ -158,7 +158,7 @@ class Run:
         out, solution = list[Floats](), self.solution(stride)
         for name, of in solution.states(self.deforming)[1].items():
             body = self.posed.system.flexible[name]
-            loads = loads_of(body, of, solution.of.time)
+            loads = loads_of(body, of, solution.trajectory.time)
             force, moment = held_loads(loads)
             sizes = np.abs(force).max() * body.length, np.abs(moment).max()
             out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
@@ -171,7 +171,7 @@ class Run:
             out.append(stress)
         return out
 
-    def _by_step(self, errors: StepErrors) -> dict[Quantity, float]:
+    def _step_errors(self, errors: StepErrors) -> dict[Quantity, float]:
         """Errors of the steps by quantity; root force and moment of a body have the larger of theirs."""
         by_step = dict.fromkeys([PLACE, *((name, DEFLECTION) for name in self.deforming)], errors.displacement)
         by_step |= dict(zip(self._moving, errors.moved, strict=False))
@@ -191,19 +191,21 @@ class Run:
         """
         posed, settings = self.posed, self.posed.settings
         of_steps = StepErrors() if self.missed else of_steps  # unknown where steps may miss a stop
-        by_step, say = self._by_step(of_steps), "errors of shapes and models"
+        by_step, say = self._step_errors(of_steps), "errors of shapes and models"
         if not (settings.estimate and self.whole):
             return unjudged(posed.system, by_step, note=settings.not_estimated), ()
 
-        judged = self._rerun_by if posed.system.controllers else self
+        judged = self._resolved_run if posed.system.controllers else self
 
         def again(system: System) -> Solution:
-            return Run.by_steps(posed.of(system), judged.step, partial(tell, progress, say)).solution(judged.stride)
+            return Run.by_steps(posed.replace_system(system), judged.step, partial(tell, progress, say)).solution(
+                judged.stride
+            )
 
         tell(progress, say, 0.0)
         of_loads = [(name, load) for name in self.deforming for load in LOADS]
         rerun = again if posed.system.controllers else None
-        rubbed = self._of_friction(partial(tell, progress, "errors of the smooth law of friction"))
+        rubbed = self._friction_errors(partial(tell, progress, "errors of the smooth law of friction"))
         friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
         more: Any = {"peaks_by_step": dict(zip(of_loads, of_steps.peaks, strict=False)), "friction": friction}
         more |= {"stride": judged.stride, "tolerance": settings.tolerance, "starting": self._starting}
@@ -212,14 +214,14 @@ class Run:
         if not friction and posed.system.rubbing:
             stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
         if rerun is not None:
-            from gbeam.analysis.steady.loop_errors import unstable_with_more  # takes SciPy's linear algebra
+            from gbeam.analysis.steady.loop_errors import unstable_richer_loop  # takes SciPy's linear algebra
 
-            doubts += unstable_with_more(posed.system, posed.motion, settings.start)
+            doubts += unstable_richer_loop(posed.system, posed.motion, settings.start)
         tell(progress, say, 1.0)
         return stated, doubts
 
     @property
-    def _rerun_by(self) -> Run:
+    def _resolved_run(self) -> Run:
         """Run by the steps of the results, which richer systems in a loop are run by: steps that resolve what rings in
         the loads would cost many times as much, and leave the differences of shapes and models as they are.
         """
@@ -243,12 +245,16 @@ class Run:
         flags = partial(unknown_at_start, initial=begin.state)
         return Starting(flags, state if begin.displaces or posed.subject.body else None)
 
-    def _of_friction(self, progress: Progress) -> list[float]:
-        """Errors by the smooth law of friction, of :attr:`moved` and of :meth:`loads`, which go as the rate below which
-        it is smooth: by a run with half of that, or twice where this fails. Empty without friction, or where both fail.
+    def _friction_errors(self, progress: Progress) -> list[float]:
+        """Errors by the smooth law of friction, of :attr:`moved` and of :meth:`loads`.
+
+        They are proportional to the rate below which the law is smooth, and follow from a run with half of that rate,
+        or with twice where this fails. The list is empty without friction, or where both fail.
         """
-        for times, share in ((0.5, 2.0), (2.0, 1.0)) if self.posed.system.rubbing else ():
-            other = Run.by_steps(replace(self.posed, slip=times * self.posed.slip), self.step, progress)
+        if not self.posed.system.rubbing:
+            return []
+        for factor, share in ((0.5, 2.0), (2.0, 1.0)):  # of the rate, and of the difference that it makes
+            other = Run.by_steps(replace(self.posed, slip=factor * self.posed.slip), self.step, progress)
             if other.whole:
                 mine, others = ((*run.moved, *run.loads(self.stride)) for run in (self, other))
                 return [share * difference(a, b, 1) for a, b in zip(others, mine, strict=True)]
@@ -292,7 +298,7 @@ class Run:
     def doubts(self) -> tuple[str, ...]:
         """Warnings of stops, of springs that a ball turns over, and of friction that lets creep."""
         system, run = self.posed.system, self.trajectory
-        over = turned_over(system, run, lambda: self.driven)
+        over = half_turn_warnings(system, run, lambda: self.driven)
         return self.missed + over + creeping(system, run, lambda: self.driven, self._inertia)
 
     def _inertia(self, name: str, step: int) -> float:
@@ -300,7 +306,7 @@ class Run:
         system, run = self.posed.system, self.trajectory
         state = run.q[step], run.qd[step], 0 * run.q[step]
         local, names = Point(system.tree, *state, self.inputs(system, step)).local, local_names(system.coordinates)
-        k = [names[each] for each in local.tree.unknowns].index(name)
+        k = [names[unknown] for unknown in local.tree.unknowns].index(name)
         return float(1 / np.linalg.inv(local.slopes()[3])[k, k])
 
     @cached_property

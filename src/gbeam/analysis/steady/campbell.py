@@ -402,9 +402,9 @@ def crossing_errors(
 
     exact = root(1)
     same = exact if richer.same is richer.exact else root(0)
-    model = richer.of_model(relative_difference(same, exact))
+    model = richer.model_share(relative_difference(same, exact))
     estimate = ErrorEstimate(0.0, relative_difference(speed, same), model, total=relative_difference(speed, exact))
-    share = float(richer.by_theory(point_at(speed), mode[None]).shares[0])
+    share = float(richer.theory_errors(point_at(speed), mode[None]).shares[0])
     mesh = math.nan if richer.rough is None else relative_difference(root(2), speed)
     return estimate.adding(beam_theory=share * order / abs(slope - order), mesh=mesh)
 

@@ -81,14 +81,14 @@ class Richer:
 
     def __init__(self, state: SteadySystem) -> None:
         """Make the richer models. `one_model` is true where no body has another model than its own."""
-        of = state.system
-        bodies, rough = judged_bodies(of), coarser(of)
-        self.theories = theories_of(of, straight=state.bent(bodies) <= STRAIGHT)
+        system = state.system
+        bodies, rough = judged_bodies(system), coarser(system)
+        self.theories = theories_of(system, straight=state.bent(bodies) <= STRAIGHT)
         self.beams = {name: bodies[name] for name in self.theories}
-        self.exact = _with_more(state, exact=True)
+        self.exact = _enriched(state, exact=True)
         self.one_model = all(body.richer is not None and body.exact for body in bodies.values())
         only_exact = all(body.exact for body in bodies.values())
-        self.same = self.exact if only_exact else _with_more(state, exact=False)
+        self.same = self.exact if only_exact else _enriched(state, exact=False)
         self.rough = None if rough is None else More(rough, {})
 
     def errors(
@@ -97,7 +97,7 @@ class Richer:
         """Errors of the frequencies of modes (k, n) with eigenvalues (k,) about a steady state."""
         frequency = np.abs(eigenvalue)
         same, exact, rough, growth = self.references(state, coordinates, gyroscopic=gyroscopic)
-        by_theory = self.by_theory(state, coordinates, gyroscopic=gyroscopic)
+        by_theory = self.theory_errors(state, coordinates, gyroscopic=gyroscopic)
         shapes, model = np.abs(frequency / same - 1), np.abs(same / exact - 1)
         total = np.abs(frequency / exact - 1)
         mesh = np.abs(rough / frequency - 1)
@@ -107,11 +107,11 @@ class Richer:
             note = NO_REST
         growth = 0.0 if not gyroscopic or len(state.moving.growing) else growth
         return FrequencyErrors(
-            shapes, self.of_model(model), by_theory.shares, mesh, total, *by_theory[1:], note, growth
+            shapes, self.model_share(model), by_theory.shares, mesh, total, *by_theory[1:], note, growth
         )
 
-    def of_model(self, share: Any) -> Any:
-        """The share of an error that is the model's; NaN where no body has another model."""
+    def model_share(self, share: Any) -> Any:
+        """Return a share of an error that is the model's; NaN where no body has another model."""
         return np.nan * share if self.one_model else share
 
     def references(
@@ -148,10 +148,10 @@ class Richer:
         same = exact if self.same is self.exact else reference(self.same)
         return same, exact, reference(self.rough), growth
 
-    def by_theories(self, of: System, state: Any = None) -> tuple[list[System], dict[str, Floats]]:
-        """The system with slender beams, with thick ones, and with thick ones and plate action; and the stiffness (n,
-        n) of plate action by beam.
+    def systems_by_theory(self, system: System, state: Any = None) -> tuple[list[System], dict[str, Floats]]:
+        """The system with slender beams, with thick ones, and with thick ones and plate action.
 
+        They are followed by the stiffness (n, n) of plate action, by beam.
         Plate action depends on the bend, which is that of a state or, by default, negligible.
         """
         variants, plates = [], dict[str, Floats]()
@@ -160,14 +160,14 @@ class Richer:
             plates[name] = theory.plate(np.pad(q, (0, theory.thick.size - len(q)))[None])
             variants.append((theory.slender, *theory.variants(plates[name])))
         kinds = zip(*variants, strict=True)  # all slender beams, all thick ones, all with plate action
-        return [with_beams(of, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
+        return [with_beams(system, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
 
-    def by_theory(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
+    def theory_errors(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
         """Errors of the frequencies of modes (k, n) by the theory of slender beams; NaN if they are not known."""
         k = len(coordinates)
         if not self.theories:
             return ByTheory(np.full(k, np.nan), "", ())
-        models, plates = self.by_theories(point.system, point)
+        models, plates = self.systems_by_theory(point.system, point)
         try:
             states = [transfer(point, model) for model in models]
             by_model = [_oscillating(state, gyroscopic=gyroscopic) for state in states]
@@ -243,8 +243,8 @@ def unknown_errors(system: System, count: int) -> FrequencyErrors | None:
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
 
-def _with_more(state: SteadySystem, *, exact: bool) -> More:
-    """The model of a steady state with more shapes, of its own kinds or exact.
+def _enriched(state: SteadySystem, *, exact: bool) -> More:
+    """Return the model of a steady state with more shapes, of its own kinds or exact.
 
     A beam alone, which turns about one axis at most, gets none in a plane in which it has none.
     """

@@ -55,21 +55,21 @@ class JudgedLoops:
         richer = Richer(state)
         models = {MORE: richer.exact}
         if richer.theories:
-            theories = richer.by_theories(state.of, state)[0]
+            theories = richer.systems_by_theory(state.of, state)[0]
             models |= zip((SLENDER, THICK, PLATED), (More(model, {}) for model in theories), strict=True)
         if richer.rough is not None:
             models[COARSER] = richer.rough
         try:
-            self.others = {name: self._around(state, model) for name, model in models.items()}
+            self.others = {name: self._other_loops(state, model) for name, model in models.items()}
         except (ComputationError, np.linalg.LinAlgError):
             self.known, self.note = False, "; ".join(filter(None, (self.note, NO_REST)))
 
-    def _around(self, state: SteadySystem, model: More) -> Other:
+    def _other_loops(self, state: SteadySystem, model: More) -> Other:
         """The same laws around another model, about its state under the same drives."""
         other, count = transfer(state, model.model), len(state.names)
         first = np.array([other.names.index(model.renamed.get(name, name)) for name in state.names], dtype=int)
         of_laws = np.arange(2 * count, len(self.loops.closed.a)) + 2 * (len(other.names) - count)  # and of commands
-        return Other(self.loops.around(other), np.concatenate([first, first + len(other.names), of_laws]))
+        return Other(self.loops.rebuild(other), np.concatenate([first, first + len(other.names), of_laws]))
 
     @property
     def unstable(self) -> tuple[str, ...]:
@@ -165,12 +165,13 @@ def _margin_words(kind: str, margin: Margin, other: Margin, cause: str) -> str:
     return f"{word} {computed}, {better} {cause}"
 
 
-def unstable_with_more(system: System, motion: Motion | None, time: float) -> tuple[str, ...]:
-    """Warning if the closed loop of a system, as it starts, decays, but one around a richer system grows; else empty,
-    also where a law has no slope.
+def unstable_richer_loop(system: System, motion: Motion | None, time: float) -> tuple[str, ...]:
+    """Warn if the closed loop of a system decays as it starts, but one around a richer system grows.
+
+    The warning is empty otherwise, also where a law has no slope.
     """
     try:
         state = frozen(system, motion, time, "start")
-        return JudgedLoops(state, Loops.of(state, inputs=(), outputs=())).unstable
+        return JudgedLoops(state, Loops.from_state(state, inputs=(), outputs=())).unstable
     except (InputError, ComputationError, np.linalg.LinAlgError):
         return ()

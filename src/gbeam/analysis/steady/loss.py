@@ -70,13 +70,13 @@ def first_loss_along(
     path: Path, subject: Subject, upper: float, quantity: str, unit: str, progress: Progress = None
 ) -> Critical:
     """Least value up to `upper` at which the relative equilibrium is lost, by a grid of 64 and Brent's method."""
-    of = subject.system
+    system = subject.system
 
     @cache
     def margin(value: float) -> float:
         """Stability margin of the state at a value; negative where it is lost, too."""
         tell(progress, f"equilibrium, {quantity} {value:.4g} {unit}", value / upper)
-        state = _state(path, of, value)
+        state = _state(path, system, value)
         return -1.0 if state is None else state.margin
 
     def answer(value: float | None, kind: str, direction: str, reason: str) -> Critical:
@@ -85,7 +85,7 @@ def first_loss_along(
         return Critical(quantity, unit, value, upper, *words, warnings=doubts)
 
     grid = [float(value) for value in np.linspace(0.0, upper, SCAN + 1)]
-    first = next((i for i, value in enumerate(_in_turn(path, of, grid)) if margin(value) < 0), None)
+    first = next((i for i, value in enumerate(_in_turn(path, system, grid)) if margin(value) < 0), None)
     if first is None:
         why = f"{subject.kind} keeps its equilibrium at every {quantity} up to {upper:.4g} {unit}"
         return answer(None, "none", "", why)
@@ -94,8 +94,8 @@ def first_loss_along(
     from scipy.optimize import brentq
 
     root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=1e-9, maxiter=200)
-    state = _state(path, of, root) or path(of, grid[first - 1])
-    beyond = _state(path, of, root * (1 + 1e-5))
+    state = _state(path, system, root) or path(system, grid[first - 1])
+    beyond = _state(path, system, root * (1 + 1e-5))
     if beyond is None:
         kind, direction = "no equilibrium", ""
     else:
@@ -108,7 +108,7 @@ def first_loss_along(
     way = f" {direction_words(direction)}" if direction else ""
     reason = f"{kind}{way} at {root:.6g} {unit}"
     # Half way, where nothing grows yet without bound, with half of the load or less.
-    undecided = not_known(2 * path(of, root / 2).bend, reason)
+    undecided = not_known(2 * path(system, root / 2).bend, reason)
     if undecided:
         words = f"{subject.kind} keeps its equilibrium up to there, and {undecided['message']}"
         return replace(answer(None, NOT_KNOWN, direction, words), searched_to=root, **undecided)
@@ -155,17 +155,21 @@ def judged(critical: Critical, path: Path, subject: Subject, progress: Progress 
     point = path(system, (1 - CLOSE) * at)
     richer = Richer(point)
     count = 5 if richer.theories else 2
-    exact = _lost(richer.exact.model, path, at, progress, part=(0, count))
-    same = exact if richer.same is richer.exact else _lost(richer.same.model, path, at, progress, part=(1, count))
+    exact = _richer_loss(richer.exact.model, path, at, progress, part=(0, count))
+    same = (
+        exact if richer.same is richer.exact else _richer_loss(richer.same.model, path, at, progress, part=(1, count))
+    )
     errors = _errors(at, same, exact)
     if richer.rough is not None:
-        errors = errors.adding(mesh=relative_difference(_lost(richer.rough.model, path, at, progress), at))
+        errors = errors.adding(mesh=relative_difference(_richer_loss(richer.rough.model, path, at, progress), at))
     if not richer.theories:
-        errors = replace(errors, model=richer.of_model(errors.model))
+        errors = replace(errors, model=richer.model_share(errors.model))
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
-    models, plates = richer.by_theories(system)
-    slender, *thick = (_lost(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2))
+    models, plates = richer.systems_by_theory(system)
+    slender, *thick = (
+        _richer_loss(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2)
+    )
     beam_theory = max(relative_difference(at if math.isinf(slender) else slender, value) for value in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
     words = _in_words(richer, point, models, plates)
@@ -201,15 +205,15 @@ def _unseen(critical: Critical, path: Path, system: System, progress: Progress) 
     richer, lacked = Richer(path(system, 0.0)), "more modes"
     rich = richer.exact.model
     if richer.theories:
-        (_, rich, *_), lacked = richer.by_theories(system)[0], "shear and twist"
-    lost = _lost(rich, path, critical.searched_to, progress, shares)
+        (_, rich, *_), lacked = richer.systems_by_theory(system)[0], "shear and twist"
+    lost = _richer_loss(rich, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
     value = f"{lost:.4g} {critical.unit}"
     return (f"with {lacked}, which this model has not, the equilibrium is lost at an estimated {value}",)
 
 
-def _lost(
+def _richer_loss(
     rich: System,
     path: Path,
     near: float,
@@ -217,8 +221,7 @@ def _lost(
     shares: Sequence[float] = SHARES,
     part: tuple[int, int] = (0, 1),
 ) -> float:
-    """Value at which a richer model loses its equilibrium; infinite if it keeps it up to the last of the shares of
-    `near`.
+    """Value at which a richer model loses its equilibrium; infinite if it keeps it up to the last share of `near`.
 
     `part` has the number of models done and the number of all, for the progress.
     """

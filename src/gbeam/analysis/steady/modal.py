@@ -51,7 +51,7 @@ def modes_of(
         columns = deforming(state.names, body_name)
         if columns:
             bodies[body_name] = structure, state.q[columns], moving.modes[columns]
-    moved = [shape, *(part for of_body in bodies.values() for part in _moved(*of_body))]
+    moved = [shape, *(part for of_body in bodies.values() for part in _mode_displacements(*of_body))]
     flat = [part.reshape(len(part), int(np.prod(part.shape[1:]))) for part in moved]
     largest = largest_component(np.concatenate(flat, axis=1))
     scale = np.where(largest == 0, 1, largest)
@@ -88,7 +88,7 @@ def modes_of(
     )
 
 
-def _moved(structure: Structure, q: Floats, modes: Complex) -> list[Any]:
+def _mode_displacements(structure: Structure, q: Floats, modes: Complex) -> list[Any]:
     """Displacements (k, ...) of the stations of a body, and of the edges of its sections, in modes (n, k)."""
     edges = edges_of(structure, q, modes)
     stations = np.moveaxis(structure.station_slopes(q) @ modes, -1, 0)

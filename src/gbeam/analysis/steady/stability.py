@@ -313,7 +313,7 @@ def critical_load(
     """
     subject = subject_of(structure, motion)
     subject.require_coordinates()
-    path = Path(replace(subject.held(time), base=base), loaded, held=True)
+    path = Path(replace(subject.resting_drive(time), base=base), loaded, held=True)
     share = share_of_loads(path, subject.system)
     if share < NOTHING:
         where, what = ("beam.loads", "a hub's") if subject.body else ("forces", "a joint's")

@@ -16,7 +16,7 @@ from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.accuracy import FAR, doubts, system_errors
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.histories import ROUNDING, carried, histories, loads_of
-from gbeam.analysis.system.rest import settled, standing, transfer
+from gbeam.analysis.system.rest import settled, steady_solution, transfer
 from gbeam.analysis.system.richer import theories_of, with_beams
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.tree import each_leaf
@@ -45,9 +45,9 @@ def stepless(system: System) -> dict[Quantity, float]:
 
 def rest_errors(state: SteadySystem, start: Floats, *, stable: bool) -> tuple[Errors, tuple[str, ...]]:
     """Estimated errors of an equilibrium, stable or not, whose points (p, 3) begin at a `start`, and warnings."""
-    system, solution = state.system, standing(state, state.system)
+    system, solution = state.system, steady_solution(state, state.system)
     errors, off_axis = system_errors(
-        lambda _: solution, partial(standing, state), stepless(system), start=start, tolerance=LIMIT
+        lambda _: solution, partial(steady_solution, state), stepless(system), start=start, tolerance=LIMIT
     )
     errors = replace(errors, note=LOST) if FAR in errors.note else errors
     sideways = _sideways(state) if stable and errors.note != LOST else ()
@@ -139,7 +139,7 @@ def _pushed(motion: Motion | None, time: float, acceleration: Numbers) -> Drive:
 
 def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
     """Describe a system at rest in a steady state: places, efforts and loads, with errors and warnings."""
-    system, point, solution = state.system, state.point, standing(state, state.system)
+    system, point, solution = state.system, state.point, steady_solution(state, state.system)
     inputs = solution.inputs(system, None)
 
     def values_at(y: Floats) -> dict[str, Any]:
@@ -179,7 +179,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
 def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[str, BodyRest]:
     """Describe the bodies that deform, and rigid specimens, in a steady state by their names."""
     system, point, time = state.system, state.point, np.array([state.drive.time])
-    inputs = standing(state, system).inputs(system, None)
+    inputs = steady_solution(state, system).inputs(system, None)
     moving = system.tree.motion(point.y[None], point.yd[None], point.ydd[None], inputs)
     acting = system.tree.demanded(moving, inputs)[2]
     environment = "rest" if subject.motion is None else subject.motion.kind

@@ -73,7 +73,7 @@ class Subject:
             )
         return turned_by_effort(self.system, HINGE, time)
 
-    def held(self, time: float) -> Drive:
+    def resting_drive(self, time: float) -> Drive:
         """Drives at a time, s, on which a free hub is held at rest, at angle zero."""
         free = self.body and self.motion is not None and self.motion.free
         return Drive(self.ground, time, f"{HINGE}.angle", rate=0.0) if free else Drive(self.ground, time)
@@ -137,7 +137,7 @@ def subject_of(structure: Structure | System, motion: Motion | None) -> Subject:
     the same as the system of this structure.
     """
     system = structure if isinstance(structure, System) else System.of(structure, BEAM)
-    body = system.alone
+    body = system.only_structure
     if body is None:
         return Subject(system, motion, "", motion)
     (name,) = system.order

@@ -125,7 +125,7 @@ def system_errors(
     controllers, and at rest). A solution that does not resolve a mode that rings is judged at more steps.
     """
     solution = every(stride)
-    system, count = solution.system, len(solution.of.time)
+    system, count = solution.system, len(solution.trajectory.time)
     judged, note = judged_bodies(system), left_unjudged(system)
     by_steps = partial(unjudged, system, steps, friction)
     if not judged or (again is None and count < FEWEST):
@@ -138,19 +138,21 @@ def system_errors(
     known = _Known(steps, sizes, _negligible(judged, bases, sizes, place), peaks_by_step, friction, note)
     straight = all(sizes[name, DEFLECTION] <= BENT * body.length for name, body in judged.items())
     extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
-    interval = float(solution.of.time[-1] - solution.of.time[0]) / max(count - 1, 1) / stride  # of two steps, s
+    interval = (
+        float(solution.trajectory.time[-1] - solution.trajectory.time[0]) / max(count - 1, 1) / stride
+    )  # of two steps, s
     period = min(2 * math.pi / float(body.rest[0][0]) for body in judged.values())
     least = max(1, math.ceil(count * stride / MOST))  # steps from one that is looked at to the next
     skipped = max(1, min(int(period / PER_PERIOD / (stride * interval)), count // MANY)) if again is None else 1
 
-    peaks = times_of_peaks(solution.of.time, computed)
+    peaks = times_of_peaks(solution.trajectory.time, computed)
 
     def judge(solution: Solution) -> tuple[Errors, float, Lacking]:
         """Judge a solution at some of the steps; return its errors, the frequency, rad/s, of a mode that these steps do
         not resolve, and what the theory of slender beams lacks.
         """
-        rerun = None if again is None else reader_of_runs(again, len(solution.of.time))
-        look = partial(Looks.chosen, solution.of.time, peaks, stride * interval)
+        rerun = None if again is None else reader_of_runs(again, len(solution.trajectory.time))
+        look = partial(Looks.chosen, solution.trajectory.time, peaks, stride * interval)
         with np.errstate(all="ignore"):
             try:
                 if rerun is None:

@@ -87,25 +87,25 @@ class Loop(NamedTuple):
     command: tuple[Floats, Floats]
 
 
-Over = Callable[[Fraction], tuple[Floats, Floats]]
+Propagator = Callable[[Fraction], tuple[Floats, Floats]]
 
 
-def over_parts(plant: StateSpace, period: float) -> Over:
-    """Function that returns Φ and Γ of a plant over a fraction of a period, s: x₊ = Φ x + Γ u with u held."""
+def propagator(plant: StateSpace, period: float) -> Propagator:
+    """Return a function that computes Φ and Γ of a plant over a fraction of a period, s: x₊ = Φ x + Γ u with u held."""
     n, count = plant.b.shape
     block = np.zeros((n + count, n + count))
     block[:n, :n], block[:n, n:] = plant.a, plant.b
 
     @cache
-    def over(part: Fraction) -> tuple[Floats, Floats]:
+    def propagate(part: Fraction) -> tuple[Floats, Floats]:
         """Φ and Γ are blocks of the exponential of [[A, B], [0, 0]]."""
         whole = expm(block * (period * float(part)))
         return whole[:n, :n], whole[:n, n:]
 
-    return over
+    return propagate
 
 
-def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | None = None) -> Loop:
+def loop_of(plant: StateSpace, channels: list[Channel], propagate: Propagator, cut: int | None = None) -> Loop:
     """Map over the common period of a plant in the loop of `channels`.
 
     Its inputs are the plant's free ones, then the references. With a `cut`, the index of a drive, a first input
@@ -129,12 +129,12 @@ def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | N
 
     y = measured()
     # At one time all samples come before any command begins to act.
-    events = sorted(
-        ((j + (channel.part if acts else 0)) * Fraction(1, channel.samples), acts, c)
-        for c, channel in enumerate(channels)
-        for j in range(channel.samples)
-        for acts in (False, True)
-    )
+    events = list[tuple[Fraction, bool, int]]()  # time, True if a command begins to act, number of the channel
+    for c, channel in enumerate(channels):
+        for j in range(channel.samples):
+            events.append((j * Fraction(1, channel.samples), False, c))
+            events.append(((j + channel.part) * Fraction(1, channel.samples), True, c))
+    events.sort()
     for (time, acts, c), end in zip(events, [*(event[0] for event in events[1:]), Fraction(1)], strict=True):
         channel = channels[c]
         if acts:
@@ -147,7 +147,7 @@ def loop_of(plant: StateSpace, channels: list[Channel], over: Over, cut: int | N
             for i in range(channel.driven.start, channel.driven.stop):
                 waiting[i].insert(0, rows[size] if i == cut else commands[i].copy())
         if end > time:
-            phi, gamma = over(end - time)
+            phi, gamma = propagate(end - time)
             x = phi @ x + gamma[:, :m] @ np.array([queue[-1] for queue in waiting]) + gamma[:, m:] @ inputs
     after = np.concatenate([x, *laws, *(np.array(queue) for queue in waiting)])
     (a, b), by_y, by_commands = ((block[:, :size], block[:, size:]) for block in (after, y, commands))
@@ -183,15 +183,15 @@ def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: floa
     w = w[(w >= 10.0**-DECADES * highest) & (w <= highest)]
     gains = response(w)
 
-    def crossings(of: Callable[[Complex], Floats]) -> tuple[Floats, Complex]:
+    def crossings(function: Callable[[Complex], Floats]) -> tuple[Floats, Complex]:
         """Frequencies at which a function of the gain changes its sign, by halving, and the gains there."""
-        values = of(gains)
+        values = function(gains)
         products = values[:-1] * values[1:]
         starts = np.flatnonzero(np.isfinite(products) & (products < 0))
         low, high, above = w[starts], w[starts + 1], values[starts] > 0
         for _ in range(HALVINGS):
             middle = (low + high) / 2
-            beyond = (of(response(middle)) > 0) != above
+            beyond = (function(response(middle)) > 0) != above
             low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
         return high, response(high)
 
@@ -231,7 +231,7 @@ class Loops:
     channels: list[Channel]
 
     @staticmethod
-    def of(
+    def from_state(
         state: SteadySystem,
         *,
         inputs: Sequence[str] | None = None,
@@ -246,8 +246,8 @@ class Loops:
         plant = _plant(state, controllers, inputs=free, outputs=wanted, strained=strained, name=name)
         return Loops(plant, controllers, *channels_of(plant, dict(controllers)))
 
-    def around(self, state: SteadySystem) -> Loops:
-        """The loops of the same laws about a state of another system, without further inputs and outputs."""
+    def rebuild(self, state: SteadySystem) -> Loops:
+        """Return the loops of the same laws about a state of another system, without further inputs and outputs."""
         return replace(self, plant=_plant(state, self.controllers, inputs=[], outputs=[]))
 
     @property
@@ -262,19 +262,21 @@ class Loops:
         return {drive: count for drive, count in zip(self.drives, counts, strict=True) if count > 1}
 
     @cached_property
-    def _over(self) -> Over:
-        return over_parts(self.plant, self.period)
+    def _propagator(self) -> Propagator:
+        return propagator(self.plant, self.period)
 
     @cached_property
     def closed(self) -> Loop:
         """The closed loop."""
-        return loop_of(self.plant, self.channels, self._over)
+        return loop_of(self.plant, self.channels, self._propagator)
 
     @cached_property
     def cuts(self) -> dict[str, Loop]:
         """Loops that are cut at each drive that is sampled once in the period, while the others stay closed."""
         once = [name for name in self.drives if name not in self.often]
-        return {name: loop_of(self.plant, self.channels, self._over, cut=self.drives.index(name)) for name in once}
+        return {
+            name: loop_of(self.plant, self.channels, self._propagator, cut=self.drives.index(name)) for name in once
+        }
 
     @cached_property
     def growth(self) -> float:

@@ -171,7 +171,7 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
     else:
         start, restored = ravel_pytree(controller.state)
         with naming_controller(name):
-            law, parameters = _of_function(controller, start, restored)
+            law, parameters = _compile_function(controller, start, restored)
 
     def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
         """Command as the law asks for it, the command within its limit, and the next state."""
@@ -190,7 +190,7 @@ def _linear(parts: Any, _: Any, error: Array, state: Array) -> tuple[Array, Arra
     return c @ state + d @ error, a @ state + b @ error
 
 
-def _of_function(controller: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
+def _compile_function(controller: Feedback, start: Array, restored: Any) -> tuple[Any, Any]:
     """Compile a law that is a function, with the values that it refers to as its first argument. Returns the compiled
     function and these values.
     """

@@ -47,7 +47,7 @@ class Carried(NamedTuple):
         q, qd, qdd = (xp.concatenate([piece[k] for piece in pieces]) for k in range(3))
         return cls(q, qd, qdd, base, Hung(first.hung.station, force, moment))
 
-    def at(self, times: Any) -> Carried:
+    def select(self, times: Any) -> Carried:
         """Return the body at an index, slice or array of the times."""
         if isinstance(times, slice) and times == slice(None):
             return self

@@ -127,12 +127,15 @@ class Initial(Value):
     @property
     def displaced(self) -> tuple[Moved, ...]:
         """Components of points' displacements."""
-        return (*_moved("tip_displacement", {"tip": self.tip_displacement}), *_moved("displacement", self.displacement))
+        return (
+            *_displacements("tip_displacement", {"tip": self.tip_displacement}),
+            *_displacements("displacement", self.displacement),
+        )
 
     @property
     def moving(self) -> tuple[Moved, ...]:
         """Components of points' velocities."""
-        return (*_moved("tip_velocity", {"tip": self.tip_velocity}), *_moved("velocity", self.velocity))
+        return (*_displacements("tip_velocity", {"tip": self.tip_velocity}), *_displacements("velocity", self.velocity))
 
     def __str__(self) -> str:
         if self.acceleration is not None:
@@ -158,7 +161,7 @@ class Moved(NamedTuple):
     value: float
 
 
-def _moved(where: str, points: Mapping[str, Mapping[Any, float] | None] | None) -> list[Moved]:
+def _displacements(where: str, points: Mapping[str, Mapping[Any, float] | None] | None) -> list[Moved]:
     """Components of points by name. Those of the tip alone are given at `where`, others at the point's name below."""
     moved = list[Moved]()
     for name, values in (points or {}).items():
@@ -183,7 +186,7 @@ def begun(initial: Initial | State) -> Initial:
     return Initial(initial)
 
 
-def on_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) -> dict[str, list[Moved]]:
+def assign_to_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) -> dict[str, list[Moved]]:
     """Assign components to the bodies that deform, by name; the points lose their bodies' names.
 
     A point may be named without its body where one body alone deforms. InputError if there is no such point, or no

@@ -168,13 +168,13 @@ def _inputs(
             (name,) = local_names([system.coordinates[drive.at]])
             forces[names.index(name), k] = 1.0
             continue
-        moved = _moved(local.inputs, drive)
+        moved = _perturbed_inputs(local.inputs, drive)
         forces[:, k] = -local.tree(*state, moved).imag / STEP
         direct[:, k] = read(*now, moved)[0].imag / STEP
     return forces, direct
 
 
-def _moved(inputs: Inputs, by: Driven) -> Inputs:
+def _perturbed_inputs(inputs: Inputs, by: Driven) -> Inputs:
     """Inputs with a complex step in one of them: in an acceleration of the ground, or in an entry of an array."""
     if by.way in ("a", "alpha"):
         faster = getattr(inputs.ground, by.way) + 1j * STEP * np.eye(3)[by.at]

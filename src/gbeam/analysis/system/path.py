@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.rest import held_tree, steady
-from gbeam.analysis.system.search import rested_together
+from gbeam.analysis.system.search import solve_rests
 from gbeam.analysis.system.steady import SteadySystem, release
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
@@ -53,7 +53,7 @@ class Equilibria:
         if is_linear(tree):
             return  # which takes no search
         starts = np.array([_continued(states, value) for value in new])
-        points = rested_together(system, tree, [drive.inputs(system) for drive in new.values()], starts)
+        points = solve_rests(system, tree, [drive.inputs(system) for drive in new.values()], starts)
         for (value, drive), solved in zip(new.items(), points, strict=True):
             if solved is not None:
                 point, slopes = solved

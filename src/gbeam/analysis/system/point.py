@@ -76,7 +76,7 @@ class Point:
         with_friction = self.tree(self.y, self.yd, self.ydd, self.inputs) if rubs else residual[0]
         return with_friction, k[0], c[0], m[0]
 
-    def standing(self, time: float = 0.0) -> Trajectory:
+    def trajectory(self, time: float = 0.0) -> Trajectory:
         """A trajectory of this state alone."""
         return Trajectory(np.array([time]), self.y[None], self.yd[None], self.ydd[None])
 

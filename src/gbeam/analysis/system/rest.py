@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.initial import Initial
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.search import NEAR, bends_back, followed, relaxed, rested
+from gbeam.analysis.system.search import NEAR, followed, holds_bodies, relaxed, rested
 from gbeam.analysis.system.solution import Solution
 from gbeam.analysis.system.start import started
 from gbeam.analysis.system.steady import SteadySystem, release
@@ -133,14 +133,14 @@ def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
     else:
         y = state.point.y
         distance = np.abs(y - start[tree.unknowns]).max(initial=0.0)
-        off_path = distance > PREDICTED * np.abs(y).max(initial=0.0) and not bends_back(tree, state.point.slopes()[1])
+        off_path = distance > PREDICTED * np.abs(y).max(initial=0.0) and not holds_bodies(tree, state.point.slopes()[1])
     if off_path:
         try:
             state = SteadySystem(system, drive, followed(system, tree, inputs))
         except ComputationError as error:
             if only_bodies:
                 raise error from None
-    if state is not None and (state.moved(start) <= NEAR or not state.grows):
+    if state is not None and (state.largest_departure(start) <= NEAR or not state.grows):
         return state
     if only_bodies:
         raise lost or ComputationError("no equilibrium", "")
@@ -215,10 +215,10 @@ def transfer(state: SteadySystem, system: System) -> SteadySystem:
         raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
 
 
-def standing(state: SteadySystem, of: System) -> Solution:
-    """Express a steady state as a solution of one time, for its system or a richer one `of`. What turns is free."""
+def steady_solution(state: SteadySystem, target: System) -> Solution:
+    """Express a steady state as a solution of one time, for its system or a richer `target`. What turns is free."""
     drive, system = state.drive, state.system
-    moved = state if of is system else transfer(state, of)
+    moved = state if target is system else transfer(state, target)
     if drive.coordinate and system.coordinates.index(drive.coordinate) not in system.tree.fixed:
         drive = replace(drive, coordinate="", rate=None)
     point = release(moved, held=False).point
@@ -226,4 +226,4 @@ def standing(state: SteadySystem, of: System) -> Solution:
     def inputs(system: System, _: Any) -> Inputs:
         return each_leaf(lambda leaf: leaf[None], drive.inputs(system))
 
-    return Solution(of, point.standing(drive.time), inputs)
+    return Solution(target, point.trajectory(drive.time), inputs)

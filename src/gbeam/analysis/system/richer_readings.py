@@ -84,7 +84,7 @@ def reader_of_runs(again: Again, count: int) -> Rerun:
 
     def rerun(system: System, bodies: Iterable[str]) -> Reading:
         solution = again(system)
-        if len(solution.of.time) < count:
+        if len(solution.trajectory.time) < count:
             raise ComputationError("not converged", "the richer system has no response")
         return solution.read(bodies)
 
@@ -107,7 +107,7 @@ def run_richer(solution: Solution, rerun: Rerun, bases: Mapping[str, Base], comp
             same = rerun(richer(system, bases, exact=False).system, judged)
         except ComputationError:
             same, note = computed, TOGETHER
-    rough, looks = coarser(system), Looks.at_all(solution.of.time)
+    rough, looks = coarser(system), Looks.all_times(solution.trajectory.time)
     mesh = None if rough is None else rerun(rough, judged)
     # The errors of models lie between the system with more shapes of the same models and the exact one.
     return RicherReadings(looks, computed, truth, (computed, same), (same, truth), alone, mesh, note=note)
@@ -137,9 +137,9 @@ def depart_to_richer(
 
     If `straight`, departures are those from undeformed bodies.
     """
-    along = solution.along(bases)
+    along = solution.bent_directions(bases)
     rich = richer(solution.system, bases, exact=True, along=along)
-    within = solution.within(rich.system, bases, rich.shared)
+    within = solution.insert(rich.system, bases, rich.shared)
     linear = solution.posed(bases, linear_about_rest(rich.system, bases)) if straight else None
     departures, residual = within.departures(linear), within.residual()
     if linear is not None and not departures.inert:  # light arms on hinges that follow one another
@@ -148,13 +148,13 @@ def depart_to_richer(
     total, of_model = departures.answer(residual, begun), None
     if not all(solution.system.flexible[name].exact for name in bases):
         same = richer(solution.system, bases, exact=False, along=along).system
-        start = _initial_departure(starting, rich.system, within, departures, within.of_new, like=same)
-        of_model = total.minus(departures.answer(within.of_new(residual), start))
+        start = _initial_departure(starting, rich.system, within, departures, within.new_part, like=same)
+        of_model = total.minus(departures.answer(within.new_part(residual), start))
     alone = list[Correction]()
     for name in bases if len(bases) > 1 else ():
         # The residual of a system in which this body alone is exact. The others feel it only through the joints.
         one_richer = richer(solution.system, {name: bases[name]}, exact=True, along=along)
-        one = solution.within(one_richer.system, (), one_richer.shared)
+        one = solution.insert(one_richer.system, (), one_richer.shared)
         kept = [k for k, body in enumerate(one.richer.bodies) if body == name or body not in bases]
         onto = np.zeros((len(one.richer.names), residual.shape[1]))  # from its unknowns to those of all richer bodies
         onto[kept, [within.richer.names.index(one.richer.names[k]) for k in kept]] = 1.0
@@ -165,12 +165,12 @@ def depart_to_richer(
     sizes = [within.richer.sizes(part) for part in parts]
     sizes += [] if rough is None else [rough[0].richer.sizes(rough[1])]
     looks = look(np.concatenate(sizes, axis=1))
-    computed, truth = solution.at(looks.at).read(bases), within.moved(total, looks.at)
-    few_shapes = computed if of_model is None else within.moved(of_model, looks.at)
+    computed, truth = solution.select(looks.at).read(bases), within.read_corrected(total, looks.at)
+    few_shapes = computed if of_model is None else within.read_corrected(of_model, looks.at)
     return RicherReadings(
         looks, computed, truth, (few_shapes, truth), (computed, few_shapes),
-        [within.moved(departure, looks.at) for departure in alone],
-        None if rough is None else rough[0].moved(rough[1], looks.at),
+        [within.read_corrected(departure, looks.at) for departure in alone],
+        None if rough is None else rough[0].read_corrected(rough[1], looks.at),
         _ringing(rich.system, bases, within, *departures.ringing(residual, begun)),
     )  # fmt: skip
 
@@ -182,7 +182,7 @@ def _coarser_departure(
     rough = coarser(solution.system)
     if rough is None:
         return None
-    within = solution.within(rough, bodies)
+    within = solution.insert(rough, bodies)
     departures = within.departures()
     return within, departures.answer(within.residual(), _initial_departure(starting, rough, within, departures))
 
@@ -213,14 +213,14 @@ def differences_to_thick_beams(
     theories = theories_of(solution.system)
     if not theories:
         return Lacking(), ""
-    loop = rerun if len(solution.of.time) > 1 else None
+    loop = rerun if len(solution.trajectory.time) > 1 else None
     bent = partial(with_beams, solution.system)
     thick = bent({name: theory.thick for name, theory in theories.items()})
 
     def begun(departures: Departures, within: Within, plate: Floats) -> State | None:
         """Initial departure of thick beams from slender ones."""
         if starting is None or starting.state is None:
-            return _initial_departure(starting, thick, within, departures, lambda r: r + within.of.q[0] @ plate)
+            return _initial_departure(starting, thick, within, departures, lambda r: r + within.trajectory.q[0] @ plate)
         departure = np.zeros((2, len(within.richer.names)))
         for sign, other in ((-1, bent({name: theory.slender for name, theory in theories.items()})), (1, thick)):
             names, values = other.unknown_coordinates, np.array(starting.state(other))
@@ -229,7 +229,7 @@ def differences_to_thick_beams(
 
     lacking = thick_beam_differences(
         solution.posed(theories),
-        solution.of,
+        solution.trajectory,
         theories,
         lambda beams: solution.posed(theories, bent(beams)),
         begun,
@@ -258,7 +258,7 @@ def _initial_departure(
     if starting is None:
         return None
     if starting.state is not None:
-        return _difference_of_starts(starting.state, system if like is None else like, within.of)
+        return _difference_of_starts(starting.state, system if like is None else like, within.trajectory)
     flags = starting.flags(system)
     residual = part(within.held_residual(flags[1]))
     return departures.settled(residual, *(flags if departing is None else starting.flags(departing)))

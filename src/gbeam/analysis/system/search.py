@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -78,24 +78,32 @@ def adrift(point: Point, residual: Floats, slope: Sequence[Floats]) -> Flags:
     return np.any([slides, *(turn for turn, turns_on in zip(turning, free, strict=True) if turns_on)], axis=0)
 
 
-def _newton(
-    point: Point, remaining: Floats, *, relaxing: bool = False, shrinking: bool = False
-) -> tuple[Point, tuple[Floats, ...], Floats, bool]:
-    """Solve residual = `remaining` (n,) by Newton's method; return the point, K, C and M, the last correction, and True
-    if it converged.
+class _Iterate(NamedTuple):
+    """Where Newton's method ended: K, C and M before the last correction, this (n,), and True if it converged."""
 
-    If `relaxing`, each correction goes down the forces, as the tree itself would, and so ends where the stiffness
-    holds. If `shrinking`, corrections that do not shrink, which may lead far away, are a failure.
+    point: Point
+    slope: tuple[Floats, ...]
+    change: Floats
+    converged: bool
+
+
+def _newton(point: Point, remaining: Floats, *, relaxing: bool = False, shrinking: bool = False) -> _Iterate:
+    """Solve residual = `remaining` (n,) by Newton's method.
+
+    Coordinates that nothing holds are accelerated in place of displaced. If `relaxing`, each correction goes down the
+    forces, as the tree itself would, and so ends where the stiffness holds. If `shrinking`, corrections that do not
+    shrink, which may lead far away, are a failure.
     """
-    before, tree, accelerated = 0.0, point.tree, point.tree.sliding
+    tree, accelerated = point.tree, point.tree.sliding
     if accelerated.any() or tree.turning:
         residual, *slope = point.slopes()
         accelerated = adrift(point, residual, slope)
         point = replace(point, ydd=point.ydd + pulled(residual - remaining, slope[-1], accelerated))
+    size_before = 0.0  # of the correction before, as much as was taken of it
     for _ in range(RELAXING if relaxing else ITERATIONS):
         residual, k, c, m = point.slopes()
         if not np.isfinite(residual).all():
-            return point, (k, c, m), residual, False
+            return _Iterate(point, (k, c, m), residual, False)
         if relaxing:
             change = relaxation(residual, k, m, accelerated)
         else:
@@ -106,23 +114,23 @@ def _newton(
         # With other accelerations than those of the forces a body that turns with all that pushes it would change them.
         residual = tree(point.y, point.yd, point.ydd, point.inputs) if accelerated.any() else residual
         point = replace(point, ydd=point.ydd + pulled(residual - remaining, m, accelerated))
+        largest = np.abs(point.y).max(initial=0.0)
         # The next correction is smaller by what this one is smaller than the last one, at least.
-        limit = CLOSE * (1.0 + np.abs(point.y).max(initial=0.0))
-        if min(size, 1.0) * min(size / before if before else 1.0, 1.0) <= limit:
-            return point, (k, c, m), change, True
-        if shrinking and before and size > before / 2 and size > NOISE * np.abs(point.y).max(initial=0.0):
+        shrinkage = min(size / size_before, 1.0) if size_before else 1.0
+        if min(size, 1.0) * shrinkage <= CLOSE * (1.0 + largest):
+            return _Iterate(point, (k, c, m), change, True)
+        if shrinking and size_before and size > size_before / 2 and size > NOISE * largest:
             break
-        before = min(size, 1.0)  # as much as was taken of it
-    return point, (k, c, m), change, False
+        size_before = min(size, 1.0)
+    return _Iterate(point, (k, c, m), change, False)
 
 
-def rested_together(
+def solve_rests(
     system: System, tree: Tree, drives: Sequence[Inputs], starts: Floats
 ) -> list[tuple[Point, tuple[Floats, ...]] | None]:
-    """States of rest of a system's tree under several inputs, each with its K, C and M, from starts (t, n) of all
-    coordinates.
+    """Find states of rest of a system's tree under several inputs, from starts (t, n) of all coordinates.
 
-    One that Newton's method does not find near its start is None.
+    Each has its K, C and M. One that Newton's method does not find near its start is None.
     """
     inputs, sliding, sloped = stack_trees(drives), tree.sliding, tree.frictionless
     y, begun = starts[:, tree.unknowns], starts[:, tree.unknowns]
@@ -154,7 +162,7 @@ def rested_together(
     points: list[tuple[Point, tuple[Floats, ...]] | None] = [None] * len(y)
     for i in np.flatnonzero(nearby).tolist():
         slope = k[i], c[i], m[i]
-        if not bends_back(tree, k[i]):
+        if not holds_bodies(tree, k[i]):
             continue
         try:
             points[i] = _steady(system, Point(tree, y[i], still[i], ydd[i], drives[i]), slope), slope
@@ -172,7 +180,7 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
     """
     still = np.zeros(len(tree.unknowns))
     if is_linear(tree):
-        return _rested_at_once(Point(tree, still, still, still, inputs))
+        return _solve_linear_rest(Point(tree, still, still, still, inputs))
     begun = point = Point(tree, (system.start[0] if start is None else start)[tree.unknowns], still, still, inputs)
     residual, reached, stride = tree(begun.y, still, still, inputs), 0.0, 1.0
     if not np.isfinite(residual).all():
@@ -192,8 +200,8 @@ def rested(system: System, tree: Tree, inputs: Inputs, start: Floats | None = No
     return _steady(system, point, slope)
 
 
-def _rested_at_once(point: Point) -> Point:
-    """State of rest of linear equations; ComputationError where their stiffness is singular."""
+def _solve_linear_rest(point: Point) -> Point:
+    """Solve linear equations for a state of rest; ComputationError where their stiffness is singular."""
     residual, k, _, _ = point.slopes()
     try:
         y: Any = np.linalg.solve(k, -residual)
@@ -210,7 +218,7 @@ def _turns(point: Point) -> str:
     return f"the rate is {float(np.linalg.norm(point.inputs.ground.w)):.4g} rad/s"
 
 
-def bends_back(tree: Tree, stiffness: Floats) -> bool:
+def holds_bodies(tree: Tree, stiffness: Floats) -> bool:
     """True if the stiffness K (n, n) holds the bodies that deform while joints are held."""
     deforms = [np.full(size, k == len(link.steps)) for link in tree.links for k, size in enumerate(link.sizes)]
     kept = np.concatenate(deforms)[tree.unknowns]
@@ -246,7 +254,7 @@ def followed(system: System, tree: Tree, inputs: Inputs) -> Point:
         ahead = y + (share - reached) * course
         point = Point(tree, ahead, still, still, _eased(inputs, share))
         moved, slope, _, converged = _newton(point, still, shrinking=True)
-        held = converged and bends_back(tree, slope[0])
+        held = converged and holds_bodies(tree, slope[0])
         as_predicted = converged and np.abs(moved.y - ahead).max() < NEAREST * np.abs(moved.y).max()
         if held or (converged and (not holds or stride < LOCATED or as_predicted)):
             course = (moved.y - y) / (share - reached)
@@ -276,7 +284,7 @@ def _steady(system: System, point: Point, slope: Sequence[Floats]) -> Point:
     motion has no mass.
     """
     tree, (k, c, m) = point.tree, slope
-    if len(tree.unknowns) == sum(link.body.size for link in tree.links) and bends_back(tree, k):
+    if len(tree.unknowns) == sum(link.body.size for link in tree.links) and holds_bodies(tree, k):
         return point  # the stiffness holds all, whatever its mass
     refuse_massless(system, point, m)
     slides, residual = tree.sliding & loose(k, c), tree(point.y, point.yd, point.ydd, point.inputs)

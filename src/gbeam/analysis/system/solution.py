@@ -43,12 +43,13 @@ InputsOf = Callable[[System, Any], Inputs]  # of a system with the same joints, 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A system, its trajectory `of` (coordinates, rates and accelerations at times), and its inputs at these times. The
-    inputs are known for every system with the same joints.
+    """A system, its trajectory (coordinates, rates and accelerations at times), and its inputs at these times.
+
+    The inputs are known for every system with the same joints.
     """
 
     system: System
-    of: Trajectory
+    trajectory: Trajectory
     inputs: InputsOf
 
     def posed(self, bodies: Iterable[str], system: System | None = None) -> Posed:
@@ -58,31 +59,33 @@ class Solution:
             system.tree,
             partial(self.inputs, system),
             system.unknown_coordinates,
-            lambda of, times: Solution(system, of, self.at(times).inputs).read(bodies),
+            lambda trajectory, times: Solution(system, trajectory, self.select(times).inputs).read(bodies),
             partial(departure_sizes, system, bodies),
         )
 
-    def at(self, times: Indices) -> Solution:
+    def select(self, times: Indices) -> Solution:
         """Return the solution at indices of its times."""
-        return Solution(self.system, self.of.select(times), lambda system, part: self.inputs(system, times[part]))
+        return Solution(
+            self.system, self.trajectory.select(times), lambda system, part: self.inputs(system, times[part])
+        )
 
-    def within(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
-        """The solution put into another system's equations, by its unknowns' names or their indices `shared`."""
-        return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.of, shared)
+    def insert(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
+        """Put the solution into another system's equations, by its unknowns' names or their indices `shared`."""
+        return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.trajectory, shared)
 
     def states(self, bodies: Iterable[str]) -> tuple[Floats, dict[str, Carried]]:
         """Places (t, p, 3) m of all points, and the states of some bodies by name."""
-        tree, of = self.system.tree, self.of
-        places, along = list[Floats](), {name: list[Carried]() for name in bodies}
-        for times in pieces(len(of.time), tree.size):
-            inputs, at = self.inputs(self.system, times), of.select(times)
-            state = tree.motion(at.q, at.qd, at.qdd if along else 0 * at.q, inputs)
+        tree, trajectory = self.system.tree, self.trajectory
+        places, states = list[Floats](), {name: list[Carried]() for name in bodies}
+        for times in pieces(len(trajectory.time), tree.size):
+            inputs, at = self.inputs(self.system, times), trajectory.select(times)
+            state = tree.motion(at.q, at.qd, at.qdd if states else 0 * at.q, inputs)
             places.append(state.places)
-            if along:
-                acting = tree.demanded(state, inputs)[2] if self.system.laden & {*along} else [[] for _ in tree.links]
-                for name, carried_pieces in along.items():
-                    carried_pieces.append(carried(self.system, state, name, acting))
-        return np.concatenate(places), {name: Carried.joined(parts) for name, parts in along.items()}
+            if states:
+                acting = tree.demanded(state, inputs)[2] if self.system.laden & {*states} else [[] for _ in tree.links]
+                for name, body_pieces in states.items():
+                    body_pieces.append(carried(self.system, state, name, acting))
+        return np.concatenate(places), {name: Carried.joined(parts) for name, parts in states.items()}
 
     def read(self, bodies: Iterable[str]) -> Reading:
         """Places (t, p, 3) m of all points, and quantities of some bodies.
@@ -94,7 +97,7 @@ class Solution:
         out: dict[Quantity, Floats] = {PLACE: places}
         for name, moved in states.items():
             body = self.system.flexible[name]
-            out |= reading_of(name, body, moved.q, loads_of(body, moved, self.of.time))
+            out |= reading_of(name, body, moved.q, loads_of(body, moved, self.trajectory.time))
         return out
 
     def turning(self) -> Floats:
@@ -103,33 +106,34 @@ class Solution:
 
         These are the bodies without points off the root. The points lie on the body's axes at its radius of gyration.
         """
-        tree, of, radii = self.system.tree, self.of, dict[int, float]()
+        tree, trajectory, radii = self.system.tree, self.trajectory, dict[int, float]()
         for k, name in enumerate(self.system.order):
             body = self.system.bodies[name]
             if isinstance(body, RigidBody) and not np.any(body.body.places) and body.mass > 0:
                 about_root = np.trace(body.tensor) / (2 * body.mass) + np.square(body.centre).sum()
                 radii[k] = float(np.sqrt(about_root))
         places = list[Floats]()
-        for times in pieces(len(of.time), tree.size) if radii else ():
-            at = of.select(times)
+        for times in pieces(len(trajectory.time), tree.size) if radii else ():
+            at = trajectory.select(times)
             roots = tree.motion(at.q, at.qd, 0 * at.q, self.inputs(self.system, times)).roots
             axes = [radius * np.swapaxes(roots[k].R, -1, -2) for k, radius in radii.items()]
             places.append(np.concatenate([np.broadcast_to(ends, (len(at.q), 3, 3)) for ends in axes], axis=1))
-        return np.concatenate(places) if places else np.zeros((len(of.time), 0, 3))
+        return np.concatenate(places) if places else np.zeros((len(trajectory.time), 0, 3))
 
     def bases(self, bodies: Iterable[str]) -> dict[str, Base]:
         """Motions (t, 3) of the roots of some bodies by name, at a selection of the times."""
-        times = matrix_times(len(self.of.time))
-        at = self.of.select(times)
+        times = matrix_times(len(self.trajectory.time))
+        at = self.trajectory.select(times)
         state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, times))
         roots = {name: state.roots[k] for k, name in enumerate(self.system.order)}
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
-    def along(self, bodies: Iterable[str]) -> dict[str, Directions]:
-        """Flags of x, y and z by the names of bodies: true if a body has shapes along the axis, or would move in new
-        ones. Bodies on which others hang, or forces act, may move along all.
+    def bent_directions(self, bodies: Iterable[str]) -> dict[str, Directions]:
+        """Flags of x, y and z by the names of bodies: true if a body has shapes there, or would move in new ones.
+
+        Bodies on which others hang, or forces act, may move along all.
         """
-        tree, count, acted = self.system.tree, len(self.of.time), self.system.laden
+        tree, count, acted = self.system.tree, len(self.trajectory.time), self.system.laden
         every, wanted = dict[str, Directions](), list[tuple[int, str]]()
         for k, name in enumerate(self.system.order):
             if name in bodies:
@@ -139,18 +143,18 @@ class Solution:
                     wanted.append((k, name))
         if wanted:
             times = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
-            at, inputs = self.of.select(times), self.inputs(self.system, times)
+            at, inputs = self.trajectory.select(times), self.inputs(self.system, times)
             state = tree.motion(at.q, at.qd, at.qdd, inputs)
             for k, name in wanted:
                 q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
-                every[name] = _moved_along(self.system.flexible[name], state.roots[k], q, qd, qdd, inputs.loads[k])
+                every[name] = _bent_axes(self.system.flexible[name], state.roots[k], q, qd, qdd, inputs.loads[k])
         return every
 
     @property
     def deformed(self) -> dict[str, Floats]:
         """Coordinates (t, n) of flexible bodies by name."""
-        q = np.zeros((len(self.of.time), len(self.system.coordinates)))
-        q[:, self.system.tree.unknowns] = self.of.q
+        q = np.zeros((len(self.trajectory.time), len(self.system.coordinates)))
+        q[:, self.system.tree.unknowns] = self.trajectory.q
         return {name: q[:, deforming(self.system.coordinates, name)] for name in self.system.flexible}
 
     @property
@@ -159,16 +163,17 @@ class Solution:
         return {name: bend(self.system.flexible[name], q) for name, q in self.deformed.items()}
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """Warnings of bodies made of matrices, which lack stiffness by loads, with its size in this motion; and of
-        those that bend too far for a stiffness of first order.
+    def stiffness_warnings(self) -> tuple[str, ...]:
+        """Warnings of bodies made of matrices, which lack stiffness by loads, with the size of that in this motion.
+
+        Others are of bodies that bend too far for a stiffness of first order.
         """
         flexible = self.system.flexible
         lacking = [name for name, body in flexible.items() if body.unstiffened]
         bases = self.bases(lacking) if lacking else {}
         warnings = [(name, unstiffened(flexible[name], base, "its motion")) for name, base in bases.items()]
         warnings += [(name, bent_far(flexible[name], share)) for name, share in self.bends.items()]
-        return tuple(f"{name}: {warning}" for name, of_body in warnings for warning in of_body)
+        return tuple(f"{name}: {warning}" for name, body_warnings in warnings for warning in body_warnings)
 
 
 def reading_of(name: str, body: Structure, q: Floats, loads: Loads) -> Reading:
@@ -212,7 +217,7 @@ def departure_sizes(system: System, bodies: Iterable[str], by: Correction) -> Fl
     return np.stack(sizes, axis=1)
 
 
-def _moved_along(body: Structure, root: Frame, q: Floats, qd: Floats, qdd: Floats, loads: Floats | None) -> Directions:
+def _bent_axes(body: Structure, root: Frame, q: Floats, qd: Floats, qdd: Floats, loads: Floats | None) -> Directions:
     """Flags of x, y and z: true if a beam with this motion of its root has shapes there, or would move in new ones."""
     rich, index = enrichment(body, Base(root.a, root.w, root.alpha)).model(body.kind)
     c, lifted = rich.coefficients, np.zeros((3, len(q), rich.size))

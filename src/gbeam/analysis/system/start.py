@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.analysis.system.initial import Initial, on_bodies, rates_of, shape_of
+from gbeam.analysis.system.initial import Initial, assign_to_bodies, rates_of, shape_of
 from gbeam.analysis.system.point import Point, refuse_massless
 from gbeam.analysis.system.search import CLOSE, ITERATIONS, SHORTEST
 from gbeam.arrays.namespace import Array, holds_jax, namespace
@@ -63,7 +63,7 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
     while reached < 1.0:
         share = min(reached + stride, 1.0)
         wanted = forces if share == 1.0 else partial(eased, share=share, first=forces(begun))
-        moved, change, converged = _root_near(wanted, z, bent)
+        moved, change, converged = _find_root(wanted, z, bent)
         if converged:
             z, reached, stride = moved, share, 2 * stride
         elif stride > SHORTEST:
@@ -74,7 +74,7 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
 
 
 @np.errstate(all="ignore")  # corrections may leave all numbers
-def _root_near(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
+def _find_root(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
     """Root of a function near z (n,) by Newton's method, last correction of what is `bent`, True if converged."""
     change = z
     for _ in range(ITERATIONS):
@@ -120,16 +120,16 @@ def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Fla
 
     Bodies with displaced points take their shapes from these; what is left to bend or accelerate is solved for.
     """
-    tree, moved = system.tree, on_bodies(system.flexible, initial.displaced)
+    tree, moved = system.tree, assign_to_bodies(system.flexible, initial.displaced)
     y, yd = system.start[0][tree.unknowns], system.start[1][tree.unknowns]
     bent, accelerated = unknown_at_start(system, initial.state)
     if initial.acceleration is not None:  # joints are held, and what floats deforms, too
-        bodies = [_of_body(system, name).any(axis=0) for name in system.flexible]
+        bodies = [_body_selection(system, name).any(axis=0) for name in system.flexible]
         bent, accelerated = np.any([bent, *bodies], axis=0), np.zeros_like(bent)
         inputs, yd = _accelerated(inputs, np.asarray(initial.acceleration)), 0 * yd
     for name, components in moved.items():
         if components:
-            onto = _of_body(system, name)
+            onto = _body_selection(system, name)
             y = y + shape_of(system.flexible[name], components) @ onto
             held = ~onto.any(axis=0)
             bent, accelerated = bent & held, accelerated & held
@@ -138,16 +138,16 @@ def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Fla
     return solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated), bent, accelerated
 
 
-def _of_body(system: System, name: str) -> Floats:
+def _body_selection(system: System, name: str) -> Floats:
     """Selection matrix (m, n) of the m coordinates of a body among the free ones."""
     return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.unknowns).astype(float)
 
 
 def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
     """Rates (n,) at coordinates y: joints' `yd`, and bodies' by the initial velocities of their points."""
-    for name, components in on_bodies(system.flexible, initial.moving).items():
+    for name, components in assign_to_bodies(system.flexible, initial.moving).items():
         if components:
-            onto = _of_body(system, name)
+            onto = _body_selection(system, name)
             yd = yd + rates_of(system.flexible[name], onto @ y, components) @ onto
     return yd
 

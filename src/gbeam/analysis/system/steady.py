@@ -107,7 +107,7 @@ class SteadySystem(Steady):
     def solution(self) -> Solution:
         """The state as a solution of one time, in which what turns is free as in the system."""
         point = release(self, held=False).point
-        return Solution(self.system, point.standing(), point.driven)
+        return Solution(self.system, point.trajectory(), point.driven)
 
     def bent(self, bodies: Mapping[str, Structure]) -> float:
         """Largest displacement of a station of some bodies from its place at rest, as a share of the body's length."""
@@ -146,10 +146,16 @@ class SteadySystem(Steady):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, and what they leave out in this state."""
-        return self.stuck + self.system.warnings + self.solution.left_out + self._held_spin + self._spun_up
+        return (
+            self.stuck
+            + self.system.warnings
+            + self.solution.stiffness_warnings
+            + self._spin_warnings
+            + self._acceleration_warnings
+        )
 
     @property
-    def _held_spin(self) -> tuple[str, ...]:
+    def _spin_warnings(self) -> tuple[str, ...]:
         """Warn of joints that turn freely at the start and rest in this state."""
         tree, names = self.local.tree, self.names
         rates = self.system.tree.local(*self.system.start, 0 * self.system.start[0])[2][tree.unknowns]
@@ -168,7 +174,7 @@ class SteadySystem(Steady):
         return (f"as if {words}",) if turning else ()
 
     @property
-    def _spun_up(self) -> tuple[str, ...]:
+    def _acceleration_warnings(self) -> tuple[str, ...]:
         """Warn of joints with an angular acceleration: of the moment that turns them, and the time to turn by 1°."""
         if self.point.yd.any():
             return ()
@@ -246,7 +252,7 @@ class SteadySystem(Steady):
             return len(self.moving.growing) > 0
         return False
 
-    def moved(self, start: Floats) -> float:
+    def largest_departure(self, start: Floats) -> float:
         """Largest distance of a joint's coordinate, m or rad, from coordinates `start` (n,)."""
         joints = [".q" not in name for name in self.system.coordinates]
         return float(np.abs((self.coordinates - start)[joints]).max(initial=0.0))

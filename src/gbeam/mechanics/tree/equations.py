@@ -453,9 +453,9 @@ class Tree:
         Euler parameters are replaced by a rotation vector, which is zero at the coordinates `y` (n,).
         """
         new_numbers: dict[int, int] = {}  # among the fewer coordinates, by those among all
-        links, states, first = [], [], 0
+        links, states, count = [], [], 0  # number of all coordinates so far
         for link, *parts in zip(self.links, *self.parted(y, yd, ydd), strict=True):
-            steps, kept = [], []
+            steps, kept = [], []  # flags of coordinates: a ball loses its first one
             for step, *rates in zip(link.steps, *parts, strict=False):
                 reduced, *state = step.local(*rates)
                 steps.append(reduced)
@@ -463,8 +463,9 @@ class Tree:
                 kept += [step.size - reduced.size <= k for k in range(step.size)]
             states.append([coordinates[-1] for coordinates in parts])  # those of the body
             kept += [True] * link.body.size
-            new_numbers |= {first + int(k): len(new_numbers) + i for i, k in enumerate(np.flatnonzero(kept))}
-            first += len(kept)
+            for k in np.flatnonzero(kept).tolist():
+                new_numbers[count + k] = len(new_numbers)
+            count += len(kept)
             links.append(replace(link, steps=tuple(steps)))
         joined = (np.concatenate(arrays) for arrays in zip(*states, strict=True))
         fixed = tuple(new_numbers[k] for k in self.fixed if k in new_numbers)

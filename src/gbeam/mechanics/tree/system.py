@@ -296,7 +296,7 @@ class System(Value):
         return "system"
 
     @property
-    def alone(self) -> Structure | None:
+    def only_structure(self) -> Structure | None:
         """The only body, where it is a structure that the ground holds by its root as it is, and nothing else acts."""
         acting = self.forces or self.controllers or self.gravity is not None
         if len(self.bodies) > 1 or acting or self.tree.links[0].steps:
@@ -306,7 +306,7 @@ class System(Value):
     def require_damping(self, answer: str) -> None:
         """Raise InputError where a body has no damping ratio and an `answer` depends on it."""
         for name, body in self.flexible.items():
-            table = "beam" if self.alone is body and name == "beam" else f"bodies.{name}"  # of a scenario
+            table = "beam" if self.only_structure is body and name == "beam" else f"bodies.{name}"  # of a scenario
             with naming(f"{table}.damping_ratio"):
                 body.require_damping(answer)
 

@@ -16,16 +16,16 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, vector
 from gbeam.guards.quantities import Duration, Factor, Quantity, RotationVector
-from gbeam.motion.centrifuge.course import INVERSES, LESS, Course, Planned, less_eased, prepare
+from gbeam.motion.centrifuge.course import INVERSES, LESS, Course, Planned, prepare, replan
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
-from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward
+from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward_kinematics
 from gbeam.motion.centrifuge.limits import Ends, Limits, Machine, MachineLimits, usage
 from gbeam.motion.centrifuge.target.reachability import shortfalls
 from gbeam.motion.centrifuge.target.target import Episode, Target
 from gbeam.motion.flight import Flight
 from gbeam.motion.profiles.combine import Turned
 from gbeam.motion.profiles.profile import Profile, sampled
-from gbeam.motion.rigid import moved, rotation_of, turn_of
+from gbeam.motion.rigid import rotation_of, shift_base, turn_of
 from gbeam.results.machine import LimitUse, Shortfall
 from gbeam.results.parts import Base
 
@@ -245,11 +245,11 @@ class Centrifuge:
 
     def base(self, t: Any) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
-        return moved(self.at_control_point(t), -self.place)
+        return shift_base(self.at_control_point(t), -self.place)
 
     def at_control_point(self, t: Any) -> Base:
         """Motion of the control point at times `t` (s, any shape), axes of the specimen."""
-        base = forward(self.axes(t), self.geometry.arm, self.geometry.gravity)
+        base = forward_kinematics(self.axes(t), self.geometry.arm, self.geometry.gravity)
         return each_leaf(self._felt, base) if any(self.turn) else base
 
     @property
@@ -308,7 +308,7 @@ class Centrifuge:
         course = self._solved
         if not isinstance(course.inverse, Planned):
             return None
-        plan = less_eased(course.inverse, course.target, self.geometry, self.limits, self.ends, self.ease)
+        plan = replan(course.inverse, course.target, self.geometry, self.limits, self.ends, self.ease)
         return self._changed(course=replace(course, solution=plan), ease=LESS * self.ease)
 
     def axes(self, t: Any) -> Axes:

@@ -105,7 +105,7 @@ LESS = 0.1  # of the ease, with which a plan is sought again to tell what its ea
 
 
 @lru_cache(maxsize=4)
-def less_eased(plan: Planned, target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float) -> Planned:
+def replan(plan: Planned, target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease: float) -> Planned:
     """Plan again with :data:`LESS` times the weight of gentle motion, from `plan` and on its knots."""
     from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
     from gbeam.numerics.minimise import minimise

@@ -39,7 +39,7 @@ def imitated(motion: Centrifuge) -> Imitated:
     corners = corners[(corners > span[0]) & (corners < span[1])]
     time = np.union1d(times_between(begin, end, _FINE), [*span, *corners])
     flight_base = motion.flight.base(np.clip(time, *span))
-    axes = _axes_at(motion, time, flight_base.a_WO_B)
+    axes = _axes_result(motion, time, flight_base.a_WO_B)
     axes = replace(axes, limits=motion.usage())
     axes = replace(axes, warnings=(*_tracking_warnings(motion, time, axes), *_short_ramps(motion)))
     return Imitated(time, flight_base, motion.base(time), axes)
@@ -50,11 +50,11 @@ def axes_result(motion: Centrifuge, time: Floats) -> AxesResult:
     whole_run = imitated(motion)
     assert whole_run.axes is not None
     flight_load = motion.flight.base(np.clip(time, *motion.target.span)).a_WO_B
-    axes = _axes_at(motion, time, flight_load)
+    axes = _axes_result(motion, time, flight_load)
     return replace(axes, imitated=whole_run, limits=whole_run.axes.limits, warnings=whole_run.axes.warnings)
 
 
-def _axes_at(motion: Centrifuge, time: Floats, flight_load: Floats) -> AxesResult:
+def _axes_result(motion: Centrifuge, time: Floats, flight_load: Floats) -> AxesResult:
     """Axes at the times (t,), s, beside the flight's load (t, 3), m/s². The limits and warnings are left empty."""
     axes, jerk = motion.axes_and_jerks(time)
     return AxesResult(

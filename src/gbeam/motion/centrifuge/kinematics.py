@@ -40,7 +40,7 @@ class Axes:
         return namespace(*accelerations).stack(accelerations, axis=-1)
 
 
-def forward(axes: Axes, arm: Any, gravity: Any) -> Base:
+def forward_kinematics(axes: Axes, arm: Any, gravity: Any) -> Base:
     """Motion of the specimen at the control point C, where the axes 2 and 3 meet.
 
     a1 points outward, a2 along the arm's motion, Z up; b1 = cos θ2 a1 + sin θ2 a2, b2 = −sin θ2 a1 + cos θ2

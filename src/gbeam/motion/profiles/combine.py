@@ -15,7 +15,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
-from gbeam.motion.profiles.profile import Convolved, Profile, beside
+from gbeam.motion.profiles.profile import Convolved, Profile, append_axes
 from gbeam.numerics.series import Series, stack, where
 
 if TYPE_CHECKING:
@@ -221,7 +221,7 @@ class Clamped(Profile):
         now = as_array(t)
         inner = self.profile.series(namespace(now, self.first, self.last).clip(now, self.first, self.last), order)
         inside = (now >= self.first) & (now <= self.last)  # the ends themselves belong to it, with their derivatives
-        return where(beside(inside, inner.value.ndim - now.ndim), inner, inner.value)
+        return where(append_axes(inside, inner.value.ndim - now.ndim), inner, inner.value)
 
     @property
     def breaks(self) -> Any:

@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
 from gbeam.guards.quantities import OfProfile, Quantity
-from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded, beside, hann_orders
+from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded, append_axes, hann_orders
 from gbeam.numerics.series import Series
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class PiecewiseLinear(Profile):
         xp = namespace(t, v)
         level = xp.zeros((1, *v.shape[1:]))
         with np.errstate(over="ignore"):
-            rise = xp.diff(v, axis=0) / beside(xp.diff(t), v.ndim - 1)
+            rise = xp.diff(v, axis=0) / append_axes(xp.diff(t), v.ndim - 1)
         if not is_traced(t, v):
             _refuse_steep(np.asarray(t), np.asarray(rise))
         assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]), summary=record)
@@ -105,7 +105,9 @@ def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
     times, values, slopes = (xp.asarray(array) for array in (table.times, table.values, table.slopes))
     start = xp.maximum(segment - 1, 0)  # anchored in its own segment: no sum of slopes to lose digits in
     slope = slopes[segment]
-    return Series.from_derivatives([values[start] + slope * beside(t - times[start], values.ndim - 1), slope], order)
+    return Series.from_derivatives(
+        [values[start] + slope * append_axes(t - times[start], values.ndim - 1), slope], order
+    )
 
 
 @record

@@ -286,11 +286,11 @@ class Convolved(Rounded):
         speed, widening = _panels(xp, xp.concatenate([one, xp.where(still, 0.0, 1.0), one], axis=-1))
         inner = self.profile.series(node, order)
         axes = inner.value.ndim - node.ndim
-        values = Series(tuple(beside(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
+        values = Series(tuple(append_axes(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
         orders = hann_orders(2, 2 + order, (now[..., None] - node) / width)
         kernel = Series(tuple(((1 - speed) / width) ** k * h / factorial(k) for k, h in enumerate(orders)))
         weighted = Series.from_derivatives([weight / width, widening / width], order) * kernel
-        return (weighted.map(lambda c: beside(c, axes)) * values).map(lambda c: c.sum(axis=now.ndim))
+        return (weighted.map(lambda c: append_axes(c, axes)) * values).map(lambda c: c.sum(axis=now.ndim))
 
     @property
     def sharp(self) -> Profile:
@@ -305,6 +305,6 @@ def _panels(xp: Any, ends: Any) -> tuple[Any, Any]:
     return points.reshape(shape), (half[..., None] * _WEIGHTS).reshape(shape)
 
 
-def beside(array: Any, axes: int) -> Any:
+def append_axes(array: Any, axes: int) -> Any:
     """Append `axes` trailing axes of length one."""
     return array.reshape(array.shape + (1,) * axes)

@@ -193,7 +193,7 @@ class SplineProfile(Profile):
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 
-def through(duration: float, time: Any, values: Any, pieces: int) -> SplineProfile:
+def fit_spline(duration: float, time: Any, values: Any, pieces: int) -> SplineProfile:
     """Least-squares spline of values (t,) at times (t,) from 0 to the duration, s.
 
     It is flat at the first and the last value: the first and last coefficients are those values.

@@ -18,7 +18,7 @@ from gbeam.motion.flight import body_rates
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.records.rest import STILL, Rest, mean_of
 from gbeam.motion.records.times import Moment, Times
-from gbeam.motion.rigid import moved, rotation_of
+from gbeam.motion.rigid import rotation_of, shift_base
 from gbeam.results.parts import Base
 
 _SIZE = 0.03  # of 1 g: scale error of an accelerometer at most
@@ -89,7 +89,7 @@ class Instrument:
         if not any(self.arm):
             return load, []
         turning = body_rates(PiecewiseLinear(time, rates))
-        root = moved(Base(load, *turning.derivatives(time)), np.array(self.arm)).a_WO_B
+        root = shift_base(Base(load, *turning.derivatives(time)), np.array(self.arm)).a_WO_B
         largest_change = np.linalg.norm(root - load, axis=1).max() / STANDARD_GRAVITY
         arm = ", ".join(f"{1e3 * component:.4g}" for component in self.arm)
         return root, [f"at the root, ({arm}) mm from the instrument: turning adds up to {largest_change:.4g} g"]
@@ -120,4 +120,4 @@ def _words(turn: Floats) -> str:
 
 
 def _listed(values: Floats) -> str:
-    return f"({', '.join(f'{each:.3g}' for each in values)})"
+    return f"({', '.join(f'{value:.3g}' for value in values)})"

@@ -92,7 +92,7 @@ class Rates:
     rate_unit: Annotated[RateUnit, "unit of p, q and r"]
 
     @classmethod
-    def together(
+    def from_columns(
         cls, p: str | None = None, q: str | None = None, r: str | None = None, rate_unit: str | None = None
     ) -> Rates | None:
         """Return the rates of columns that are given, all of them, or None of none; InputError if some are."""

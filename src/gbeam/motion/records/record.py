@@ -72,7 +72,7 @@ def columns_of_text(path: str, most: int) -> tuple[list[tuple[str, str]], list[f
     that it states.
     """
     table = read_text(path)
-    return [(column.name, column.unit) for column in table.columns[:most]], [each.rate for each in table.stated]
+    return [(column.name, column.unit) for column in table.columns[:most]], [stated.rate for stated in table.stated]
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ class Recording:
             fix = 'name the columns of the body\'s rates, p, q and r ("0" for none), and rate_unit'
             raise InputError("record.arm", "is given without the rates that the body turns at", fix)
         columns = [*names.values(), *turns.values()]
-        table = read_table(file, [*columns, *(each for each in (time, sections) if each is not None)])
+        table = read_table(file, [*columns, *(column for column in (time, sections) if column is not None)])
         if "columns" not in skip:
             refuse_other_kinds(table, names)
             if turns:
@@ -232,10 +232,10 @@ class Recording:
         if count < FEWEST:
             raise InputError("record.file", f"{file} has {table.counted(count)}", f"give {FEWEST} samples or more")
         nowhere = slice(0, 0)  # each flight refuses what is no number in its part
-        read = [table.vector(each, count, nowhere) for each in (names, turns) if each]
-        sound = np.logical_and.reduce([(np.abs(each) <= LARGEST).all(axis=1) for each in read])
-        load, *turning = (unit.size * each for unit, each in zip(units, read, strict=True))
-        rate = turning[0] if turning else np.empty((count, 0))
+        read = [table.vector(named, count, nowhere) for named in (names, turns) if named]
+        sound = np.logical_and.reduce([(np.abs(vectors) <= LARGEST).all(axis=1) for vectors in read])
+        load = units[0].size * read[0]
+        rate = units[1].size * read[1] if rates is not None else np.empty((count, 0))
         specific, columns_of = quantity == "specific-force", {**names, **turns}
         axes, mounted, levelled = instrument.axes(times, load, rate, table.counted, specific=specific)
         said = time_unit is None and times.unit.size != 1
@@ -252,7 +252,7 @@ class Recording:
             sound=sound,
             channels=_as_read(table, times, (names, turns), units, read),
             done=(f"time in {times.unit.text}, as the file says",) if said else (),
-            sections=None if sections is None else Sections.of(table, sections, times.values),
+            sections=None if sections is None else Sections.read(table, sections, times.values),
             conditioning=conditioning,
             quantity=quantity,
             vehicle=vehicle,
@@ -284,7 +284,7 @@ class Recording:
         return part, whole
 
     def _samples(self, time: Floats, load: Floats, rows: Indices) -> Samples:
-        """Samples as the checks of :mod:`.soundness` take them; `rows` are their rows in the file."""
+        """Make samples as the checks of :mod:`.soundness` take them; `rows` are their rows in the file."""
 
         def place(i: int) -> str:
             return self.table.place(int(rows[i]))
@@ -306,14 +306,14 @@ class Recording:
         table, times, clock, stated = self.table, self.times, self.times.values, self.stated
         names, turns, load, turning = self.names, self.turns, self.load, self.rates
         load_unit, vehicle, instrument = self.units[0], self.vehicle, self.instrument
-        (part, of), axes, offsets = self.part((from_, to), section), self.axes, self.offsets
+        (part, whole), axes, offsets = self.part((from_, to), section), self.axes, self.offsets
 
         def judge(time: Floats) -> None:
             if "sampling" not in skip:
                 check_interval(time, times, stated, brief=vehicle == "other")
 
         both, bridge = np.concatenate([load, turning], axis=1), conditioning.bridge
-        line = Timeline.of(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
+        line = Timeline.from_times(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
 
         flown = self._samples(line.time, line.values[:, :3], line.rows)
         ignored = (*skip, "spikes") if conditioning.despike else skip
@@ -322,9 +322,9 @@ class Recording:
         if "columns" not in skip:
             notes += [*mirrored(table, names), *load_factors(table, names, load_unit.text, specific=flown.specific)]
         notes += oddities(flown)
-        notes += offsets.carried_on(*line.time[[0, -1]])
+        notes += offsets.extrapolation_warnings(*line.time[[0, -1]])
         calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
-        off = offsets.at(line.time)
+        off = offsets.evaluate(line.time)
         calm = calm - off
         turned = np.concatenate([calm[:, k : k + 3] @ axes.T for k in range(0, calm.shape[1], 3)], axis=1)
         new, both = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
@@ -343,7 +343,7 @@ class Recording:
             quantity=self.quantity,
             vehicle=vehicle,
             span=(float(line.time[0]), float(line.time[-1])),
-            whole=of,
+            whole=whole,
             read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
             flown=curves(new, at_root, both[:, 3:]),
             level=level(replace(flown, load=flown.load - off[:, :3])),
@@ -422,7 +422,7 @@ def _times(
         raise InputError("record.time_unit", f"is {unit}, and the times are times of day", "leave it out")
     if clock is not None:
         return Times(numbers, Unit("s", 1.0), clock)
-    return Times.of_numbers(numbers, _unit(table, "time_unit", "time", unit, {"time": name}, trust=trust), first)
+    return Times.from_numbers(numbers, _unit(table, "time_unit", "time", unit, {"time": name}, trust=trust), first)
 
 
 def _despiked(record: Samples, turns: Iterable[str], rates: Floats, *, despike: bool) -> tuple[Floats, list[str]]:

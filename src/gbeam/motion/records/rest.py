@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import itemgetter
 from typing import Annotated
 
 import numpy as np
@@ -82,7 +83,7 @@ class Offsets:
     times: Floats  # (s,) s, of which each is the mean
     values: Floats  # (s, n) of the columns x, y, z and p, q, r, m/s² and rad/s
 
-    def at(self, time: Floats) -> Floats:
+    def evaluate(self, time: Floats) -> Floats:
         """Return the offsets (t, n) at times (t,), s; beyond the stretches the lines go on."""
         if len(self.times) < 2:  # of one stretch, or of none
             return np.broadcast_to(self.values.sum(axis=0), (len(time), self.values.shape[1]))
@@ -90,7 +91,7 @@ class Offsets:
         share = (time - self.times[k]) / (self.times[k + 1] - self.times[k])
         return np.asarray(self.values[k] + share[:, None] * (self.values[k + 1] - self.values[k]))
 
-    def carried_on(self, first: float, last: float) -> list[str]:
+    def extrapolation_warnings(self, first: float, last: float) -> list[str]:
         """Warn if the offsets' drift is extrapolated by more than the time within which it was observed."""
         if len(self.times) < 2:
             return []
@@ -134,18 +135,18 @@ def offsets_of(
             fix = "name the columns of the body's rates, p, q and r, and rate_unit, or leave it out"
             raise InputError(f"record.{key}.rates", "is given, and the record has no rates", fix)
         turn = axes.T @ vector(f"record.{key}.rates", rest.rates)
-        beside = load[stretch] - known, rates[stretch] - (turn if rates.size else 0.0)
-        if trust and all(np.isfinite(each).all() for each in beside):
-            means = [each.mean(axis=0) for each in beside]
+        unknown = load[stretch] - known, rates[stretch] - (turn if rates.size else 0.0)
+        if trust and all(np.isfinite(vectors).all() for vectors in unknown):
+            means = [vectors.mean(axis=0) for vectors in unknown]
         else:
-            means = [*mean_of(key, *beside, span, STILL)]
+            means = [*mean_of(key, *unknown, span, STILL)]
         off = sensed * np.concatenate(means)
         size = float(np.abs(off[:3]).max()) / STANDARD_GRAVITY
         if size > _OFF and not trust:
             axis = "xyz"[int(np.abs(off[:3]).argmax())]
             problem = f"is no stretch at rest: {axis} = {columns[axis]!r} is {size:.3g} g off what is known {span}"
             mean = np.round(axes @ load[stretch].mean(axis=0) / STANDARD_GRAVITY, 4) + 0.0  # no -0
-            known_g = ", ".join(f'"{each:.4g} g"' for each in mean)
+            known_g = ", ".join(f'"{component:.4g} g"' for component in mean)
             if known @ load[stretch].mean(axis=0) < 0:
                 problem = f"is upside down: the load {span} points against what is known, {axis} = {columns[axis]!r}"
                 fix = "change the signs of the columns: aircraft axes, z down, want y and z with a minus"
@@ -155,10 +156,11 @@ def offsets_of(
         x, y, z, *turning = off.tolist()
         facts = Offset(start, end, (x, y, z), (turning[0], turning[1], turning[2]) if turning else None)
         offsets.append((float(clock.mean()), facts, off))
-    offsets.sort(key=lambda each: each[0])
+    offsets.sort(key=itemgetter(0))
     for (_, one, _), (_, other, _) in pairwise(offsets):
         if other.start <= one.end:
             problem = f"has stretches that overlap: {one.start:g} to {one.end:g} s, {other.start:g} to {other.end:g} s"
             raise InputError("record.rest", problem, "give stretches apart from one another, or one of them alone")
-    values = np.array([each[2] for each in offsets]).reshape(-1, len(columns))
-    return Offsets(tuple(each[1] for each in offsets), np.array([each[0] for each in offsets]), values)
+    times_of_stretches = np.array([time for time, _, _ in offsets])
+    values = np.array([value for _, _, value in offsets]).reshape(-1, len(columns))
+    return Offsets(tuple(facts for _, facts, _ in offsets), times_of_stretches, values)

@@ -29,7 +29,7 @@ class Sections:
     clock: Floats  # (t,) s
 
     @classmethod
-    def of(cls, table: Table, column: str, clock: Floats) -> Sections:
+    def read(cls, table: Table, column: str, clock: Floats) -> Sections:
         """Read the sections of a column, which numbers or names them. Samples with an empty cell belong to none."""
         values = table.cells("sections", column)
         if len(values) != len(clock):

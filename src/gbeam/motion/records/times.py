@@ -58,8 +58,8 @@ class Times:
     key: str = "time"  # of the record, which says them; or sample_rate
 
     @classmethod
-    def of_numbers(cls, numbers: Floats, unit: Unit, first: str) -> Times:
-        """Times from numbers in a unit; from `first`, where floats of that size are too coarse, as of 1970 in ns."""
+    def from_numbers(cls, numbers: Floats, unit: Unit, first: str) -> Times:
+        """Read times from numbers in a unit; from `first` on, where floats are too coarse for them (1970 in ns)."""
         interval = float(np.median(np.abs(np.diff(numbers)))) if len(numbers) > 1 else math.inf
         if np.spacing(np.abs(numbers).max(initial=0)) > _RESOLVED * interval > 0:
             return cls((numbers - numbers[0]) * unit.size, unit, Clock(f"{first} {unit.text}"))
@@ -114,7 +114,7 @@ class Timeline:
     done: tuple[str, ...]  # in words
 
     @classmethod
-    def of(
+    def from_times(
         cls,
         times: Times,
         part: slice,
@@ -125,10 +125,10 @@ class Timeline:
         evened: bool,
         judge: Callable[[Floats], None],
     ) -> Timeline:
-        """Timeline of the `part` of a record with values (t, k). `judge` refuses times, in order, of a wrong unit.
+        """Make the timeline of the `part` of a record with values (t, k).
 
         If samples are `evened` out later, times may jitter, repeat and come late, and lost samples of gaps up to
-        `bridge`, s, are put on straight lines; InputError otherwise.
+        `bridge`, s, are put on straight lines; InputError otherwise. `judge` refuses ordered times of a wrong unit.
         """
         clock = times.values[part]
         order, starts = _in_order(clock, values[part], lambda i: place(part.start + i), judge, evened=evened)
@@ -237,7 +237,9 @@ def _gaps(time: Floats, place: Place, bridge: float | None, *, evened: bool) -> 
     )
     resampling = "" if evened else f' and resample = "{_round_rate(1 / usual):g} Hz"'
     verb = "add" if bridge is None else "write"
-    bridge_fix = f'{verb} bridge = "{_up(1e3 * longest):g} ms"{resampling}: lost samples are put on straight lines'
+    bridge_fix = (
+        f'{verb} bridge = "{_round_up(1e3 * longest):g} ms"{resampling}: lost samples are put on straight lines'
+    )
     stretches = np.split(np.arange(len(time)), np.flatnonzero(steps > max(_BRIDGED, _GAP * usual)) + 1)
     stretch = max(stretches, key=len)
     cut_fix = f'write from = "{time[stretch[0]]:.12g} s", to = "{time[stretch[-1]]:.12g} s", between the long ones'
@@ -309,12 +311,12 @@ def check_interval(time: Floats, times: Times, stated: Mapping[str, float], *, b
 
 
 def _round_rate(number: float) -> float:
-    """A number to three digits."""
+    """Round a number to three digits."""
     return float(f"{number:.3g}")
 
 
-def _up(number: float) -> float:
-    """The next number of three digits above one."""
+def _round_up(number: float) -> float:
+    """Round a number up to three digits."""
     unit = 10.0 ** (math.floor(math.log10(number)) - 2)
     return float(f"{math.ceil(number / unit / _ROUND) * unit:.3g}")
 

@@ -32,9 +32,9 @@ _SPELLINGS: dict[str, dict[str, str]] = {
         **dict.fromkeys(("gal", "gals"), "cm/s^2"),
         "ms2": "m/s^2",
         **{
-            each.format(length): f"{length}/s^2"
+            spelling.format(length): f"{length}/s^2"
             for length in ("m", "mm", "cm", "ft", "in")
-            for each in (*_PER_SECOND_SQUARED, f"{_FEET.get(length, length)}ps2")
+            for spelling in (*_PER_SECOND_SQUARED, f"{_FEET.get(length, length)}ps2")
         },
     },
     "rate": {

@@ -58,7 +58,7 @@ class AxisSplines:
         used = (pair[0] >= 0) & (pair[1] >= 0)
         self._places = [np.where(used, starts[c] + r - first[c], starts[-1]).ravel() for r, c in (pair, pair[::-1])]
 
-    def on_unknowns(self, rows: Any, axis: int) -> Any:
+    def expand_rows(self, rows: Any, axis: int) -> Any:
         """Rows (m, grid.size) that act on the coefficients of one axis as rows (m, size) that act on x."""
         number = self.number[:, axis]
         used = np.flatnonzero(number >= 0)
@@ -67,7 +67,7 @@ class AxisSplines:
 
     def derivative(self, axis: int, order: int) -> Any:
         """Rows (times, size) that give a time derivative of one axis's quantity at the grid's times."""
-        return self.on_unknowns(self.grid.matrix(order), axis)
+        return self.expand_rows(self.grid.matrix(order), axis)
 
     def coefficients(self, x: Floats) -> Floats:
         """Coefficients (grid.size, 3) of the splines."""
@@ -137,7 +137,7 @@ class Tracking:
         states = (RATE, 0), (RATE, 1), (YAW, 0), (ROLL, 0)
         self.states = scipy.sparse.vstack([splines.derivative(*state) for state in states], format="csr")
         # Weights of a piece's coefficients in its states, (points, 4, 18).
-        piece_weights = np.stack([_on_axis(grid.rows(order), axis) for axis, order in states], axis=1)
+        piece_weights = np.stack([_expand_weights(grid.rows(order), axis) for axis, order in states], axis=1)
         # Lower triangles (171, points · 10) that turn second derivatives by the states into those by the coefficients.
         by_pair = np.einsum("qsi,qtj->ijqst", piece_weights, piece_weights)[np.tril_indices(NEAR)]
         by_pair = by_pair + by_pair.swapaxes(2, 3)
@@ -146,7 +146,7 @@ class Tracking:
         # The spline of axis 1 is that of its rate, those of axes 2 and 3 are those of their angles.
         eased = np.concatenate(
             [
-                np.sqrt(spacing) * EASE[k] * _on_axis(grid.rows(k + 1 + (axis != RATE)), axis)
+                np.sqrt(spacing) * EASE[k] * _expand_weights(grid.rows(k + 1 + (axis != RATE)), axis)
                 for k in range(len(EASE))
                 for axis in range(AXES)
             ]
@@ -222,7 +222,7 @@ class Tracking:
         return error, slope, second
 
 
-def _on_axis(rows: Floats, axis: int) -> Floats:
+def _expand_weights(rows: Floats, axis: int) -> Floats:
     """Weights (m, 6) of one axis's coefficients on a piece as weights (m, 18) of all axes'."""
     weights = np.zeros((len(rows), NEAR))
     weights[:, axis::AXES] = rows
@@ -249,11 +249,11 @@ class KeptLimits:
                 order = quantity + (axis != RATE)  # the spline of axis 1 is that of its rate
                 limit = allowed[quantity, axis]
                 if order == 0:
-                    rows.append(splines.on_unknowns(coefficients, axis))
+                    rows.append(splines.expand_rows(coefficients, axis))
                     lower.append(self._least(grid, target))
                     upper.append(np.full(grid.size, limit * _USED))
                 elif limit < np.inf:
-                    rows.append(splines.on_unknowns(_differences(grid, order), axis) / limit)
+                    rows.append(splines.expand_rows(_differences(grid, order), axis) / limit)
                     upper.append(np.full(grid.size - order, _USED))
                     lower.append(-upper[-1])
         matrix = scipy.sparse.vstack(rows, format="csr")
@@ -261,7 +261,7 @@ class KeptLimits:
         self.rows, self.lower, self.upper = matrix[used], np.concatenate(lower)[used], np.concatenate(upper)[used]
         self.power = _USED * float(limits.power / limits.inertia) if np.isfinite(limits.power) else np.inf
         if self.power < np.inf:
-            self.rate, self.acceleration = (splines.on_unknowns(grid.hull(order), RATE) for order in (0, 1))
+            self.rate, self.acceleration = (splines.expand_rows(grid.hull(order), RATE) for order in (0, 1))
 
     def _least(self, grid: Grid, target: Target) -> Floats:
         """Least coefficients of ω1: those that act during the flight are at idle, and the arm never turns back."""

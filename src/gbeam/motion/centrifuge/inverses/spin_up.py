@@ -92,7 +92,7 @@ class Ramp:
         """Time from standstill to the steady state or back, s."""
         return abs(float(self.steady) - float(self.still))
 
-    def of_length(self, length: Any) -> Ramp:
+    def resize(self, length: Any) -> Ramp:
         """Ramp with another length, s."""
         return replace(self, still=self.steady + self.outward * length)
 
@@ -117,7 +117,7 @@ class Ramp:
                 factor = max(factor, 0.0 if power is None else (use.share / share) ** (1 / power))
             if factor <= 1:
                 break
-            ramp = ramp.of_length(ramp.length * factor * (1 + 1e-4))
+            ramp = ramp.resize(ramp.length * factor * (1 + 1e-4))
         return ramp
 
 
@@ -161,4 +161,4 @@ def _build(name: str, target: Target, inverse: Inverse, geometry: Geometry, limi
             f"{'first' if outward < 0 else 'last'} load",
             f'give "{enough:g} s" or more, or leave it out',
         )
-    return ramp.of_length(length - lead)
+    return ramp.resize(length - lead)

@@ -174,11 +174,13 @@ def shortfalls(target: Target, arm: float, *, turns: bool = True) -> tuple[Short
     idle, gravity = float(target.idle), float(target.gravity)
     stretches = [shortfall for shortfall, _ in sharp_turns(target, arm)] if turns else []
     total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
-    stretches += _below(time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity))
+    stretches += _idle_shortfalls(
+        time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity)
+    )
     if gravity:
         least = MIN_TRANSVERSE_LOAD
         rest = f"across the beam, or track a part of the flight with {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g there"
-        stretches += _below(
+        stretches += _idle_shortfalls(
             time, across, least, "across below gravity", lambda run: f"add {missing_across(np.min(across[run]))} {rest}"
         )
     return tuple(sorted(stretches, key=lambda stretch: stretch.start))
@@ -203,7 +205,7 @@ def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | Non
     widths = required_smoothing(target.corners, gravity, float(target.idle), arm, time, runs, width)
     total = np.linalg.norm(target.flight(time), axis=-1)
     remedies = [_sharp_remedy(wide, float(np.max(total[run]))) for wide, run in zip(widths, runs, strict=True)]
-    return list(zip(_too_sharp(time, -second_rate, allowed, runs, remedies), widths, strict=True))
+    return list(zip(_sharp_shortfalls(time, -second_rate, allowed, runs, remedies), widths, strict=True))
 
 
 def _times(target: Target) -> Floats:
@@ -240,7 +242,9 @@ def _sharp_remedy(width: float | None, load: float) -> str:
     return f'no smoothing makes it trackable; idle = "{idle:.2f} g" would hold it'
 
 
-def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]) -> list[Shortfall]:
+def _idle_shortfalls(
+    time: Floats, load: Floats, least: float, reason: str, remedy: Callable[[slice], str]
+) -> list[Shortfall]:
     """Stretches in which a load (t,), m/s², is below the least that a machine makes."""
     stretches = []
     for run in joined(true_runs(load < least * (1 - _ROUNDING)), time, _JOINED):
@@ -251,7 +255,9 @@ def _below(time: Floats, load: Floats, least: float, reason: str, remedy: Callab
     return stretches
 
 
-def _too_sharp(time: Floats, turn: Floats, allowed: Floats, runs: list[slice], remedies: list[str]) -> list[Shortfall]:
+def _sharp_shortfalls(
+    time: Floats, turn: Floats, allowed: Floats, runs: list[slice], remedies: list[str]
+) -> list[Shortfall]:
     """Stretches, the `runs` of times, in which the load's −ä, `turn`, exceeds what the arm allows, both (t,), m/s⁴."""
     stretches = []
     for run, remedy in zip(runs, remedies, strict=True):

@@ -14,7 +14,7 @@ from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.arrays.types import Flags, Floats
 from gbeam.motion.profiles.combine import merged_breaks
-from gbeam.motion.profiles.profile import Profile, beside, soft_floor, soft_step
+from gbeam.motion.profiles.profile import Profile, append_axes, soft_floor, soft_step
 from gbeam.numerics.samples import true_runs
 from gbeam.numerics.series import Series, sin_cos, sqrt, square, stack, where
 
@@ -262,11 +262,11 @@ class NearestLoad(Profile):
             held = held + sized * (full - size)
             # Idle is above the least across the beam, by little where it is lowest.
             band = xp.minimum(REACH_BAND * self.least, self.idle - self.least)
-            x, yz = _raised_across(held * x, held * yz, self.least, band)
+            x, yz = _raise_lateral_load(held * x, held * yz, self.least, band)
         else:
             x, yz = held * x, held * yz
         load = stack([x, yz * y, yz * z])
-        return where(xp.asarray(beside(free, 1)), flight, load)
+        return where(xp.asarray(append_axes(free, 1)), flight, load)
 
     @property
     def breaks(self) -> Any:
@@ -286,7 +286,7 @@ def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Seri
     return [component / size for component in mixed]
 
 
-def _raised_across(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
+def _raise_lateral_load(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
     """Raise the load across the beam smoothly to at least `least`, and reduce the load along the beam
     to keep the size.
     """
