@@ -278,7 +278,7 @@ def test_steady_states_found_at_once_are_those_found_alone(
     path = Path(drive, turning_at, held)
     path(system, rates[0])
     for some in (rates[1:2], rates[2:4], rates[4:]):
-        path.ahead(system, some)
+        path.prepare(system, some)
     monkeypatch.setattr("gbeam.analysis.system.path.steady", None)  # none is looked for alone
     states = [path(system, rate) for rate in rates]
     monkeypatch.undo()
@@ -297,7 +297,7 @@ def test_a_steady_state_that_is_far_is_found_alone() -> None:
     system = gb.System({"bus": BUS, "panel": structure}, {"spin": SPIN, "clamp": swept})
     path = Path(Drive(coordinate="spin.angle"), turning_at)
     path(system, 1.0)
-    path.ahead(system, [2.0, 500.0])
+    path.prepare(system, [2.0, 500.0])
     assert path.equilibria._states(system).keys() == {1.0, 2.0}
 
 

@@ -111,7 +111,7 @@ def compare_models(
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)
             answers[kind, name] = answer, seconds
-            if isinstance(answer, _Tip) and answer.of.several:
+            if isinstance(answer, _Tip) and answer.response.several:
                 point = point or answer.point
     rows, direction = [], {}
     for name in case.environments:
@@ -126,7 +126,7 @@ def compare_models(
 class _Tip(NamedTuple):
     """Displacement `moved` (t, 3) m of the point compared in a response, with its peaks (3,)."""
 
-    of: Response
+    response: Response
     point: str
     moved: Floats
     peak: Floats
@@ -153,7 +153,7 @@ def _counterpart(case: Case, kind: ModelKind) -> Case | Failure:
 
 
 def convert_models(system: System, kind: ModelKind) -> System:
-    """The system with all of its beams in one kind of model, each with as many shapes as before."""
+    """Put all beams of a system into one kind of model, each with as many shapes as before."""
     beams = {name: body for name, body in system.flexible.items() if body.source is not None}
     other = {name: remade(body, counterpart(model_of(body), kind), body.stations[:-1]) for name, body in beams.items()}
     return replace(system, bodies={**system.bodies, **other})
@@ -190,7 +190,7 @@ def _answer(
         f"the last shapes of exact still move the tip by {tail:.2g} of the peak: it has not converged; "
         "raise model.modes"
     )
-    return tip._replace(of=replace(response, warnings=(*response.warnings, warning)))
+    return tip._replace(response=replace(response, warnings=(*response.warnings, warning)))
 
 
 def _tip_of(response: Response, point: str | None) -> _Tip:
@@ -249,17 +249,17 @@ def _row(
     nan = float("nan")
     if isinstance(answer, Failure):
         return ModelRow(kind, name, answer.outcome, answer.message, (), seconds=seconds)
-    response = answer.of
+    response = answer.response
     if response.outcome != "done":
         return ModelRow(kind, name, response.outcome, response.message, response.warnings, seconds=seconds)
     peak, residual = float(answer.peak[axis]), float(answer.residual[axis])
     peak_error, residual_error, phase, difference = nan, nan, nan, nan
-    if isinstance(reference, _Tip) and reference.of.outcome == "done":
+    if isinstance(reference, _Tip) and reference.response.outcome == "done":
         reference_peak, reference_residual = float(reference.peak[axis]), float(reference.residual[axis])
         tip = reference.moved[:, axis]
-        if not np.array_equal(reference.of.time, response.time):
+        if not np.array_equal(reference.response.time, response.time):
             # At 40 samples to the lowest period a cubic is wrong by 1e-5 of a vibration, a straight line by 0.3 %.
-            tip = CubicSpline(reference.of.time, tip)(response.time)
+            tip = CubicSpline(reference.response.time, tip)(response.time)
         largest = float(np.abs(answer.moved[:, axis] - tip).max())
         after = response.time >= answer.residual_from
         if reference_peak > 0:

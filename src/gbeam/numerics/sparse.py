@@ -50,13 +50,13 @@ def cost(unknowns: float) -> tuple[float, float]:
     return BYTES[which] * unknowns ** (4 / 3), SECONDS[which] * unknowns**2
 
 
-def refuse_cost(where: str, unknowns: float, of: str = "makes") -> None:
+def refuse_cost(where: str, unknowns: float, cause: str = "makes") -> None:
     """Raise InputError if the factors would not fit into any usual memory, with what they would cost."""
     memory, seconds = cost(unknowns)
     if memory > MOST:
         raise InputError(
             where,
-            f"{of} {unknowns:.3g} unknowns, whose factors would take about {in_bytes(memory)} and "
+            f"{cause} {unknowns:.3g} unknowns, whose factors would take about {in_bytes(memory)} and "
             f"{seconds / 3600:.2g} hours by {PROPRIETARY.get(solver(), solver())}",
             "mesh it more coarsely, with quadratic elements",
         )

@@ -158,8 +158,8 @@ def attach_coarser(coarser: SolidModel, finer: Structure) -> Structure:
     excess = int(without.sum()) if without.mean() > MOST else 0
     singular = without[fine.node] & (excess == 0)
     # Where both have a node: stress changes fast near those where it is largest.
-    of_both = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
-    shared = of_both[~singular[of_both]]
+    nearest = np.unique(_nearest(fine, rough, np.arange(len(rough.known))))
+    shared = nearest[~singular[nearest]]
     felt_at = fine.most_stressed(shared if len(shared) else np.flatnonzero(~singular))
     compared = replace(fine, singular=singular, compared=True, excess=excess, felt_at=felt_at)
     nodal = replace(
@@ -181,15 +181,15 @@ def attach_coarser(coarser: SolidModel, finer: Structure) -> Structure:
     return replace(finer, recovery=compared, richer=richer, coarser=turned)
 
 
-def _nearest(of: NodalStress, to: NodalStress, pairs: Indices) -> Indices:
-    """Pairs of node and material in one mesh that are nearest to `pairs` of another mesh, in the same materials."""
+def _nearest(stress: NodalStress, other: NodalStress, pairs: Indices) -> Indices:
+    """Pairs of node and material in one mesh that are nearest to `pairs` of the other, in the same materials."""
     from scipy.spatial import cKDTree
 
-    nearest, materials, wanted = np.zeros_like(pairs), np.array(of.material), np.array(to.material)[pairs]
+    nearest, materials, wanted = np.zeros_like(pairs), np.array(stress.material), np.array(other.material)[pairs]
     for name in np.unique(wanted):
         candidates, which = np.flatnonzero(materials == name), wanted == name
-        tree = cKDTree(of.mesh.points[of.node[candidates]])
-        nearest[which] = candidates[tree.query(to.mesh.points[to.node[pairs[which]]])[1]]
+        tree = cKDTree(stress.mesh.points[stress.node[candidates]])
+        nearest[which] = candidates[tree.query(other.mesh.points[other.node[pairs[which]]])[1]]
     return nearest
 
 

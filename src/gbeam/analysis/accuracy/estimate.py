@@ -70,16 +70,16 @@ def error_warning(what: str, size: str, errors: ErrorEstimate, theory: str) -> s
     return f"{what} is wrong by an estimated {size}: {causes_in_words(causes(errors, theory)[:1])}"
 
 
-def causes_in_words(causes: list[Cause], of: str = "") -> str:
-    """Causes with advice against each, and the body `of` which most of the error is. Several have their sizes."""
+def causes_in_words(causes: list[Cause], worst_body: str = "") -> str:
+    """Causes with advice against each; of several, with their sizes, and the words about the `worst_body`."""
     if len(causes) == 1:
         ((_, cause, cure),) = causes
-        return f"{cause}{of}; {cure}"
+        return f"{cause}{worst_body}; {cure}"
     clauses = []
     for size, cause, cure in causes:
         advised = f"{cause[:-1]}; {cure})" if cause.endswith(")") else f"{cause} ({cure})"
         clauses.append(f"{percent(size)} from {advised}")
-    return ", ".join(clauses) + of
+    return ", ".join(clauses) + worst_body
 
 
 def relative_difference(value: float, reference: float) -> float:

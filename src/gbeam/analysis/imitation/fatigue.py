@@ -72,14 +72,14 @@ def _section_stress(loads: Loads, section: int) -> Cyclic:
     return Cyclic(loads.fibre[:, section], loads.fatigue_exponent)
 
 
-def _worst(solid: SolidStress, of: str) -> dict[str, Cyclic]:
+def _worst(solid: SolidStress, owner: str) -> dict[str, Cyclic]:
     """Stress where each material of a mesh is stressed most, by the place in words; empty where that is not known."""
     if not solid.known:
         return {}
     stresses = dict[str, Cyclic]()
     for name, stress, exponent in zip(solid.materials, solid.material_normal.T, solid.exponents, strict=True):
-        noun = name if len(solid.materials) > 1 else "mesh" if of else "it"
-        stresses[f"where {of}{noun} is stressed most"] = Cyclic(stress, float(exponent))
+        noun = name if len(solid.materials) > 1 else "mesh" if owner else "it"
+        stresses[f"where {owner}{noun} is stressed most"] = Cyclic(stress, float(exponent))
     return stresses
 
 

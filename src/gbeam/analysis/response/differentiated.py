@@ -67,8 +67,10 @@ def _residual(posed: Posed, within: Within | None) -> Any:
 
 
 def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> Tangent:
-    """Function of times and states of the nominal problem that returns M, C, K (t, n, n) and the forces (t, n, p) by
-    parameters, each of which differs by its `width` (p,) in a pair; `within` as in `_residual`.
+    """Return a function of times and states of the nominal problem that gives M, C, K (t, n, n) and forces (t, n, p).
+
+    Forces are those by p parameters, each of which differs by its `width` (p,) in a pair. `within` are the fitted steps
+    as in `_residual`.
     """
     residual = _residual(nominal, within)
     residuals = [[_residual(posed, within) for posed in pair] for pair in pairs]
@@ -83,12 +85,12 @@ def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Wit
             k, c, mass = slopes(residual, q, qd, qdd, inputs)
         forces = np.empty((*q.shape, len(pairs)))
         for j, pair in enumerate(pairs):
-            # A parameter of the bodies alone leaves the motion as it is.
-            less, more = (
-                residual_of(q, qd, qdd, inputs if posed.driven_as(nominal) else posed.equations.drive(time))
-                for residual_of, posed in zip(residuals[j], pair, strict=True)
-            )
-            forces[..., j] = -(more - less) / width[j]
+            remaining = []
+            for pair_residual, posed in zip(residuals[j], pair, strict=True):
+                # A parameter of the bodies alone leaves the motion as it is.
+                driven = inputs if posed.driven_as(nominal) else posed.equations.drive(time)
+                remaining.append(pair_residual(q, qd, qdd, driven))
+            forces[..., j] = -(remaining[1] - remaining[0]) / width[j]
         return mass, c, k, forces
 
     return system

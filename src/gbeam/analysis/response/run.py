@@ -124,8 +124,9 @@ class Run:
     @cached_property
     def moved(self) -> list[Floats]:
         """Displacements (t, 3 p) m over the flight: of each flexible body's points relative to its root, and of all
-        points from their first places, with three on each rigid body that has none off its root. Zero where they are
-        rounding.
+        points from their first places.
+
+        A rigid body without points off its root has three more. Displacements that are rounding are zero.
         """
         solution, histories = self.solution(1), list[Floats]()
         for name, kind in self._moving:
@@ -147,18 +148,20 @@ class Run:
         flight, peaks = self.flight, list[Floats]()
         for name, body in self.deforming.items():
             for vector in (_tip, _moment):
-                of = partial(vector, body, self.posed.columns(name))
-                peaks.append(peaks_of_coordinates(flight, of(flight.q), of))
+                measured = partial(vector, body, self.posed.columns(name))
+                peaks.append(peaks_of_coordinates(flight, measured(flight.q), measured))
         return peaks
 
     def loads(self, stride: int) -> list[Floats]:
-        """Root force and moment (t, 3) of every flexible body, zero where they are rounding, at every `stride`-th step
-        of the flight, and its stress: at every section (t, s, 1), or a solid's (t, c).
+        """Root force and moment (t, 3) and stress of every flexible body, at every `stride`-th step of the flight.
+
+        Force and moment are zero where they are rounding. The stress is that at every section (t, s, 1), or a solid's
+        (t, c).
         """
         out, solution = list[Floats](), self.solution(stride)
-        for name, of in solution.states(self.deforming)[1].items():
+        for name, state in solution.states(self.deforming)[1].items():
             body = self.posed.system.flexible[name]
-            loads = loads_of(body, of, solution.trajectory.time)
+            loads = loads_of(body, state, solution.trajectory.time)
             force, moment = held_loads(loads)
             sizes = np.abs(force).max() * body.length, np.abs(moment).max()
             out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
@@ -167,7 +170,7 @@ class Run:
                 sides.append(loads.von_mises)  # under torsion alone the normal stresses are rounding
             stress = np.concatenate(sides, axis=1)[..., None]
             if body.recovery is not None:
-                stress = np.asarray(body.recovery.felt(of.q))
+                stress = np.asarray(body.recovery.felt(state.q))
             out.append(stress)
         return out
 
@@ -186,8 +189,10 @@ class Run:
     def errors(
         self, of_steps: StepErrors, computed: Reading | None, progress: Progress = None
     ) -> tuple[Errors, tuple[str, ...]]:
-        """Errors of the response over the flight's times, by those of the steps and what is `computed`, which is read
-        if None; and warnings of masses off the axis of a beam and of controllers that lose what has more shapes.
+        """Errors of the response over the flight's times, and warnings.
+
+        They follow from the errors `of_steps` and from the readings that are `computed`, which are read if None.
+        Warnings are of masses off the axis of a beam, and of controllers that lose what has more shapes.
         """
         posed, settings = self.posed, self.posed.settings
         of_steps = StepErrors() if self.missed else of_steps  # unknown where steps may miss a stop
@@ -197,23 +202,23 @@ class Run:
 
         judged = self._resolved_run if posed.system.controllers else self
 
-        def again(system: System) -> Solution:
-            return Run.by_steps(posed.replace_system(system), judged.step, partial(tell, progress, say)).solution(
-                judged.stride
-            )
+        def rerun(system: System) -> Solution:
+            """Run another system by the same steps."""
+            run = Run.by_steps(posed.replace_system(system), judged.step, partial(tell, progress, say))
+            return run.solution(judged.stride)
 
         tell(progress, say, 0.0)
         of_loads = [(name, load) for name in self.deforming for load in LOADS]
-        rerun = again if posed.system.controllers else None
         rubbed = self._friction_errors(partial(tell, progress, "errors of the smooth law of friction"))
         friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
         more: Any = {"peaks_by_step": dict(zip(of_loads, of_steps.peaks, strict=False)), "friction": friction}
         more |= {"stride": judged.stride, "tolerance": settings.tolerance, "starting": self._starting}
         more |= {"computed": computed if judged is self else None}
-        stated, doubts = system_errors(judged.solution, rerun, by_step, **more)
+        by_runs = rerun if posed.system.controllers else None
+        stated, doubts = system_errors(judged.solution, by_runs, by_step, **more)
         if not friction and posed.system.rubbing:
             stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
-        if rerun is not None:
+        if posed.system.controllers:
             from gbeam.analysis.steady.loop_errors import unstable_richer_loop  # takes SciPy's linear algebra
 
             doubts += unstable_richer_loop(posed.system, posed.motion, settings.start)
@@ -222,8 +227,10 @@ class Run:
 
     @property
     def _resolved_run(self) -> Run:
-        """Run by the steps of the results, which richer systems in a loop are run by: steps that resolve what rings in
-        the loads would cost many times as much, and leave the differences of shapes and models as they are.
+        """Run by the steps of the results, with which richer systems in a loop are compared.
+
+        Steps that resolve what rings in the loads would cost many times as much, and leave the differences of shapes
+        and models as they are.
         """
         if self.stride == 1:
             return self
@@ -314,16 +321,19 @@ class Run:
         """Inputs at all steps."""
         return self.inputs(self.posed.system, slice(None))
 
-    def inputs(self, of: System, steps: Any) -> Inputs:
-        """Inputs, at an index or slice of the steps, of its system or of another one with the same controllers."""
-        plain = of.inputs(self.trajectory.time[steps], self.posed.motion)
-        return plain if self.loop is None else SystemControllers(of).driven(plain, self.loop.applied[steps])
+    def inputs(self, system: System, steps: Any) -> Inputs:
+        """Return the inputs of a `system` at an index or slice of the steps.
+
+        It is the run's system, or another one with the same controllers.
+        """
+        plain = system.inputs(self.trajectory.time[steps], self.posed.motion)
+        return plain if self.loop is None else SystemControllers(system).driven(plain, self.loop.applied[steps])
 
     def solution(self, stride: int) -> Solution:
         """Solution at every `stride`-th step of the flight."""
         steps = self._flown(stride)
         return Solution(
-            self.posed.system, self.trajectory.select(steps), lambda of, times: self.inputs(of, steps[times])
+            self.posed.system, self.trajectory.select(steps), lambda system, times: self.inputs(system, steps[times])
         )
 
     def histories(self, steps: Indices) -> tuple[dict[str, Any], dict[str, Carried]]:

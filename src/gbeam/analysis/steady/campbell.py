@@ -205,7 +205,7 @@ def campbell(
     limit = lost.value if decided else lost.searched_to
     critical = limit if limit is not None and limit > start else math.inf
     beyond = grid[grid > critical]
-    path.ahead(system, beyond.tolist())
+    path.prepare(system, beyond.tolist())
     # Short of a critical speed, where a frequency is zero, unless a speed beyond it is known and stable.
     ends = len(beyond) > 0 and (not decided or all(growth_at(rate) != 0.0 for rate in beyond.tolist()))
     last = start + (critical - start) * (1 - 1e-6) if ends else end
@@ -222,7 +222,7 @@ def campbell(
     rates = start + (grid - start) * (last - start) / (end - start)
     if critical < last:
         rates = np.sort(np.append(rates, critical * (1 + BESIDE * np.array([-1.0, 1.0]))))
-    path.ahead(system, rates.tolist())
+    path.prepare(system, rates.tolist())
     coarse = [modes_at(rate) for rate in rates.tolist() if not math.isnan(growth_at(rate))]
     kept = min(modes, len(coarse[0].frequency))
     if not kept:

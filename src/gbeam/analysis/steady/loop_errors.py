@@ -55,7 +55,7 @@ class JudgedLoops:
         richer = Richer(state)
         models = {MORE: richer.exact}
         if richer.theories:
-            theories = richer.systems_by_theory(state.of, state)[0]
+            theories = richer.systems_by_theory(state.system, state)[0]
             models |= zip((SLENDER, THICK, PLATED), (More(model, {}) for model in theories), strict=True)
         if richer.rough is not None:
             models[COARSER] = richer.rough

@@ -38,20 +38,20 @@ from gbeam.results.result import NOT_KNOWN
 SCAN = 64  # values at which the equilibrium is looked at before Brent's method
 
 
-def _state(path: Path, of: System, value: float) -> SteadySystem | None:
+def _state(path: Path, system: System, value: float) -> SteadySystem | None:
     """Steady state at a value of a path, or None if there is none."""
     try:
-        return path(of, value)
+        return path(system, value)
     except (ComputationError, np.linalg.LinAlgError):
         return None
 
 
-def _in_turn(path: Path, of: System, values: Sequence[float]) -> Iterator[float]:
+def _in_turn(path: Path, system: System, values: Sequence[float]) -> Iterator[float]:
     """Yield values in turn. Before, states are solved for in groups of the next 1, 2, 4, ... values at once."""
     for k, value in enumerate(values):
         power_of_two = k & (k - 1) == 0
         if k and power_of_two:
-            path.ahead(of, values[k : 2 * k])
+            path.prepare(system, values[k : 2 * k])
         yield value
 
 

@@ -123,9 +123,9 @@ def carried(system: System, state: State, name: str, acting: list[list[Acting]])
     return Carried(q, qd, qdd, Base(root.a, root.w, root.alpha), hung)
 
 
-def loads_of(body: Structure, of: Carried, time: Floats) -> Loads:
+def loads_of(body: Structure, state: Carried, time: Floats) -> Loads:
     """Loads along a body at times (t,) s, from its state at these times."""
-    loads = section_forces(body, of.base, of.q, of.qd, of.qdd, time, hung=of.hung)
+    loads = section_forces(body, state.base, state.q, state.qd, state.qdd, time, hung=state.hung)
     xp = namespace(loads.force)
     force, moment = xp.abs(loads.force).max(axis=(0, 2)), xp.abs(loads.moment).max(axis=(0, 2))
     # A joint that is free carries nothing but rounding.

@@ -43,7 +43,7 @@ class Equilibria:
             states[value] = steady(system, drive, held=True, start=start)
         return release(states[value], held=held)
 
-    def ahead(self, system: System, drives: Mapping[float, Drive]) -> None:
+    def prepare(self, system: System, drives: Mapping[float, Drive]) -> None:
         """Solve for the states at several values at once. Those that fail are left to `steady`, one by one."""
         states = self._states(system)
         new = {value: drive for value, drive in drives.items() if value not in states}
@@ -87,12 +87,12 @@ class Path:
     held: bool = False
     equilibria: Equilibria = field(default_factory=Equilibria, repr=False, compare=False)
 
-    def __call__(self, of: System, value: float) -> SteadySystem:
-        return self.equilibria.steady(of, value, self.varied(self.drive, value), held=self.held)
+    def __call__(self, system: System, value: float) -> SteadySystem:
+        return self.equilibria.steady(system, value, self.varied(self.drive, value), held=self.held)
 
-    def ahead(self, of: System, values: Iterable[float]) -> None:
+    def prepare(self, system: System, values: Iterable[float]) -> None:
         """Solve for the states at several values at once."""
-        self.equilibria.ahead(of, {value: self.varied(self.drive, value) for value in values})
+        self.equilibria.prepare(system, {value: self.varied(self.drive, value) for value in values})
 
 
 def refuse_changing(path: Path, system: System, rate: float) -> None:

@@ -23,11 +23,11 @@ NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor mat
 
 
 class Richer(NamedTuple):
-    """A system with more shapes than `of`. `shared` are the indices of that one's free coordinates among its own."""
+    """A system with more shapes than the `original`, whose free coordinates have the indices `shared` among its own."""
 
     system: System
     shared: IntArray
-    of: System
+    original: System
     renamed: Mapping[str, str]  # names in the richer system of coordinates whose numbers have changed
 
 
@@ -57,7 +57,7 @@ def left_unjudged(system: System) -> str:
 
 
 def coarser(system: System) -> System | None:
-    """The system with coarser meshes of its solids, in the same coordinates; None if no solid has one."""
+    """Return the system with coarser meshes of its solids, in the same coordinates; None if no solid has one."""
     rough = {
         name: replace(body.coarser, history=body.history, load_values=body.load_values)
         for name, body in system.flexible.items()
@@ -73,8 +73,7 @@ def richer(
     exact: bool,
     along: Mapping[str, Directions] = MappingProxyType({}),
 ) -> Richer:
-    """System with more shapes in the bodies whose roots move as `bases`. The bodies have their own models or the exact
-    one.
+    """Give more shapes to the bodies whose roots move as `bases`, in their own models or the exact one.
 
     Beams get new shapes `along` some of x, y and z, by default along all.
     """
@@ -116,7 +115,7 @@ def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
 
 
 def with_beams(system: System, beams: Mapping[str, Structure]) -> System:
-    """The system with other structures in place of some of its beams, under the same loads."""
+    """Return the system with other structures in place of some of its beams, under the same loads."""
     judged = judged_beams(system)
     kept = dict[str, Structure]()
     for name, beam in beams.items():

@@ -264,15 +264,15 @@ def _initial_departure(
     return departures.settled(residual, *(flags if departing is None else starting.flags(departing)))
 
 
-def _difference_of_starts(state: Callable[[System], State], system: System, of: Trajectory) -> State:
+def _difference_of_starts(state: Callable[[System], State], system: System, trajectory: Trajectory) -> State:
     """Initial state of a system, or of its last coordinates, minus that of a trajectory; NaN if it has none."""
-    departure = np.zeros((2, of.q.shape[1]))
+    departure = np.zeros((2, trajectory.q.shape[1]))
     try:
-        begun = state(system)
+        start = state(system)
     except ComputationError:
         departure[:] = np.nan
         return departure[0], departure[1]
-    for row, values, coordinates in zip(departure, begun, (of.q[0], of.qd[0]), strict=True):
+    for row, values, coordinates in zip(departure, start, (trajectory.q[0], trajectory.qd[0]), strict=True):
         size = len(values)
         row[-size:] = values - coordinates[-size:]  # the axial shapes, which SFOAM lacks, come first
     return departure[0], departure[1]

@@ -77,11 +77,6 @@ class SteadySystem(Steady):
     first = 0
 
     @property
-    def of(self) -> System:
-        """The system."""
-        return self.system
-
-    @property
     def zero(self) -> float:  # type: ignore[override]
         """Share of the largest eigenvalue below which one counts as zero, as of a motion that nothing holds. It is zero
         where only bodies move, which hold themselves.

@@ -130,9 +130,7 @@ class Ball:
         return 4
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        """Turn and angular velocity and acceleration of the body, by Euler parameters, which need not
-        have unit length.
-        """
+        """Turn, angular velocity and acceleration of the body, by Euler parameters, which need not have unit length."""
         xp = namespace(q)
         size = xp.sqrt((q * q).sum(axis=-1, keepdims=True))
         n = q / size

@@ -24,6 +24,13 @@ _FULL = 1.1 * STANDARD_GRAVITY  # m/s²: no sensor's range ends at level flight
 _NEARLY = 0.99  # of a rate: what is that near to it is not below it
 
 
+def _jumps(change: Floats, neighbours: Floats) -> bool:
+    """True if a change (1,) is much larger than those beside it; false if there are none."""
+    if not (change.size and neighbours.size):
+        return False
+    return bool(abs(change[0]) > max(LEAST_JUMP, 3 * float(np.abs(neighbours).max())))
+
+
 def dropout(values: Floats, step: float) -> tuple[int, int] | None:
     """First and last sample of a stretch without change that begins or ends with a jump; None if there is none.
 
@@ -39,12 +46,9 @@ def dropout(values: Floats, step: float) -> tuple[int, int] | None:
         fewest = 3 if values[first] == 0 else 5
         if last - first + 1 < fewest:
             continue
-        for jump, neighbours in (
-            (change[last : last + 1], change[last + 1 : last + 4]),
-            (change[max(first - 1, 0) : first], change[max(first - 4, 0) : max(first - 1, 0)]),
-        ):
-            if jump.size and neighbours.size and abs(jump[0]) > max(LEAST_JUMP, 3 * float(np.abs(neighbours).max())):
-                return int(first), int(last)
+        jumps_after = _jumps(change[last : last + 1], change[last + 1 : last + 4])
+        if jumps_after or _jumps(change[max(first - 1, 0) : first], change[max(first - 4, 0) : max(first - 1, 0)]):
+            return int(first), int(last)
         if last < len(values) - 1 or (last - first) * step < 0.5 or first < 3:
             continue
         bends = np.median(np.abs(np.diff(values[:first], 2)))
