@@ -79,16 +79,19 @@ def unheld(stiffness: Floats, mass: Floats) -> Floats:
 
 
 def relaxation(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> Floats:
-    """Displacements (n,) of a step down the forces of a residual (n,), with the coordinates `which` accelerated: about
-    STRIDE where the forces are large, those of Newton's method near a state that the stiffness holds.
+    """Displacements (n,) of a step down the forces of a residual (n,), with the coordinates `which` accelerated.
+
+    They are about STRIDE where the forces are large, and those of Newton's method near a state that the stiffness
+    holds.
     """
-    (left, k, m), held = carried(mass, which, residual, stiffness, mass), ~which
-    left, k, m = left[held], k[held][:, held], m[held][:, held]
-    faster, square = np.linalg.solve(m, left), np.linalg.eigvals(np.linalg.solve(m, k))
+    held = ~which
+    force, k, m = carried(mass, which, residual, stiffness, mass)
+    force, k, m = force[held], k[held][:, held], m[held][:, held]
+    acceleration, square = np.linalg.solve(m, force), np.linalg.eigvals(np.linalg.solve(m, k))
     # With so much inertia added, the stiffness is positive, and no coordinate moves far.
-    shift = max(0.0, -2 * square.real.min(initial=0.0)) + np.abs(faster).max(initial=0.0) / STRIDE
+    shift = max(0.0, -2 * square.real.min(initial=0.0)) + np.abs(acceleration).max(initial=0.0) / STRIDE
     change = np.zeros_like(residual)
-    change[held] = np.linalg.solve(k + (shift + HELD * np.abs(square).max(initial=0.0)) * m, -left)
+    change[held] = np.linalg.solve(k + (shift + HELD * np.abs(square).max(initial=0.0)) * m, -force)
     return change
 
 

@@ -288,11 +288,12 @@ def doubts(errors: Errors, tolerance: float, cure_of_steps: str = SMALLER) -> tu
             continue
         if not math.isnan(error.peak):
             size += f" at an instant, and in the peak by {percent(error.peak)}"
-        worst_beam, several = int(np.nan_to_num(by_beam).argmax()) if len(by_beam) else 0, len(errors.beams) > 1
-        every = causes(error, errors.theory[worst_beam] if errors.theory else "", several=several)
-        of_body = f", most of {errors.beams[worst_beam]}" if every and several else ""
-        every += [(error.step, STEPS, cure_of_steps), (error.friction, *CREEPS)]
-        every = sorted((cause for cause in every if cause[0] > SHARE * stated), key=itemgetter(0), reverse=True)
-        words = causes_in_words(every, of_body)
+        several = len(errors.beams) > 1
+        worst_beam = int(np.nan_to_num(by_beam).argmax()) if len(by_beam) else 0
+        sources = causes(error, errors.theory[worst_beam] if errors.theory else "", several=several)
+        worst_body = f", most of {errors.beams[worst_beam]}" if sources and several else ""
+        sources += [(error.step, STEPS, cure_of_steps), (error.friction, *CREEPS)]
+        large = [cause for cause in sources if cause[0] > SHARE * stated]
+        words = causes_in_words(sorted(large, key=itemgetter(0), reverse=True), worst_body)
         warnings.append(f"{what} wrong by an estimated {percent(stated)} of {size}: {words}")
     return tuple(warnings)

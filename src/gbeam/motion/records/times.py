@@ -201,13 +201,14 @@ def _set_back(time: Floats, i: int, jump: float, place: Place) -> tuple[str, str
 
     The fix is the longest part between two such steps if no other samples have its times; else the file is to be split.
     """
+    problem = f"goes back by {jump:g} s at {place(i)}: the clock was set, or another record begins"
     edges = [0, *(np.flatnonzero(np.diff(time) < 0) + 1).tolist(), len(time)]
     first, last = max(pairwise(edges), key=lambda ends: ends[1] - ends[0])
     begin, end = float(time[first]), float(time[last - 1])
-    problem = f"goes back by {jump:g} s at {place(i)}: the clock was set, or another record begins"
-    alone = np.count_nonzero((time >= begin) & (time <= end)) == last - first >= FEWEST
-    part_fix = f'write from = "{begin:.12g} s", to = "{end:.12g} s", of {place(first)} to {place(last - 1)}'
-    return problem, part_fix if alone else f"split the file at {place(i)}, and fly one of its parts"
+    samples_there = np.count_nonzero((time >= begin) & (time <= end))
+    if samples_there == last - first >= FEWEST:
+        return problem, f'write from = "{begin:.12g} s", to = "{end:.12g} s", of {place(first)} to {place(last - 1)}'
+    return problem, f"split the file at {place(i)}, and fly one of its parts"
 
 
 def _averaged(values: Floats, order: Indices, starts: Indices) -> Floats:
