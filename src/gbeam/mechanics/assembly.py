@@ -139,22 +139,22 @@ def assembled(
     """
     field, stiffness = _unheld(beam, kind, counts, rule, at, families)
 
-    def made(field: Field, stiffness: Array, damping: Array | None, taken: tuple[int, ...]) -> Structure:
+    def build(field: Field, stiffness: Array, damping: Array | None, taken: tuple[int, ...]) -> Structure:
         """Structure in the coordinates that are not taken by supports."""
         left = counts_without(counts, taken)
         return _structure(beam, kind, rule, at, shapes, left, field, stiffness, damping, automatic=automatic)
 
     if not beam.held_places:
-        return made(field, stiffness, None, ())
+        return build(field, stiffness, None, ())
     first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
-    return hold(beam, field, stiffness, made, at, first_station, sum(counts), dependents)
+    return hold(beam, field, stiffness, build, at, first_station, sum(counts), dependents)
 
 
 def hold(
     beam: Beam,
     field: Field,
     stiffness: Array,
-    made: Callable[[Any, Array, Array | None, tuple[int, ...]], Structure],
+    build: Callable[[Any, Array, Array | None, tuple[int, ...]], Structure],
     at: Array,
     first_station: int,
     shapes: int,
@@ -162,7 +162,7 @@ def hold(
 ) -> Structure:
     """Hold a beam at its supports beyond the root, in `at` (s,) m, the stations.
 
-    `field` and `stiffness` (n, n) are those without supports, of `shapes` shapes and then the root's springs; `made`
+    `field` and `stiffness` (n, n) are those without supports, of `shapes` shapes and then the root's springs; `build`
     makes a structure of a field, a stiffness, a damping, by default that of the modes, and indices that are taken.
     Those of `dependents` are, or some that suit, as many as there are rigid conditions.
     """
@@ -186,13 +186,13 @@ def hold(
     places = [(k, DIRECTIONS.index(each.direction)) for k, each in zip(station, every, strict=True)]
     parted = tuple(places[: len(conditions)]), tuple(places[len(conditions) :])
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station)
-    supported = made(in_fewer, turned(stiffness, basis), None, dependents)
+    supported = build(in_fewer, turned(stiffness, basis), None, dependents)
     c = supported.coefficients
     # The damping of modes acts where their elastic forces do.
     kept = np.delete(np.eye(len(stiffness)), dependents, axis=1)
     felt = stiffness @ basis @ np.linalg.solve(c.stiffness, c.damping) @ kept.T
     supported = replace(supported, coefficients=c.damped(c.damping + turned(dashpots, basis)))
-    free = made(field, stiffness, felt + dashpots, ())
+    free = build(field, stiffness, felt + dashpots, ())
     return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted))
 
 

@@ -45,7 +45,7 @@ class Reactions(NamedTuple):
 
     @property
     def demanded(self) -> Hung:
-        """What the supports demand of the structure, as bodies that hang on it do."""
+        """Demand of the supports on the structure, as bodies that hang on it do."""
         xp = namespace(self.force)
         return Hung(self.station, -self.force, -self.moment - xp.cross(self.place, self.force))
 

@@ -88,7 +88,7 @@ class Recovery(Protocol):
 
 @record
 class Grip:
-    """What supports hold of a structure, and the structure that they hold.
+    """Grip of supports on a structure, and the structure that they hold.
 
     Its coordinates q (m,) are those of the structure, `basis` (m, n) times them: conditions `rows` (k, m) times q are
     zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The

@@ -111,13 +111,13 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
             loads = [unit_load(spaces[family], each) for each in conditions if each.family == family]
             statics[family] = np.stack(loads, axis=1) / spaces[family].stiffness[:, None]
     while True:
-        own = base(plus(counts, _negative(lacking)))
-        new = {family: _new(spaces[family], family, own[family], each) for family, each in statics.items()}
-        found = [len(new.get(family, ())) for family in range(6)]
-        if found == lacking:
+        plain = base(plus(counts, _negative(lacking)))
+        new = {family: _new(spaces[family], family, plain[family], each) for family, each in statics.items()}
+        counted = [len(new.get(family, ())) for family in range(6)]
+        if counted == lacking:
             break
-        lacking = [min(pair) for pair in zip(found, lacking, strict=True)]
-    families = list(own)
+        lacking = [min(pair) for pair in zip(counted, lacking, strict=True)]
+    families = list(plain)
     for family, chosen in new.items():
         if chosen:
             static = spaces[family].family(family, statics[family][:, chosen])
@@ -138,9 +138,9 @@ def unit_load(motions: Space, condition: Condition) -> Floats:
     return np.asarray(angle[0] if condition.direction.startswith("r") else value[0])
 
 
-def _new(motions: Space, family: int, own: Family, statics: Floats) -> list[int]:
+def _new(motions: Space, family: int, plain: Family, statics: Floats) -> list[int]:
     """Indices of columns of static strains (n, k) that a family's shapes and the columns before do not contain."""
-    shapes, size = own(motions.rule.node), len(motions.stiffness)
+    shapes, size = plain(motions.rule.node), len(motions.stiffness)
     strain = shapes.curvature if family in (1, 2) else shapes.slope
     block = motions.block(family)
     columns = np.zeros((size, strain.shape[1]))

@@ -308,13 +308,13 @@ class _Parts:
         Its coordinates are fewer where supports hold it rigidly.
         """
         field, stiffness, grip = self.field(strains), self.energy(strains), self.structure.grip
-        made = partial(self._made, rotary=rotary)
+        build = partial(self._build, rotary=rotary)
         if grip is None:
-            return made(field, stiffness, None, ())
+            return build(field, stiffness, None, ())
         stations, shapes = self.structure.stations, strains.shape[1]
-        return hold(self.beam, field, stiffness, made, stations, self.first_station, shapes, grip.dependents)
+        return hold(self.beam, field, stiffness, build, stations, self.first_station, shapes, grip.dependents)
 
-    def _made(
+    def _build(
         self, field: StrainField, stiffness: Floats, damping: Floats | None, taken: tuple[int, ...], *, rotary: bool
     ) -> Structure:
         """Linear structure of a field with its stiffness and damping (n, n), by default that of its modes."""

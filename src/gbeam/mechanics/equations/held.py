@@ -142,7 +142,7 @@ class HeldComplete:
     def whole(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
     ) -> tuple[Array, Array, Array]:
-        """What a motion of the free beam demands of its own coordinates and the root, with springs and dampers."""
+        """Forces along its own coordinates and at the root that a motion of the free beam demands, springs included."""
         along, force, moment = self.free.demanded(q, qd, qdd, a, w, alpha, loads)
         if self.springs is not None:
             along = along + self.springs.forces(q, qd)

@@ -146,8 +146,8 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
             mass += m * sum(np.outer(d, d) for d in arms)
     strained = [stiffnesses[STRAINS[family]] * rule.weight for family in families]
     stiffness = np.concatenate([*strained, [held[i] for i in free]])
-    first_spring, given = len(stiffness) - len(free), [beam.root.springs.get(_HELD[along][i]) for i in free]
-    loose = tuple(first_spring + k for k, value in enumerate(given) if not is_jax(value) and value == 0)
+    first_spring, values = len(stiffness) - len(free), [beam.root.springs.get(_HELD[along][i]) for i in free]
+    loose = tuple(first_spring + k for k, value in enumerate(values) if not is_jax(value) and value == 0)
     return Space(rule, beam.length, families, line, turning, mass, stiffness, sensitivity, loose=loose)
 
 
