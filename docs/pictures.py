@@ -1,4 +1,4 @@
-"""Pictures of the README and the first tutorial, from the F-16 example."""
+"""Pictures of the README and the first tutorial, from the F-16 example, and of a strip that is held at both ends."""
 
 from __future__ import annotations
 
@@ -48,9 +48,46 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
         for name, drawing in pictures.items():
             drawing.savefig(folder / f"f16_{name}.png", dpi=150)
         film(study, folder / "f16.gif", frames)
+        held().savefig(folder / "held_at_both_ends.png", dpi=150)
     tracking, tip = study.responses["centrifuge"].plot("tracking"), study.plot("tip")
     tracking[0].figure.savefig(folder / "f16_tracking.png", dpi=150)
     tip[0].figure.savefig(folder / "f16_tip.png", dpi=150)
+
+
+def held() -> Figure:
+    """Deflection of a strip clamped at both ends against its load, with one clamp that slides and with both fixed."""
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    metal = gb.Material(2700, 70e9, poissons_ratio=0.33)
+    loads = np.linspace(0.0, 60.0, 13)
+    drawing = Figure(figsize=(6.4, 3.0), layout="constrained")
+    axes = drawing.subplots()
+    for words, holds, colour in (
+        ("one clamp slides", ["z", "ry"], FLIGHT),
+        ("both are fixed", ["x", "z", "ry"], MACHINE),
+    ):
+        beam = gb.Beam(0.6, strip, metal, supports=[gb.Support(0.6, holds)])
+        model = gb.assemble(beam, "exact", axial=2, z=6)
+        moved = [
+            -1e3
+            * gb.static(model, acceleration=(0.0, 0.0, G * load)).at("beam.span")[2]
+            for load in loads
+        ]
+        axes.plot(loads, moved, color=colour, lw=1.6)
+        axes.annotate(
+            words,
+            (loads[-1], moved[-1]),
+            xytext=(-4, 4),
+            textcoords="offset points",
+            ha="right",
+        )
+    axes.set(
+        xlabel="load, g",
+        ylabel="deflection in the middle, mm",
+        title="A strip of 600 mm by 20 mm by 4 mm, clamped at both ends",
+        xlim=(0, loads[-1]),
+    )
+    axes.set_ylim(bottom=0)
+    return drawing
 
 
 def record(study: Any) -> Figure:

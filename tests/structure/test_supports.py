@@ -34,10 +34,10 @@ def beam(*supports: gb.Support, **keys: Any) -> gb.Beam:
 def test_frequencies_are_those_of_the_closed_forms(name: str, kind: str, shapes: Any) -> None:
     supports, roots = ROOTS[name]
     modes = gb.modes(gb.assemble(beam(*supports), kind, z=6, shapes=shapes))
-    found = np.sqrt(2 * np.pi * modes.frequency[:3] / np.sqrt(EI / LINE_MASS)) * LENGTH
-    assert found[:2] == pytest.approx(roots[:2], rel=1e-4) and found[2] == pytest.approx(roots[2], rel=2e-3)
+    betas = np.sqrt(2 * np.pi * modes.frequency[:3] / np.sqrt(EI / LINE_MASS)) * LENGTH
+    assert betas[:2] == pytest.approx(roots[:2], rel=1e-4) and betas[2] == pytest.approx(roots[2], rel=2e-3)
     assert modes.errors is not None
-    stated, true = modes.errors.slender[:3], np.square(found / roots) - 1
+    stated, true = modes.errors.slender[:3], np.square(betas / roots) - 1
     assert (np.abs(true) <= 3 * stated + 1e-8).all()
 
 
@@ -115,11 +115,11 @@ def test_it_buckles_between_its_supports_at_eulers_load(supports: list[gb.Suppor
 def test_moving_a_support_moves_answers_continuously() -> None:
     """Also past a station, past the middle, and to the tip."""
     places = np.concatenate([0.3 + np.array([-1e-6, 0.0, 1e-6]), LENGTH - np.array([1e-6, 0.0])])
-    found = [
+    frequencies = [
         gb.modes(gb.assemble(beam(gb.Support(x, ["z"])), "FOAM", z=6, stations=[0.3])).frequency[0] for x in places
     ]
-    assert found[:3] == pytest.approx([found[1]] * 3, rel=1e-4)
-    assert found[3] == pytest.approx(found[4], rel=1e-4)
+    assert frequencies[:3] == pytest.approx([frequencies[1]] * 3, rel=1e-4)
+    assert frequencies[3] == pytest.approx(frequencies[4], rel=1e-4)
 
 
 @pytest.mark.parametrize("kind", ["FOAM", "exact"])
@@ -170,3 +170,32 @@ def test_a_beam_that_is_not_held_is_refused(keys: dict[str, Any], problem: str) 
     with pytest.raises(gb.InputError) as refusal:
         gb.Beam(LENGTH, section, metal, **keys)
     assert problem in str(refusal.value)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_linear_model_has_the_moment_of_the_root_alone(kind: str) -> None:
+    """Of a beam clamped at both ends it is a twelfth of what its mass times its length is accelerated by."""
+    clamped = beam(gb.Support(LENGTH, ["z", "ry"]), damping_ratio=0.01)
+    linear = gb.linearize(gb.assemble(clamped, kind, z=4), gb.Flight(z=0.0))
+    gain = linear.d - linear.c @ np.linalg.solve(linear.a, linear.b)
+    moment = [signal.name for signal in linear.outputs].index("root_moment_y")
+    push = [signal.name for signal in linear.inputs].index("base_acceleration_z")
+    assert gain[moment, push] == pytest.approx(-LINE_MASS * LENGTH**2 / 12, rel=1e-5)
+
+
+def test_reactions_and_inertia_balance_at_every_instant() -> None:
+    """In a turn with an even load across the beam, whose mass is beside its axis as well."""
+    camera = gb.PointMass(0.2, 0.3, inertia=(2e-5, 3e-5, 4e-5), offset=(0.01, 0.02, 0.015))
+    supports = [gb.Support(0.4, ["y", "z"], stiffness={"y": 2e4}, damping={"y": 3.0}), gb.Support(LENGTH, ["z", "rz"])]
+    held = gb.assemble(beam(*supports, masses=[camera], damping_ratio=0.01), "exact", axial=1, y=3, z=3)
+    motion = gb.Flight(
+        y=gb.Sine(30.0, 0.2),
+        z=gb.trapezoid(50.0, jerk=500.0, start=0.05, hold=0.1),
+        rates=gb.constant(np.array([2.0, 0.5, 0.0])),
+    )
+    response = gb.simulate(held, motion, duration=0.3, step=1e-3, estimate=False)
+    loads = response.loads
+    assert loads is not None and loads.base_force is not None
+    accelerated = -response.ground_force  # by the whole tree, of which the supports are no part
+    size = np.abs(accelerated).max()
+    np.testing.assert_allclose(loads.base_force, accelerated, atol=1e-10 * size)

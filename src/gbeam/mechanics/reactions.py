@@ -93,6 +93,16 @@ def reactions_of(
     return _by_station(grip, stations, whole, xp.concatenate([rigid, yielding], axis=1))
 
 
+def demanded_with_supports(
+    structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, loads: Array | None, hung: Hung | None
+) -> Hung | None:
+    """Forces and moments that bodies `hung` on a structure demand of its stations, and its supports."""
+    reactions = reactions_of(structure, base, q, qd, qdd, loads, hung)
+    if reactions is None:
+        return hung
+    return reactions.demanded if hung is None else hung.joined(reactions.demanded)
+
+
 def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:
     """Reactions of supports by their components (t, m), those of conditions and then those of springs."""
     xp, every = namespace(sizes), (*grip.held, *grip.sprung)

@@ -130,9 +130,13 @@ def stress_words(stations: Any, tension: Any, compression: Any, yield_strength: 
 
 
 def largest_loads(peaks: LoadPeaks) -> str:
-    """Words for the largest sizes over time: at the root, of the stress, and of the torque about a hub's axis."""
+    """Words for the largest sizes over time: at root and supports, of the stress, of the torque about an axis."""
     force, moment = float(peaks.force[0].size.value), float(peaks.moment[0].size.value)
     words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
+    if peaks.supports is not None and peaks.support_force is not None and peaks.support_moment is not None:
+        sizes = peaks.support_force.size.value, peaks.support_moment.size.value
+        for place, force, moment in zip(peaks.supports, *sizes, strict=True):
+            words += f"; support at {number(1e3 * place)} mm: {number(force)} N, {number(moment)} N m"
     if np.isfinite(peaks.tension.value).all():
         extremes = peaks.tension.value, peaks.compression.value
         words += f"; {stress_words(peaks.stations, *extremes, peaks.yield_strength)}"

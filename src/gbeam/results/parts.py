@@ -14,6 +14,7 @@ from gbeam.results.result import Floats, Part
 
 _SECTION_AXES = "S: axes of the deformed section"
 _BASE_AXES = "B: axes of the root"
+HELD = 0.1  # of the largest displacement of a body's points: a tip that moves by less beside supports is held
 UNSTRESSED = 1e-12  # of the strength: a smaller stress is rounding
 
 

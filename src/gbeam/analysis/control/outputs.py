@@ -23,6 +23,7 @@ from gbeam.guards.checks import choice
 from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import replace_stations
 from gbeam.mechanics.fields.basis import FAMILIES
+from gbeam.mechanics.reactions import demanded_with_supports
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.structure import Sections, Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
@@ -118,7 +119,9 @@ class Outputs:
         q, qd, qdd = y[:, i:], yd[:, i:], ydd[:, i:]
         root = self.tree.motion(y, yd, ydd, inputs).roots[-1]
         base = Base(root.a, root.w, root.alpha)
-        _, moment, *section_loads, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, inputs.loads[-1])
+        loads = inputs.loads[-1]
+        hung = demanded_with_supports(self.structure, base, q, qd, qdd, loads, None)
+        _, moment, *section_loads, a, _ = sections(self.structure, self.outboard, base, q, qd, qdd, loads, hung)
         strain = (np.concatenate([load[:, self.at] for load in section_loads], axis=-1) * self.strains).sum(axis=-1)
         moved = self.structure.displacement(q)
         # Accelerations are of the root and the stations, displacements of the stations alone.

@@ -15,7 +15,7 @@ from gbeam.guards.checks import index_of
 from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.results.body_response import BodyResponse
-from gbeam.results.parts import Base, Extremes, Loads, VectorPeaks
+from gbeam.results.parts import HELD, Base, Extremes, Loads, VectorPeaks
 from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
 
@@ -84,10 +84,14 @@ class Quantities:
 
     @property
     def farthest(self) -> str:
-        """Point whose displacement is compared where none is named. It is empty for the tip of the only body, else the
-        point that moves farthest from its place at the start.
+        """Point whose displacement is compared where none is named. It is empty for the tip of the only body, unless
+        supports hold it; else the point that moves farthest.
         """
-        return "" if self.body is not None else self.points[int(self.response.largest.argmax())]
+        if self.body is None:
+            return self.points[int(self.response.largest.argmax())]
+        loads, sizes = self.body.loads, np.linalg.norm(self.displacement, axis=-1).max(axis=0)
+        held = loads is not None and loads.supports is not None and sizes[-1] < HELD * sizes.max()
+        return self.points[int(sizes.argmax())] if held else ""
 
     def index(self, where: str, point: str) -> int:
         """Return the number of a named point, with or without the name of the only body; that of the last one if the

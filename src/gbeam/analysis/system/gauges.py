@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.analysis.system.histories import carried
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats
+from gbeam.mechanics.reactions import demanded_with_supports
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.body_terms import stations_of
@@ -34,7 +35,8 @@ class Strained(NamedTuple):
             return state.q[k][-1] @ self.share
         assert body.sections is not None
         q, qd, qdd, base, hung = carried(system, state, self.body, acting)
-        loads = sections(body, body.sections, base, q, qd, qdd, inputs.loads[k], hung)
+        every = demanded_with_supports(body, base, q, qd, qdd, inputs.loads[k], hung)
+        loads = sections(body, body.sections, base, q, qd, qdd, inputs.loads[k], every)
         force, moment = loads.section_force[:, self.section], loads.section_moment[:, self.section]
         return namespace(force, moment).concatenate([force, moment], axis=-1) @ self.share
 

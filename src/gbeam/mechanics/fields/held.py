@@ -216,7 +216,7 @@ class Conditions:
         return q, qd, qdd - fallen @ np.eye(self.size)[held], phi
 
     def _stepped(self, p: Array, pd: Array, pdd: Array) -> tuple[Array, Array, Array, Array] | None:
-        """Motion as :meth:`moving` returns it, for complex steps along the first axis from one real motion; else None."""
+        """Motion as :meth:`moving` returns it, for complex steps of one real motion; else None."""
         axes = max(values.ndim for values in (p, pd, pdd))
         motion = [values if values.ndim == axes else values[None] for values in (p, pd, pdd)]
         real = [_alike(np.real(values)) for values in motion]
