@@ -433,3 +433,4 @@ class Influence(Part):
         "kg m", "its moment about the root, in the plane of x and the field: minus the first moment of the mass", "axis"
     )
     moment_linear: Floats = quantity("kg m^2", "the same: minus the second moment of the mass", "axis")
+    station: int = internal("", "number of the station that is displaced, the last unless supports hold it", default=-1)

@@ -306,7 +306,7 @@ def _load_difference(covered: Flags, machine: Quantities, gradient: Floats, tip:
         max_gradient=largest,
         max_acceleration=largest * max(x_c, length - x_c),
         tip_bound=bound(influence.tip_linear, influence.tip_uniform)
-        if tip == len(body.stations) - 1
+        if tip == influence.station % len(body.stations)
         else np.full(3, np.nan),
         force_bound=bound(influence.force_linear, influence.force_uniform),
         moment_bound=bound(influence.moment_linear, influence.moment_uniform),
