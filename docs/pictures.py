@@ -1,4 +1,4 @@
-"""Pictures of the README and the first tutorial, from the F-16 example, and of a strip that is held at both ends."""
+"""Pictures of the README and of pages: the F-16, and a strip held at both ends."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
 
 
 def held() -> Figure:
-    """Deflection of a strip clamped at both ends against its load, with one clamp that slides and with both fixed."""
+    """Deflection of a clamped strip against its load; one clamp slides or does not."""
     strip = gb.Section.rectangle(width=0.02, thickness=0.004)
     metal = gb.Material(2700, 70e9, poissons_ratio=0.33)
     loads = np.linspace(0.0, 60.0, 13)
