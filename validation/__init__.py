@@ -34,4 +34,5 @@ MODULES: tuple[str, ...] = (
     "accuracy.random_scenarios",
     "accuracy.integrators",
     "accuracy.kinds",
+    "accuracy.supports",
 )

@@ -199,3 +199,12 @@ def test_reactions_and_inertia_balance_at_every_instant() -> None:
     accelerated = -response.ground_force  # by the whole tree, of which the supports are no part
     size = np.abs(accelerated).max()
     np.testing.assert_allclose(loads.base_force, accelerated, atol=1e-10 * size)
+
+
+def test_a_support_beside_the_tip_leaves_every_motion_its_mass() -> None:
+    """Nine polynomials contain its static deflection but for 1e-5: with that as a shape, one motion had no mass."""
+    roots = ROOTS["clamped and pinned"][1]
+    modes = gb.modes(gb.assemble(beam(gb.Support(0.998 * LENGTH, ["z"])), "exact", z=9))
+    assert modes.outcome == "done"
+    betas = np.sqrt(2 * np.pi * modes.frequency[:2] / np.sqrt(EI / LINE_MASS)) * 0.998 * LENGTH
+    assert betas == pytest.approx(roots[:2], rel=1e-3)

@@ -21,7 +21,7 @@ from gbeam.structure.beam import Beam
 from gbeam.structure.supports import DIRECTIONS
 
 FAMILY = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 2, "rz": 1}  # that moves or turns sections in a direction
-NEW = 1e-6  # of a static shape's length in energy: less of it is nothing that the other shapes have not
+NEW = 1e-3  # of a static shape's length in energy: with less of it than that it is nearly one of the others
 ALIKE = 1e-9  # of a condition's length: less of it is nothing that the other conditions do not say
 
 
