@@ -208,3 +208,15 @@ def test_a_support_beside_the_tip_leaves_every_motion_its_mass() -> None:
     assert modes.outcome == "done"
     betas = np.sqrt(2 * np.pi * modes.frequency[:2] / np.sqrt(EI / LINE_MASS)) * 0.998 * LENGTH
     assert betas == pytest.approx(roots[:2], rel=1e-3)
+
+
+def test_answers_that_are_about_the_tip_are_refused_where_it_is_held() -> None:
+    """A place was judged by 8e-17 mm; a command would have been."""
+    held = gb.assemble(beam(gb.Support(LENGTH, ["z", "ry"]), damping_ratio=0.01), "FOAM", axial=1, z=3)
+    flight = gb.Flight(z=gb.trapezoid(50.0, jerk=50.0, start=0.5, hold=1.0))
+    machine = gb.Centrifuge(flight, arm=3.3, control_point=0.3, gravity=False, idle=14.0)
+    settings = gb.ResponseSettings(3.0)
+    with pytest.raises(gb.InputError, match="hold the tip, by which a place is judged"):
+        gb.place(held, flight, gb.choice_of(machine), settings, {"tip": 1.0}, current=machine)
+    with pytest.raises(gb.InputError, match="hold the tip, by which a command is judged"):
+        gb.shape_command(held, gb.Hub(radius=0.1), angle=0.5, duration=1.0)

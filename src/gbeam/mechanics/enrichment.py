@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import Array
-from gbeam.mechanics.assembly import assembled, breaks_of, families_of, particles_of, stiffness_of
+from gbeam.mechanics.assembly import assembled, breaks_of, families_of
+from gbeam.mechanics.beam_terms import particles_of, stiffness_of
 from gbeam.mechanics.fields.adapted import GROUPS, Space, spaces_of
 from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes, joined_family, quadrature
 from gbeam.mechanics.fields.strains import STRAINS, strain_field

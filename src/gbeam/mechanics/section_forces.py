@@ -22,7 +22,8 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.reactions import Hung, Reactions, reactions_of
-from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.recovery import Sections
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.body_terms import terms_of
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.motion.protocol import Motion

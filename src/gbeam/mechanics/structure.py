@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.namespace import Array, holds_jax, is_jax, namespace
-from gbeam.arrays.tree import Value, record, static
-from gbeam.constants import Shapes
+from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import implausible, positive
@@ -32,58 +30,10 @@ from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Expanded, Places
+from gbeam.mechanics.recovery import Recovery, Sections, Source
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
-
-if TYPE_CHECKING:
-    from gbeam.structure.beam import Beam
-
-
-@record
-class Sections:
-    """Sections at root and stations (s,): their `values`, the mass (s, particles) kg and the shares of loads (s,
-    loaded) outboard of each, axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s),
-    strength, Pa; and the positions `along` the beam, m, of the field's points.
-    """
-
-    values: Any
-    mass: Array
-    loaded: Array
-    root_axes: Array
-    stresses: Array | None = None
-    yield_strength: Any = None
-    fatigue_exponent: Any = np.nan
-    along: Array = None
-
-
-class Recovery(Protocol):
-    """Results that a specimen's responses have beside its coordinates, such as the stress of a solid."""
-
-    @property
-    def envelope(self) -> Array:
-        """Corners (c, 3) of its convex hull at rest, from the root, m: its load is largest at one of them."""
-        ...
-
-    @property
-    def clamps(self) -> Mapping[str, str]:
-        """Nodes that each group of a mesh's clamp holds, in words, by its name."""
-        ...
-
-    def parts(self, time: Array, base: Any, q: Array, *, motion: str, model: str, environment: str) -> dict[str, Any]:
-        """Fields of a response, by name, from its times (t,), base motion (t, 3) and coordinates (t, n)."""
-        ...
-
-    def in_modes(self, modes: Array) -> Any:
-        """Surface for pictures of modes (k, n) in its coordinates."""
-        ...
-
-    def felt(self, q: Array) -> Array:
-        """Stress at coordinates (t, n) where it is largest, (t, c) Pa."""
-        ...
-
-    def strain(self, point: str, along: Any) -> Array:
-        """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
-        ...
+from gbeam.results.parts import HELD
 
 
 @record
@@ -132,15 +82,6 @@ class Grip:
             damping = damping - self.yielding.T @ (self.damping[:, None] * self.yielding)
         assert isinstance(self.free.inertia, Inertia)
         return HeldComplete(Complete(self.free.inertia, damping, stiffness, self.free.work), self.conditions, springs)
-
-
-@dataclass(frozen=True, eq=False)
-class Source(Value):
-    """The beam that a structure was made of, and its model's shapes, whose numbers a study chooses if `automatic`."""
-
-    beam: Beam
-    shapes: Shapes
-    automatic: bool = False
 
 
 @typed_methods
@@ -345,6 +286,22 @@ class Structure:
         if not self.size:
             fix = "ask simulate, which has the load at its corners, or give it as a solid"
             raise InputError("structure", "is rigid, and this is of what deforms", fix)
+
+    @property
+    def farthest_station(self) -> int:
+        """Index of the station that moves farthest under even loads where supports hold the tip; else the last."""
+        places, c = self.station_places.first, self.coefficients
+        last = len(places) - 1
+        if self.grip is None:
+            return last
+        moved = np.linalg.norm(places @ np.linalg.solve(c.stiffness, c.f_a.T), axis=(1, 2))
+        return last if moved[last] >= HELD * moved.max() else int(moved.argmax())
+
+    def require_free_tip(self, answer: str) -> None:
+        """Raise InputError where supports hold the tip, and an `answer` is judged by what the tip does."""
+        if self.farthest_station != len(self.station_places.first) - 1:
+            fix = "ask run, which compares the point that moves farthest, or sweep it"
+            raise InputError("supports", f"hold the tip, by which {answer} is judged", fix)
 
     @property
     def traced(self) -> bool:

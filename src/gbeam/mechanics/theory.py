@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.types import Floats
-from gbeam.mechanics.assembly import hold, load_work, particles_of, sections_of
+from gbeam.mechanics.assembly import hold
+from gbeam.mechanics.beam_terms import load_work, particles_of, sections_of
 from gbeam.mechanics.enrichment import Enrichment, enrichment, own_families
 from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix

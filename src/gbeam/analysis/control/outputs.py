@@ -24,8 +24,9 @@ from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import replace_stations
 from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.reactions import demanded_with_supports
+from gbeam.mechanics.recovery import Sections
 from gbeam.mechanics.section_forces import sections
-from gbeam.mechanics.structure import Sections, Structure
+from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion

@@ -109,6 +109,7 @@ class Plant:
             fix = "leave it out: the tip of the only body is to rest"
             raise InputError("point", f"is {point!r}, and the hub carries {system.order[0]}", fix)
         body.require_coordinates()
+        body.require_free_tip("a command")
         if not hub.free and float(np.abs(hub.base(np.zeros(1)).w_WB_B).max()) > 0:
             raise InputError("rate", "is not zero: the hub turns already", "leave it out")
         return Plant(hub_system(body, hub, system.order[0]), f"{HINGE}.angle", f"{system.order[0]}.tip")

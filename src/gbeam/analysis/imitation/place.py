@@ -179,9 +179,9 @@ def place(
     Raises
     ------
     InputError
-        If the beam has no damping ratio where vibration is judged, a measure is unknown, the flight makes none of it or
-        none has weight, something of a system moves at rest or is held by nothing, or no option can be built: the
-        first one's reason.
+        If the beam has no damping ratio where vibration is judged, supports hold its tip, a measure is unknown, the
+        flight makes none of it or none has weight, something of a system moves at rest or is held by nothing, or no
+        option can be built: the first one's reason.
 
     Examples
     --------
@@ -195,6 +195,8 @@ def place(
     check_weights(weights)
     subject = subject_of(structure, None)
     system = subject.system
+    for body in system.flexible.values():
+        body.require_free_tip("a place")
     if check or "vibration" in weights:
         structure.require_damping("the vibration")
     trials = _Trials(system, flight, choice, settings, weights, along, np.asarray(current.place), progress)

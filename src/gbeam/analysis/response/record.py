@@ -35,7 +35,7 @@ from gbeam.progress import Progress
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.errors import Errors, StepErrors
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import HELD, Base, Influence, Loads, Peaks
+from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
 from gbeam.results.system import Invariants
 from gbeam.structure.beam import names_at
@@ -51,12 +51,8 @@ def influence(structure: Structure) -> Influence:
     """
     c = structure.coefficients
     linear = np.stack([-c.f_ww[2, 2], c.f_al[2], -c.f_al[1]])
-    places = structure.station_places.first
-    station = len(places) - 1
-    if structure.grip is not None:
-        moved = np.linalg.norm(places @ np.linalg.solve(c.stiffness, c.f_a.T), axis=(1, 2))
-        station = station if moved[-1] >= HELD * moved.max() else int(moved.argmax())
-    per_q = places[station]
+    station = structure.farthest_station
+    per_q = structure.station_places.first[station]
 
     def tip(load: Array) -> Array:
         return np.diagonal(per_q @ np.linalg.solve(c.stiffness, load.T))
