@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -220,3 +221,29 @@ def test_answers_that_are_about_the_tip_are_refused_where_it_is_held() -> None:
         gb.place(held, flight, gb.choice_of(machine), settings, {"tip": 1.0}, current=machine)
     with pytest.raises(gb.InputError, match="hold the tip, by which a command is judged"):
         gb.shape_command(held, gb.Hub(radius=0.1), angle=0.5, duration=1.0)
+
+
+TAPPED = """
+title = "A strip on a spring"
+[beam]
+length = "600 mm"
+section = { shape = "rectangle", width = "20 mm", thickness = "4 mm" }
+material = { density = "2700 kg/m^3", youngs_modulus = "70 GPa" }
+damping_ratio = 0.01
+supports = [ { at = "500 mm", stiffness = { z = "5 N/mm" } } ]
+[model]
+kind = "FOAM"
+modes = { z = 4 }
+"""
+
+
+def test_a_spring_follows_from_a_tap_test(tmp_path: Path) -> None:
+    """From three frequencies of a strip on 2 N/mm, the scenario of which says 5."""
+    scenario, taps, path = tmp_path / "strip.toml", tmp_path / "taps.csv", "beam.supports[0].stiffness.z"
+    scenario.write_text(TAPPED, encoding="utf-8")
+    true = gb.read_scenario(scenario, [f"{path}=2 N/mm"])
+    frequency = gb.modes(true.system).frequency[:3]
+    table = np.stack([np.arange(1, 4), frequency], axis=1)
+    np.savetxt(taps, table, delimiter=",", header="mode,frequency", comments="")
+    fit = gb.fit(gb.read_scenario(scenario), taps, [path])
+    assert fit.before[0] == pytest.approx(5000.0) and fit.values[0] == pytest.approx(2000.0, rel=1e-4)
