@@ -21,6 +21,7 @@ from gbeam.structure.line import Line as _Line
 from gbeam.structure.line import Piece as _Piece
 from gbeam.structure.material import Material as _Material
 from gbeam.structure.section import Section as _Section
+from gbeam.structure.supports import DIRECTIONS
 from gbeam.structure.supports import Support as _Support
 
 Material = read_as(_Material, table_of(_Material))
@@ -30,37 +31,36 @@ Root = read_as(attachments.Root, table_of(attachments.Root))
 Load = read_as(attachments.Load, table_of(attachments.Load))
 
 
-def _springs(
-    *,
-    x: Annotated[Stiffness | None, "along x"] = None,
-    y: Annotated[Stiffness | None, "along y"] = None,
-    z: Annotated[Stiffness | None, "along z"] = None,
-    rx: Annotated[RotationalStiffness | None, "about x"] = None,
-    ry: Annotated[RotationalStiffness | None, "about y"] = None,
-    rz: Annotated[RotationalStiffness | None, "about z"] = None,
-) -> dict[str, float]:
-    """Springs of a support by direction, in axes of the root."""
-    every = {"x": x, "y": y, "z": z, "rx": rx, "ry": ry, "rz": rz}
-    return {direction: value for direction, value in every.items() if value is not None}
+def _by_direction(**values: float) -> dict[str, float]:
+    """Values by direction, in axes of the root."""
+    return values
 
 
-def _dampers(
-    *,
-    x: Annotated[Damping | None, "along x"] = None,
-    y: Annotated[Damping | None, "along y"] = None,
-    z: Annotated[Damping | None, "along z"] = None,
-    rx: Annotated[RotationalDamping | None, "about x"] = None,
-    ry: Annotated[RotationalDamping | None, "about y"] = None,
-    rz: Annotated[RotationalDamping | None, "about z"] = None,
-) -> dict[str, float]:
-    """Dampers of a support by direction, in axes of the root."""
-    every = {"x": x, "y": y, "z": z, "rx": rx, "ry": ry, "rz": rz}
-    return {direction: value for direction, value in every.items() if value is not None}
+def _directions(along: Any, about: Any) -> dict[str, tuple[Any, Any]]:
+    """Declarations of values by direction: types of those along axes and about them."""
+    fields = dict[str, tuple[Any, Any]]()
+    for name in DIRECTIONS:
+        turns = name.startswith("r")
+        words = f"{'about' if turns else 'along'} {name[-1]}"
+        fields[name] = ((about if turns else along) | None, Field(default=None, description=words))
+    return fields
 
 
 _BY_DIRECTION = {
-    "stiffness": table_of(_springs, name="SupportStiffness"),
-    "damping": table_of(_dampers, name="SupportDamping"),
+    "stiffness": table_of(
+        _by_direction,
+        name="SupportStiffness",
+        without={"values"},
+        about="Springs of a support by direction, in axes of the root.",
+        changed=_directions(Stiffness, RotationalStiffness),
+    ),
+    "damping": table_of(
+        _by_direction,
+        name="SupportDamping",
+        without={"values"},
+        about="Dampers of a support by direction, in axes of the root.",
+        changed=_directions(Damping, RotationalDamping),
+    ),
 }
 Support = read_as(_Support, table_of(_Support, types=_BY_DIRECTION))
 Piece = read_as(_Piece, table_of(_Piece))
