@@ -113,6 +113,11 @@ def test_it_buckles_between_its_supports_at_eulers_load(supports: list[gb.Suppor
     assert abs(critical.value / (root * EI / LENGTH**2) - 1) <= 3 * critical.errors.total
 
 
+def test_a_point_that_is_called_as_a_span_keeps_its_place() -> None:
+    held = beam(gb.Support(LENGTH, ["z"]), points=[gb.Point("span", at=0.1)])
+    assert held.named_points == {"span": 0.1, "tip": LENGTH}
+
+
 def test_moving_a_support_moves_answers_continuously() -> None:
     """Also past a station, past the middle, and to the tip."""
     places = np.concatenate([0.3 + np.array([-1e-6, 0.0, 1e-6]), LENGTH - np.array([1e-6, 0.0])])
@@ -165,6 +170,10 @@ def test_what_cannot_be_held_is_refused_by_name(problem: str) -> None:
     ({"supports": [PIN, PIN]}, "supports[1].at is 0 a second time"),
     ({"supports": [PIN, gb.Support(0.6, ["z"])], "root": gb.Root(rotation_y=5.0)}, "both say what the root holds"),
     ({"root": gb.Root(rotation_y=0.0)}, "leaves the root free (rotation_y)"),
+    (
+        {"supports": [gb.Support(0.0, ["x", "y", "z", "rx", "rz"], {"ry": 5.0}, {"ry": 0.1})]},
+        "supports[0].damping.ry is of the root, whose springs take no dampers",
+    ),
 ])  # fmt: skip
 def test_a_beam_that_is_not_held_is_refused(keys: dict[str, Any], problem: str) -> None:
     section, metal = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS)

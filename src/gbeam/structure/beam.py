@@ -185,7 +185,9 @@ class Beam(Value):
     def named_points(self) -> dict[str, float]:
         """Positions of the named points, bodies and middles of spans among them, and of the tip, from the root, m."""
         bodies = {mass.name: mass.at for mass in self.masses if mass.name}
-        return {point.name: point.at for point in self.points} | bodies | self._spans | {TIP: self.length}
+        named = {point.name: point.at for point in self.points} | bodies
+        spans = {name: at for name, at in self._spans.items() if name not in named}
+        return named | spans | {TIP: self.length}
 
     @property
     def _spans(self) -> dict[str, float]:

@@ -100,6 +100,9 @@ def root_held(support: Support) -> Root:
     if "x" not in support.rigid and "x" not in support.stiffness:
         fix = "add x to holds, or give x a stiffness"
         raise InputError("holds", "leaves the root free to move along the beam", fix)
+    for direction in support.damping:
+        fix = "leave it out: the beam's damping_ratio damps the motion of its root, too"
+        raise InputError(f"damping.{direction}", "is of the root, whose springs take no dampers", fix)
     springs: dict[str, Any] = {
         name: support.stiffness.get(direction, 0.0)
         for direction, name in _ROOT.items()

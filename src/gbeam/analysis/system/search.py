@@ -79,7 +79,7 @@ def adrift(point: Point, residual: Floats, slope: Sequence[Floats]) -> Flags:
 
 
 class _Iterate(NamedTuple):
-    """Where Newton's method ended: K, C and M before the last correction, this (n,), and True if it converged."""
+    """End of Newton's method: K, C and M before the last correction, this (n,), and True if it converged."""
 
     point: Point
     slope: tuple[Floats, ...]
