@@ -19,7 +19,8 @@ from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
-from gbeam.mechanics.fields.held import Conditions, HeldStrainField, Measures
+from gbeam.mechanics.fields.held import Conditions, HeldStrainField, null_basis
+from gbeam.mechanics.fields.measures import Measures, components
 from gbeam.mechanics.fields.projected import Field, HeldField, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, StrainField, shaped_strains, strain_field
@@ -31,19 +32,16 @@ from gbeam.mechanics.supports import (
     chosen_dependents,
     counts_by_family,
     counts_without,
-    null_basis,
     plus,
     refuse_shapeless,
     refuse_stretched,
     rigid_conditions,
-    rows_of,
     supported_shapes,
     turned,
     yielding_conditions,
 )
 from gbeam.structure.attachments import TIP
 from gbeam.structure.beam import Beam
-from gbeam.structure.supports import DIRECTIONS
 
 
 @typed
@@ -167,8 +165,9 @@ def hold(
     conditions, yielding = rigid_conditions(beam), yielding_conditions(beam)
     every = [*conditions, *yielding]
     slopes, angles = field.sections(slice(first_station, None)).jacobians(np.zeros(len(stiffness)))
-    station = [int(np.argmin(np.abs(at - condition.at))) for condition in every]
-    rows = rows_of(every, slopes[station], angles[station])
+    places = tuple((int(np.argmin(np.abs(at - condition.at))), condition.number) for condition in every)
+    parted = places[: len(conditions)], places[len(conditions) :]
+    rows = components(places, slopes, angles)
     held, sprung = rows[: len(conditions)], rows[len(conditions) :]
     spring, damper = (
         np.array(
@@ -181,8 +180,6 @@ def hold(
     if dependents is None:
         dependents = chosen_dependents(conditions, held, np.diag(stiffness), shapes)
     basis = null_basis(held, dependents)
-    places = [(k, DIRECTIONS.index(each.direction)) for k, each in zip(station, every, strict=True)]
-    parted = tuple(places[: len(conditions)]), tuple(places[len(conditions) :])
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station)
     supported = build(in_fewer, turned(stiffness, basis), None, dependents)
     c = supported.coefficients
@@ -202,11 +199,9 @@ def _held_field(
         return field
     if not isinstance(field, StrainField):
         return HeldField(field, basis)
-    stations = sorted({station for station, _ in held})
-    sections = field.sections(first_station + np.array(stations, dtype=int))
-    numbered = tuple((stations.index(station), direction) for station, direction in held)
-    measures = Measures(sections, sections.positions(np.zeros(field.size)), numbered)
-    return HeldStrainField(field, Conditions(measures, dependents, field.size))
+    return HeldStrainField(
+        field, Conditions(Measures.from_stations(field, first_station, held), dependents, field.size)
+    )
 
 
 class _Unheld(NamedTuple):

@@ -49,6 +49,10 @@ class Reactions(NamedTuple):
         xp = namespace(self.force)
         return Hung(self.station, -self.force, -self.moment - xp.cross(self.place, self.force))
 
+    def with_hung(self, hung: Hung | None) -> Hung:
+        """Demand of the supports and of bodies that are `hung` on the structure."""
+        return self.demanded if hung is None else hung.joined(self.demanded)
+
 
 def reactions_of(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, loads: Array | None, hung: Hung | None
@@ -62,16 +66,13 @@ def reactions_of(
     grip = structure.grip
     if grip is None:
         return None
-    free, rows = grip.free, grip.rows
+    free = grip.free
     exact = isinstance(free.field, StrainField) and not structure.linear
-    conditions = grip.conditions if exact else None
-    whole, rate, change = (values @ grip.basis.T for values in (q, qd, qdd))
-    if conditions is not None:
-        whole, rate, change = conditions.motion(q, qd, qdd)
-        rows = conditions.measures.rows(whole)
     if exact:
+        whole, rate, change = grip.conditions.motion(q, qd, qdd)
         demanded = grip.equations.whole(whole, rate, change, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)[0]
     else:
+        whole, rate, change = (values @ grip.basis.T for values in (q, qd, qdd))
         root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
         demanded = terms_of(free).demanded(whole, rate, change, root, loads)[0]
     xp = namespace(demanded)
@@ -82,13 +83,16 @@ def reactions_of(
         slopes, angles = at_stations.jacobians(whole)
         moment = hung.moment - xp.cross(place, hung.force)
         demanded = demanded + xp.einsum("tpai,tpa->ti", slopes, hung.force) + xp.einsum("tpai,tpa->ti", angles, moment)
-    held = np.array(grip.dependents, dtype=int)
-    turned_rows = xp.swapaxes(rows[..., held], -1, -2)
-    rigid = xp.linalg.solve(turned_rows, demanded[:, held, None])[..., 0] if len(held) else demanded[:, :0]
-    drawn, drawn_rate = (values @ grip.yielding.T for values in (whole, rate))
+    rigid = demanded[:, :0]
+    if grip.dependents:
+        held = np.array(grip.dependents)
+        rows = grip.conditions.measures.rows(whole) if exact else grip.rows
+        rigid = xp.linalg.solve(xp.swapaxes(rows[..., held], -1, -2), demanded[:, held, None])[..., 0]
     if exact and grip.sprung:
-        measures = grip.measures(grip.sprung)
-        drawn, drawn_rate = measures.values(whole), (measures.rows(whole) @ rate[..., None])[..., 0]
+        drawn, sprung_rows = grip.measures(grip.sprung).values_and_rows(whole)
+        drawn_rate = (sprung_rows @ rate[..., None])[..., 0]
+    else:
+        drawn, drawn_rate = whole @ grip.yielding.T, rate @ grip.yielding.T
     yielding = -grip.stiffness * drawn - grip.damping * drawn_rate
     return _by_station(grip, stations, whole, xp.concatenate([rigid, yielding], axis=1))
 
@@ -98,9 +102,7 @@ def demanded_with_supports(
 ) -> Hung | None:
     """Forces and moments that bodies `hung` on a structure demand of its stations, and its supports."""
     reactions = reactions_of(structure, base, q, qd, qdd, loads, hung)
-    if reactions is None:
-        return hung
-    return reactions.demanded if hung is None else hung.joined(reactions.demanded)
+    return hung if reactions is None else reactions.with_hung(hung)
 
 
 def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:

@@ -67,7 +67,7 @@ def section_forces(
     applied = None if structure.history is None else structure.history(time)
     reactions = reactions_of(structure, base, q, qd, qdd, applied, hung)
     if reactions is not None:
-        hung = reactions.demanded if hung is None else hung.joined(reactions.demanded)
+        hung = reactions.with_hung(hung)
     pieces = []
     for i in range(0, len(q), _BLOCK):
         part = slice(i, i + _BLOCK)

@@ -25,7 +25,8 @@ from gbeam.mechanics.equations.linear import (
 )
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
-from gbeam.mechanics.fields.held import Conditions, HeldStrainField, Measures
+from gbeam.mechanics.fields.held import Conditions, HeldStrainField
+from gbeam.mechanics.fields.measures import Measures
 from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
@@ -58,17 +59,11 @@ class Grip:
     def measures(self, which: tuple[tuple[int, int], ...]) -> Measures:
         """Displacements and rotations of the free structure's stations, each in a direction."""
         assert isinstance(self.free.field, StrainField)
-        sections = self.free.field.sections(slice(self.free.first_station, None))
-        stations = sorted({station for station, _ in which})
-        at = sections[np.array(stations, dtype=int)]
-        numbered = tuple((stations.index(station), direction) for station, direction in which)
-        return Measures(at, at.positions(np.zeros(at.size)), numbered)
+        return Measures.from_stations(self.free.field, self.free.first_station, which)
 
     @property
-    def conditions(self) -> Conditions | None:
-        """Conditions of the rigid supports, of an exact model; None without rigid ones."""
-        if not self.held:
-            return None
+    def conditions(self) -> Conditions:
+        """Conditions of the rigid supports, of an exact model."""
         return Conditions(self.measures(self.held), self.dependents, self.free.size)
 
     @property

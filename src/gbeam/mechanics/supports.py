@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.fields.adapted import Space, space
@@ -31,6 +31,11 @@ class Condition(NamedTuple):
     support: int
     at: float
     direction: str
+
+    @property
+    def number(self) -> int:
+        """Number of the direction, from 0 to 5."""
+        return DIRECTIONS.index(self.direction)
 
     @property
     def family(self) -> int:
@@ -158,16 +163,6 @@ def _new(motions: Space, family: int, plain: Family, statics: Floats) -> list[in
     return new
 
 
-def rows_of(conditions: list[Condition], slopes: Array, angles: Array) -> Array:
-    """Rows (m, n) of displacements and angles by the coordinates, from those of the supports' sections (m, 3, n)."""
-    xp = namespace(slopes, angles)
-    rows = list[Array]()
-    for k, condition in enumerate(conditions):
-        axis = DIRECTIONS.index(condition.direction)
-        rows.append(slopes[k, axis] if axis < 3 else angles[k, axis - 3])
-    return xp.stack(rows) if rows else np.zeros((0, slopes.shape[-1]))
-
-
 def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, shapes: int) -> tuple[int, ...]:
     """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest by unit energy.
 
@@ -189,20 +184,6 @@ def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, 
         scaled = scaled - np.outer(direction, direction @ scaled)
         dependents.append(chosen)
     return tuple(sorted(dependents))
-
-
-def null_basis(rows: Array, dependents: tuple[int, ...]) -> Array:
-    """Basis N (n, k) of coordinates that meet conditions with rows (m, n): those that are independent, and what the
-    `dependents` follow to.
-    """
-    xp, n = namespace(rows), rows.shape[1]
-    if not dependents:
-        return np.eye(n)
-    kept = np.setdiff1d(np.arange(n), dependents)
-    follow = -xp.linalg.solve(rows[:, np.array(dependents)], rows[:, kept])
-    place = np.zeros((n, len(dependents)))
-    place[np.array(dependents), np.arange(len(dependents))] = 1.0
-    return np.eye(n)[:, kept] + place @ follow
 
 
 def turned(value: Any, basis: Array) -> Any:

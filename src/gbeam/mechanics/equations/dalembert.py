@@ -6,14 +6,35 @@ steps, over many they are NumPy's.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.virtual_work import LoadWork
 
 
+class Demanding:
+    """Equations whose residual is what a motion demands along the coordinates."""
+
+    demanded: Callable[..., tuple[Array, Array, Array]]
+
+    def residual(
+        self,
+        q: Array,
+        qd: Array,
+        qdd: Array,
+        a_WO_B: Array,
+        w_WB_B: Array,
+        alpha_WB_B: Array,
+        load_values: Array | None = None,
+    ) -> Array:
+        """Residual (..., n) under a base's acceleration (specific force), angular rate and acceleration (..., 3)."""
+        return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
+
+
 @record
-class Complete:
+class Complete(Demanding):
     """The equations of a complete model; `damping` and `stiffness` (n, n) are constant."""
 
     inertia: Inertia
@@ -33,19 +54,6 @@ class Complete:
     def elastic(self, q: Array) -> Array:
         """Forces of the strain energy on the coordinates (..., n)."""
         return q @ self.stiffness
-
-    def residual(
-        self,
-        q: Array,
-        qd: Array,
-        qdd: Array,
-        a_WO_B: Array,
-        w_WB_B: Array,
-        alpha_WB_B: Array,
-        load_values: Array | None = None,
-    ) -> Array:
-        """Residual (..., n) under a base's acceleration (specific force), angular rate and acceleration (..., 3)."""
-        return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
 
     def demanded(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
-from gbeam.mechanics.equations.dalembert import Complete
+from gbeam.mechanics.equations.dalembert import Complete, Demanding
 from gbeam.mechanics.equations.inertia import Inertia, inertia_of
 from gbeam.mechanics.equations.linear import Geometric, geometric_of
-from gbeam.mechanics.fields.held import Conditions, HeldStrainField, Measures, projection
+from gbeam.mechanics.fields.held import Conditions, HeldStrainField, projection
+from gbeam.mechanics.fields.measures import Measures
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places
@@ -72,60 +73,48 @@ class Springs:
 
     def elastic(self, q: Array) -> Array:
         """Forces of the springs on the coordinates, (..., n)."""
-        efforts = self.stiffness * self.measures.values(q)
-        return (efforts[..., None, :] @ self.measures.rows(q))[..., 0, :]
+        values, rows = self.measures.values_and_rows(q)
+        return ((self.stiffness * values)[..., None, :] @ rows)[..., 0, :]
 
     def forces(self, q: Array, qd: Array) -> Array:
         """Forces of springs and dampers on the coordinates, (..., n)."""
-        rows = self.measures.rows(q)
-        efforts = self.stiffness * self.measures.values(q) + self.damping * (rows @ qd[..., None])[..., 0]
+        values, rows = self.measures.values_and_rows(q)
+        efforts = self.stiffness * values + self.damping * (rows @ qd[..., None])[..., 0]
         return (efforts[..., None, :] @ rows)[..., 0, :]
 
 
 @record
-class HeldComplete:
+class HeldComplete(Demanding):
     """The equations of a complete model under supports, from those of the `free` one: rigid ones are `conditions`."""
 
     free: Complete
-    conditions: Conditions | None
+    conditions: Conditions
     springs: Springs | None
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
-        return self.free.size - (0 if self.conditions is None else len(self.conditions.dependent))
+        return self.conditions.size - len(self.conditions.dependent)
 
     @property
-    def inertia(self) -> Inertia | HeldInertia:
+    def inertia(self) -> HeldInertia:
         """Inertia of the particles."""
-        return self.free.inertia if self.conditions is None else HeldInertia(self.free.inertia, self.conditions)
+        assert isinstance(self.free.inertia, Inertia)
+        return HeldInertia(self.free.inertia, self.conditions)
 
     def strain_energy(self, q: Array) -> Array:
         """U, J, at coordinates (..., n)."""
-        whole = q if self.conditions is None else self.conditions.lifted(q)
+        whole = self.conditions.lifted(q)
         energy = self.free.strain_energy(whole)
         return energy if self.springs is None else energy + self.springs.energy(whole)
 
     def elastic(self, q: Array) -> Array:
         """Forces of the strain energy on the coordinates (..., n)."""
-        whole = q if self.conditions is None else self.conditions.lifted(q)
+        whole = self.conditions.lifted(q)
         forces = self.free.elastic(whole)
         if self.springs is not None:
             forces = forces + self.springs.elastic(whole)
-        return forces if self.conditions is None else self.conditions.projected(whole, forces)
-
-    def residual(
-        self,
-        q: Array,
-        qd: Array,
-        qdd: Array,
-        a_WO_B: Array,
-        w_WB_B: Array,
-        alpha_WB_B: Array,
-        load_values: Array | None = None,
-    ) -> Array:
-        """Residual (..., n) under a base's acceleration (specific force), angular rate and acceleration (..., 3)."""
-        return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
+        return self.conditions.projected(whole, forces)
 
     def demanded(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
@@ -133,8 +122,6 @@ class HeldComplete:
         """Forces that a motion demands, less those of the loads: on the coordinates (..., n), and force, N, and moment,
         N m, at the root (..., 3) by root and supports together.
         """
-        if self.conditions is None:
-            return self.whole(q, qd, qdd, a, w, alpha, loads)
         whole, rate, change, basis = self.conditions.moving(q, qd, qdd)
         along, force, moment = self.whole(whole, rate, change, a, w, alpha, loads)
         return projection(basis, along), force, moment

@@ -36,31 +36,20 @@ def _by_direction(**values: float) -> dict[str, float]:
     return values
 
 
-def _directions(along: Any, about: Any) -> dict[str, tuple[Any, Any]]:
-    """Declarations of values by direction: types of those along axes and about them."""
+def _directions(name: str, what: str, along: Any, about: Any) -> Any:
+    """Table of values by direction: of types of those along axes, and about them."""
     fields = dict[str, tuple[Any, Any]]()
-    for name in DIRECTIONS:
-        turns = name.startswith("r")
-        words = f"{'about' if turns else 'along'} {name[-1]}"
-        fields[name] = ((about if turns else along) | None, Field(default=None, description=words))
-    return fields
+    for direction in DIRECTIONS:
+        turns = direction.startswith("r")
+        words = f"{'about' if turns else 'along'} {direction[-1]}"
+        fields[direction] = ((about if turns else along) | None, Field(default=None, description=words))
+    sentence = f"{what} of a support by direction, in axes of the root."
+    return table_of(_by_direction, name=name, without={"values"}, about=sentence, changed=fields)
 
 
 _BY_DIRECTION = {
-    "stiffness": table_of(
-        _by_direction,
-        name="SupportStiffness",
-        without={"values"},
-        about="Springs of a support by direction, in axes of the root.",
-        changed=_directions(Stiffness, RotationalStiffness),
-    ),
-    "damping": table_of(
-        _by_direction,
-        name="SupportDamping",
-        without={"values"},
-        about="Dampers of a support by direction, in axes of the root.",
-        changed=_directions(Damping, RotationalDamping),
-    ),
+    "stiffness": _directions("SupportStiffness", "Springs", Stiffness, RotationalStiffness),
+    "damping": _directions("SupportDamping", "Dampers", Damping, RotationalDamping),
 }
 Support = read_as(_Support, table_of(_Support, types=_BY_DIRECTION))
 Piece = read_as(_Piece, table_of(_Piece))

@@ -1,0 +1,185 @@
+"""Displacements and rotation vectors of sections of a strain field, with their derivatives: what supports measure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gbeam.arrays.namespace import Array, namespace
+from gbeam.arrays.tree import record, static
+from gbeam.mechanics.fields.strains import StrainField, Tangents
+from gbeam.mechanics.fields.vectors import NONE, Vector, absent, add, cross, joined, mapped, skew
+
+SMALL = 1e-2  # rad²: squares of smaller angles have series
+
+
+def components(which: Sequence[tuple[int, int]], moved: Array, turned: Array) -> Array:
+    """Components (..., m, ...) of vectors (..., k, 3, ...): each `which` of one place's displacement or rotation."""
+    xp, shape = namespace(moved, turned), moved.shape
+    if not which:
+        return xp.zeros((*shape[:-3], 0, shape[-1]))
+    return xp.stack([moved[..., k, d, :] if d < 3 else turned[..., k, d - 3, :] for k, d in which], axis=-2)
+
+
+@record
+class Measures:
+    """Displacements and rotation vectors of sections of a beam, of a straight one at rest: m of them, each of a
+    section, by its number among the `sections`, in a direction from 0 to 5, in axes of the root.
+    """
+
+    sections: StrainField
+    rest: Array
+    which: tuple[tuple[int, int], ...] = static()
+
+    @classmethod
+    def from_stations(cls, field: StrainField, first: int, which: Sequence[tuple[int, int]]) -> Measures:
+        """Measures of a field's stations, by their numbers behind its point `first`, each in a direction."""
+        stations = sorted({station for station, _ in which})
+        sections = field.sections(first + np.array(stations, dtype=int))
+        numbered = tuple((stations.index(station), direction) for station, direction in which)
+        return cls(sections, sections.positions(np.zeros(field.size)), numbered)
+
+    def values_and_rows(self, q: Array) -> tuple[Array, Array]:
+        """Measures (..., m), and their derivatives (..., m, n), at coordinates (..., n)."""
+        tangents = self.sections.tangents(q, points=True)
+        return self.values_at(tangents, q), self.rows_at(tangents, q)
+
+    def values(self, q: Array) -> Array:
+        """Measures (..., m) at coordinates (..., n)."""
+        return self.values_at(self.sections.tangents(q, points=True), q)
+
+    def rows(self, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
+        return self.rows_at(self.sections.tangents(q, points=True), q)
+
+    def values_at(self, tangents: Tangents, q: Array) -> Array:
+        """Measures (..., m) by the tangents at coordinates (..., n)."""
+        place = mapped(tangents.t, self.sections.cumulative)
+        moved = joined(namespace(q), place, (*q.shape[:-1], len(self.rest))) - self.rest
+        angle = moved
+        if any(direction > 2 for _, direction in self.which):
+            angle = rotation_vectors(self._rotation(tangents, q))
+        return components(self.which, moved[..., None], angle[..., None])[..., 0]
+
+    def rows_at(self, tangents: Tangents, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n): what unit loads on them do."""
+        xp, count = namespace(q), len(self.rest)
+        force = np.zeros((3, len(self.which), count))
+        turning = [(k, section, direction - 3) for k, (section, direction) in enumerate(self.which) if direction > 2]
+        for k, (section, direction) in enumerate(self.which):
+            if direction < 3:
+                force[direction, k, section] = 1.0
+        push: Any = tuple(force)
+        turn: Any = NONE
+        if turning:
+            vector_rate, _ = _vector_rates(rotation_vectors(self._rotation(tangents, q)))
+            moment = xp.zeros((*q.shape[:-1], 3, len(self.which), count))
+            for k, section, axis in turning:
+                unit = np.zeros((len(self.which), count))
+                unit[k, section] = 1.0
+                moment = moment + vector_rate[..., section, axis, :, None, None] * unit
+            turn = tuple(moment[..., axis, :, :] for axis in range(3))
+        alike = _for_each_row(tangents)
+        return self.sections.pulled(alike, *self.sections.nodal_forces(alike, push, turn))
+
+    def bent_rows(self, q: Array) -> Array:
+        """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
+        field, count = self.sections, len(self.rest)
+        tangents = field.tangents(q[..., None, :], points=True)  # components (..., 1, G)
+        fixed = Tangents(tangents.rotation, tangents.t)
+        columns = field.columns(fixed)
+        (place, angle), outboard = (columns.place[0], columns.angle[0]), field.node_cumulative.T
+        turned_points = joined(
+            np, field.columns_of_points(fixed, columns).angle[0], (*q.shape[:-1], q.shape[-1], count)
+        )
+        bent = list[Array]()
+        for section, direction in self.which:
+            reach = field.cumulative[section]
+            if direction < 3:
+                x, y, z = (reach if axis == direction else 0 for axis in range(3))
+                push: Vector = (x, y, z)
+                carried = mapped(cross(tangents.t, push), outboard)
+                moment = add(cross(carried, angle), mapped(cross(place, push), outboard))
+                bent.append(field.inward(tangents, cross(push, angle), moment))
+                continue
+            at = self._rotation(tangents, q[..., None, :])[..., 0, section, :, :]
+            vector_rate, by_vector = _vector_rates(rotation_vectors(at))
+            unit, along = (
+                vector_rate[..., direction - 3, :],
+                turned_points[..., section, :] @ np.swapaxes(vector_rate, -1, -2),
+            )
+            change = sum(along[..., k, None] * by_vector(np.eye(3)[k])[..., None, direction - 3, :] for k in range(3))
+            spin: Any = tuple(unit[..., k, None, None] * reach for k in range(3))
+            grown: Any = tuple(change[..., k, None] * reach for k in range(3))
+            bent.append(field.inward(tangents, NONE, add(cross(spin, angle), grown)))
+        return np.stack(bent, axis=-3)
+
+    def drift_at(self, tangents: Tangents, q: Array, qd: Array) -> Array:
+        """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
+        xp = namespace(q, qd)
+        moving = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=tangents)
+        shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.rest))
+        vectors = moving.tdd, moving.turn, moving.turnd
+        change, w, alpha = (joined(xp, mapped(each, self.sections.cumulative), shape) for each in vectors)
+        vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(tangents, q)))
+        phi_rate = (vector_rate @ w[..., None])[..., 0]
+        turned = vector_rate @ alpha[..., None] + by_vector(phi_rate) @ w[..., None]
+        return components(self.which, change[..., None], turned)[..., 0]
+
+    def _rotation(self, tangents: Tangents, q: Array) -> Array:
+        """Rotations (..., k, 3, 3) of the sections."""
+        shape = (*q.shape[:-1], len(self.rest))
+        return namespace(q).stack([joined(namespace(q), row, shape) for row in tangents.at_points], axis=-2)
+
+
+def _for_each_row(tangents: Tangents) -> Tangents:
+    """Tangents (..., 1, G) for forces (..., m, G) that act one row after the other."""
+
+    def wider(part: Any) -> Any:
+        return part if absent(part) else part[..., None, :]
+
+    x, y, z = (wider(part) for part in tangents.t)
+    rotation: Any = tuple(
+        tuple(part if isinstance(part, int) else wider(part) for part in row) for row in tangents.rotation
+    )
+    return Tangents(rotation, (x, y, z))
+
+
+def rotation_vectors(R: Array) -> Array:
+    """Rotation vectors (..., 3) of rotations (..., 3, 3) by less than half a turn."""
+    xp = namespace(R)
+    sine = 0.5 * xp.stack([R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], -1)
+    cosine = (R[..., 0, 0] + R[..., 1, 1] + R[..., 2, 2] - 1) / 2
+    square = (sine * sine).sum(axis=-1)
+    small = (square.real < SMALL**2) & (cosine.real > 0)
+    safe = xp.sqrt(xp.where(small, 1.0, square))
+    large = 2 * xp.arctan(safe / (1 + xp.where(small, 1.0, cosine))) / safe
+    series = 1 + square / 6 + 3 * square**2 / 40 + 5 * square**3 / 112
+    return xp.where(small, series, large)[..., None] * sine
+
+
+def _vector_rates(phi: Array) -> tuple[Array, Any]:
+    """Matrices B (..., 3, 3) with φ̇ = B ω of rotation vectors (..., 3), and the function of φ̇ that gives Ḃ.
+
+    B = 1 − ½ [φ]× + c [φ]×² with c = (1 − θ/2 cot θ/2)/θ²; ω is in the axes that do not turn.
+    """
+    xp = namespace(phi)
+    cross = skew(xp, phi)
+    square = (phi * phi).sum(axis=-1)[..., None, None]
+    small = square.real < SMALL
+    theta = xp.sqrt(xp.where(small, 1.0, square))
+    cotangent = 1 / xp.tan(theta / 2)
+    large = (1 - theta / 2 * cotangent) / theta**2
+    c = xp.where(small, 1 / 12 + square / 720 + square**2 / 30240 + square**3 / 1209600, large)
+    by_square = (theta / xp.sin(theta / 2) ** 2 / 2 + cotangent) / (4 * theta**3) - 1 / theta**4
+    slope = xp.where(small, 1 / 720 + square / 15120 + square**2 / 403200, by_square)
+
+    def change(phi_rate: Array) -> Array:
+        """Ḃ by φ̇ (..., 3)."""
+        rate = skew(xp, phi_rate)
+        growth = 2 * (phi * phi_rate).sum(axis=-1)[..., None, None] * slope
+        return -rate / 2 + c * (rate @ cross + cross @ rate) + growth * (cross @ cross)
+
+    return np.eye(3) - cross / 2 + c * (cross @ cross), change
