@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.mechanics.tree.frames import turned
+from gbeam.mechanics.fields.products import turned
 from gbeam.mechanics.tree.signals import measurements, signals_of
 from gbeam.mechanics.tree.steps import parameters_of_matrices, rotation_by_parameters, rotation_by_vector, vector_of
 from gbeam.numerics.series import STEP

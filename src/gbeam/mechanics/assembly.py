@@ -19,11 +19,11 @@ from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.fields.adapted import adapted_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Quadrature, closed_forms, polynomials, quadrature
-from gbeam.mechanics.fields.held import Conditions, HeldStrainField, null_basis
-from gbeam.mechanics.fields.measures import Measures, components
-from gbeam.mechanics.fields.projected import Field, HeldField, RootedField, projected_field
+from gbeam.mechanics.fields.held import Conditions, HeldField, null_basis
+from gbeam.mechanics.fields.measures import components, measures_of
+from gbeam.mechanics.fields.projected import Field, ReducedField, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
-from gbeam.mechanics.fields.strains import ExpandedField, StrainField, shaped_strains, strain_field
+from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
 from gbeam.mechanics.models import KINDS, Kind, Model
 from gbeam.mechanics.plausibility import implausible_beam, refuse_disparate, refuse_unknown
 from gbeam.mechanics.recovery import Source
@@ -143,7 +143,7 @@ def assembled(
     if not beam.held_places:
         return build(field, stiffness, None, ())
     first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
-    return hold(beam, field, stiffness, build, at, first_station, sum(counts), dependents)
+    return hold(beam, field, stiffness, build, at, first_station, sum(counts), dependents, KINDS[kind].order)
 
 
 def hold(
@@ -155,15 +155,19 @@ def hold(
     first_station: int,
     shapes: int,
     dependents: tuple[int, ...] | None,
+    order: int | None = None,
 ) -> Structure:
     """Hold a beam at its supports beyond the root, in `at` (s,) m, the stations.
 
     `field` and `stiffness` (n, n) are those without supports, of `shapes` shapes and then the root's springs; `build`
     makes a structure of a field, a stiffness, a damping, by default that of the modes, and indices that are taken.
-    Those of `dependents` are, or some that suit, as many as there are rigid conditions.
+    Those of `dependents` are, or some that suit, as many as there are rigid conditions. The places of the field are
+    polynomials that end at an `order`; None is without end.
     """
     conditions, yielding = rigid_conditions(beam), yielding_conditions(beam)
     every = [*conditions, *yielding]
+    # What bends shortens along x: of polynomials the conditions along x alone are of second order.
+    curved = order is None or (order > 1 and any(condition.direction == "x" for condition in every))
     slopes, angles = field.sections(slice(first_station, None)).jacobians(np.zeros(len(stiffness)))
     places = tuple((int(np.argmin(np.abs(at - condition.at))), condition.number) for condition in every)
     parted = places[: len(conditions)], places[len(conditions) :]
@@ -180,7 +184,7 @@ def hold(
     if dependents is None:
         dependents = chosen_dependents(conditions, held, np.diag(stiffness), shapes)
     basis = null_basis(held, dependents)
-    in_fewer = _held_field(field, basis, dependents, parted[0], first_station)
+    in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)
     supported = build(in_fewer, turned(stiffness, basis), None, dependents)
     c = supported.coefficients
     # The damping of modes acts where their elastic forces do.
@@ -188,20 +192,26 @@ def hold(
     felt = stiffness @ basis @ np.linalg.solve(c.stiffness, c.damping) @ kept.T
     supported = replace(supported, coefficients=c.damped(c.damping + turned(dashpots, basis)))
     free = build(field, stiffness, felt + dashpots, ())
-    return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted))
+    return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted, curved))
 
 
 def _held_field(
-    field: Field, basis: Array, dependents: tuple[int, ...], held: tuple[tuple[int, int], ...], first_station: int
+    field: Any,
+    basis: Array,
+    dependents: tuple[int, ...],
+    held: tuple[tuple[int, int], ...],
+    first_station: int,
+    *,
+    curved: bool,
 ) -> Field:
     """Field in the coordinates that rigid supports leave: they hold stations in directions, `held`."""
     if not held:
-        return field
-    if not isinstance(field, StrainField):
-        return HeldField(field, basis)
-    return HeldStrainField(
-        field, Conditions(Measures.from_stations(field, first_station, held), dependents, field.size)
-    )
+        kept: Field = field
+        return kept
+    if not curved:
+        return ReducedField(field, basis)
+    conditions = Conditions(measures_of(field, first_station, held), dependents, len(basis))
+    return HeldField(field, conditions)
 
 
 class _Unheld(NamedTuple):
@@ -273,7 +283,7 @@ def _structure(
     x = np.concatenate([rule.node, [m.at for m in beam.masses], loaded, at])
     return Structure(
         kind=kind,
-        linear=row.truncated,
+        linear=row.truncated and not isinstance(field, HeldField),
         hub_force=row.hub_force,
         counts=counts,
         length=beam.length,

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
-from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.structure import Grip, Structure
 from gbeam.mechanics.tree.body_terms import terms_of
 from gbeam.mechanics.tree.frames import Frame
@@ -67,8 +66,7 @@ def reactions_of(
     if grip is None:
         return None
     free = grip.free
-    exact = isinstance(free.field, StrainField) and not structure.linear
-    if exact:
+    if grip.curved:
         whole, rate, change = grip.conditions.motion(q, qd, qdd)
         demanded = grip.equations.whole(whole, rate, change, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)[0]
     else:
@@ -86,9 +84,9 @@ def reactions_of(
     rigid = demanded[:, :0]
     if grip.dependents:
         held = np.array(grip.dependents)
-        rows = grip.conditions.measures.rows(whole) if exact else grip.rows
+        rows = grip.conditions.measures.rows(whole) if grip.curved else grip.rows
         rigid = xp.linalg.solve(xp.swapaxes(rows[..., held], -1, -2), demanded[:, held, None])[..., 0]
-    if exact and grip.sprung:
+    if grip.curved and grip.sprung:
         drawn, sprung_rows = grip.measures(grip.sprung).values_and_rows(whole)
         drawn_rate = (sprung_rows @ rate[..., None])[..., 0]
     else:

@@ -19,6 +19,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf
+from gbeam.mechanics.fields.held import HeldField
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
 from gbeam.mechanics.reactions import Hung, Reactions, reactions_of
@@ -192,9 +193,10 @@ def sections(
 
 def _paths_outward(structure: Structure, count: int, q: Array, qd: Array, qdd: Array) -> tuple[Any, Any, Array]:
     """Paths (t, p, 3) of particles and the last `count` stations, and rotations (t, count, 3, 3) of the stations."""
-    particles, last = structure.particles, slice(-count, None)
+    particles: Any = structure.particles
+    last = slice(-count, None)
     stations: Any = structure.output[last]
-    if not isinstance(particles, Places):
+    if not isinstance(particles.free if isinstance(particles, HeldField) else particles, Places):
         paths, turned = particles.joined(stations).poses(q, qd, qdd, last)
         return tuple(path[:, :-count] for path in paths), tuple(path[:, last] for path in paths), turned
     xp = namespace(q, structure.mass)

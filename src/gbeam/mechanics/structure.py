@@ -23,10 +23,11 @@ from gbeam.mechanics.equations.linear import (
     damping_matrix,
     rest_modes,
 )
+from gbeam.mechanics.equations.moments import Moments
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
-from gbeam.mechanics.fields.held import Conditions, HeldStrainField
-from gbeam.mechanics.fields.measures import Measures
+from gbeam.mechanics.fields.held import Conditions, HeldField
+from gbeam.mechanics.fields.measures import Measures, measures_of
 from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
@@ -43,7 +44,8 @@ class Grip:
 
     Its coordinates q (m,) are those of the structure, `basis` (m, n) times them: conditions `rows` (k, m) times q are
     zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The
-    conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`.
+    conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`. They are
+    `curved` where the rows change with q, as those of a beam that shortens as it bends.
     """
 
     free: Structure
@@ -55,28 +57,33 @@ class Grip:
     dependents: tuple[int, ...] = static()
     held: tuple[tuple[int, int], ...] = static()
     sprung: tuple[tuple[int, int], ...] = static()
+    curved: bool = static(default=False)
 
     def measures(self, which: tuple[tuple[int, int], ...]) -> Measures:
         """Displacements and rotations of the free structure's stations, each in a direction."""
-        assert isinstance(self.free.field, StrainField)
-        return Measures.from_stations(self.free.field, self.free.first_station, which)
+        field: Any = self.free.field
+        return measures_of(field, self.free.first_station, which)
 
     @property
     def conditions(self) -> Conditions:
-        """Conditions of the rigid supports, of an exact model."""
+        """Conditions of the rigid supports."""
         return Conditions(self.measures(self.held), self.dependents, self.free.size)
 
     @property
     def equations(self) -> HeldComplete:
-        """Equations of an exact model under the supports."""
+        """Equations under the supports."""
         c, springs = self.free.coefficients, None
         stiffness, damping = c.stiffness, c.damping
         if self.sprung:
             springs = Springs(self.measures(self.sprung), self.stiffness, self.damping)
             stiffness = stiffness - self.yielding.T @ (self.stiffness[:, None] * self.yielding)
             damping = damping - self.yielding.T @ (self.damping[:, None] * self.yielding)
-        assert isinstance(self.free.inertia, Inertia)
-        return HeldComplete(Complete(self.free.inertia, damping, stiffness, self.free.work), self.conditions, springs)
+        if self.free.linear:
+            free: Any = Moments(replace(c, damping=damping, stiffness=stiffness))
+        else:
+            assert isinstance(self.free.inertia, Inertia)
+            free = Complete(self.free.inertia, damping, stiffness, self.free.work)
+        return HeldComplete(free, self.conditions, springs)
 
 
 @typed_methods
@@ -314,7 +321,7 @@ class Structure:
         """The equations of motion on a prescribed base."""
         if self.linear:
             return self.coefficients
-        if self.grip is not None and isinstance(self.grip.free.field, StrainField):
+        if self.grip is not None and self.grip.curved:
             return self.grip.equations
         assert isinstance(self.inertia, Inertia)
         return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
@@ -392,12 +399,12 @@ class Structure:
         return replace(self, coefficients=c, places=places, station_places=stations, turns=turns, recovery=None)
 
     @property
-    def particles(self) -> StrainField | SeriesField | HeldStrainField | Places:
+    def particles(self) -> StrainField | SeriesField | HeldField | Places:
         """Places of the particles: a field of strains, or polynomials."""
         return self.places if self.linear or self.inertia is None else self.inertia.field
 
     @property
-    def output(self) -> StrainField | SeriesField | HeldStrainField | Places:
+    def output(self) -> StrainField | SeriesField | HeldField | Places:
         """Places of the stations: a field of strains, or polynomials."""
         if self.field is None or isinstance(self.field, Expanded):
             return self.station_places

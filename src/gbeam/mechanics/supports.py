@@ -76,9 +76,7 @@ def plus(counts: Counts, more: Counts) -> Counts:
 
 
 def refuse_stretched(beam: Beam, kind: str) -> None:
-    """Raise InputError where supports stretch a beam that bends, and its kind of model leaves that out, or where the
-    beam's directions are coupled.
-    """
+    """Raise InputError where supports hold a beam whose directions are coupled, or a model that does not know them."""
     if beam.held_places and beam.coupled:
         fix = "leave supports out, or give the beam as a mesh, [solid]"
         raise InputError("supports", "hold a beam that its line or its matrices couple: not computed yet", fix)
@@ -86,9 +84,6 @@ def refuse_stretched(beam: Beam, kind: str) -> None:
         where, fix = f"supports[{condition.support}]", 'choose model.kind = "exact", with modes.axial = 1 or more'
         if kind == "fourth-order":
             raise InputError(where, "is not known to fourth-order models", fix)
-        if condition.direction == "x" and kind not in ("TLAM", "exact"):
-            problem = f"holds x, so that the beam stretches where it bends, which {kind} leaves out"
-            raise InputError(where, problem, fix)
 
 
 def refuse_shapeless(beam: Beam, counts: Counts) -> None:

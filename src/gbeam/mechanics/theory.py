@@ -97,13 +97,21 @@ class Theory(NamedTuple):
     @property
     def exact(self) -> Theory:
         """Both theories without truncation, for answers that are bent far."""
-        slender, thick = (replace(beam, kind="exact", linear=False) for beam in (self.slender, self.thick))
+        slender, thick = (_untruncated(beam) for beam in (self.slender, self.thick))
         return self._replace(slender=slender, thick=thick)
 
     def variants(self, plate: Floats) -> tuple[Structure, Structure]:
         """The thick beam, and the thick beam with the additional stiffness `plate` (n, n)."""
         c = self.thick.coefficients
         return self.thick, replace(self.thick, coefficients=replace(c, stiffness=c.stiffness + plate))
+
+
+def _untruncated(structure: Structure) -> Structure:
+    """The same structure, and what its supports hold, without truncation."""
+    grip = structure.grip
+    if grip is not None:
+        grip = replace(grip, free=_untruncated(grip.free))
+    return replace(structure, kind="exact", linear=False, grip=grip)
 
 
 @lru_cache(maxsize=4)  # keyed by values, as enrichment is

@@ -9,13 +9,13 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, namespace
 from gbeam.arrays.types import Floats
+from gbeam.mechanics.fields.products import turned
 from gbeam.mechanics.reactions import Hung
 from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.body_terms import stations_of
 from gbeam.mechanics.tree.equations import Inputs, State
-from gbeam.mechanics.tree.frames import turned
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_matrices
 from gbeam.mechanics.tree.system import System

@@ -16,10 +16,11 @@ from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Complex, Flags, Floats
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError
+from gbeam.mechanics.fields.products import turned_back
 from gbeam.mechanics.plausibility import elastic_bend
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import momentum
-from gbeam.mechanics.tree.frames import Frame, turned_back
+from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.mechanics.tree.signal_names import deforming, local_names

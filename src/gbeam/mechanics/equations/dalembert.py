@@ -55,6 +55,10 @@ class Complete(Demanding):
         """Forces of the strain energy on the coordinates (..., n)."""
         return q @ self.stiffness
 
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        """Mass kg, and its first moment (..., 3) kg m about the root, its axes."""
+        return self.inertia.mass_moment(q)
+
     def demanded(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
     ) -> tuple[Array, Array, Array]:

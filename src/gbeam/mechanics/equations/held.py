@@ -1,13 +1,16 @@
-"""The equations of an exact model that supports hold: those of the free one, along what the supports leave."""
+"""The equations of a model under supports whose conditions are curved: those of the free one, along what is left."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.dalembert import Complete, Demanding
 from gbeam.mechanics.equations.inertia import Inertia, inertia_of
-from gbeam.mechanics.equations.linear import Geometric, geometric_of
-from gbeam.mechanics.fields.held import Conditions, HeldStrainField, projection
+from gbeam.mechanics.equations.linear import Geometric, geometric_by, geometric_of
+from gbeam.mechanics.equations.moments import Moments
+from gbeam.mechanics.fields.held import Conditions, HeldField, projection
 from gbeam.mechanics.fields.measures import Measures
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
@@ -27,10 +30,9 @@ class HeldInertia:
         return self.free.mass
 
     @property
-    def field(self) -> HeldStrainField:
+    def field(self) -> HeldField:
         """Field of the particles."""
-        assert isinstance(self.free.field, StrainField)
-        return HeldStrainField(self.free.field, self.conditions)
+        return HeldField(self.free.field, self.conditions)
 
     def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Array, Array]:
         """Forces on the coordinates (..., n), resultant of m a, and moment about the root (..., 3)."""
@@ -38,14 +40,21 @@ class HeldInertia:
         along, force, moment = self.free.forces(whole, rate, change, a, w, alpha)
         return projection(basis, along), force, moment
 
-    def expand(self, q: Array) -> tuple[Places, Geometric | None]:
+    def expand(self, q: Array) -> tuple[Places, Geometric]:
         """Places about coordinates (n,), and geometric stiffness."""
-        places, bent = self.field.expand(q, self.mass)
-        return places, geometric_of(bent[0], bent[1:])
+        whole, held = self.conditions.lifted(q), np.array(self.conditions.dependent, dtype=int)
+        places, geometric = self.free.expand(whole)
+        if geometric is None:
+            geometric = geometric_by(self.mass, places)
+        phi = self.conditions.basis(whole)
+        weights = np.concatenate([self.mass[None], self.mass * places.r0.T])
+        by_held = np.einsum("wp,pad->wad", weights, places.first[..., held])
+        bent = np.einsum("wad,dij->waij", by_held, self.conditions.curvature(whole, phi))
+        return Places(places.r0, places.first @ phi), geometric.turned(phi) + geometric_of(bent[0], bent[1:])
 
 
 def held_inertia(
-    field: StrainField | SeriesField | HeldStrainField | Places,
+    field: StrainField | SeriesField | HeldField | Places,
     mass: Array,
     line: int = 0,
     nodes: int = 0,
@@ -53,7 +62,7 @@ def held_inertia(
     symmetric: bool = False,
 ) -> Inertia | HeldInertia:
     """Inertia of a field's particles, held or not, as :func:`gbeam.mechanics.equations.inertia.inertia_of` makes it."""
-    if isinstance(field, HeldStrainField):
+    if isinstance(field, HeldField):
         free = inertia_of(field.free, mass, line, nodes, symmetric=symmetric)
         return HeldInertia(free, field.conditions)
     return inertia_of(field, mass, line, nodes, symmetric=symmetric)
@@ -85,9 +94,9 @@ class Springs:
 
 @record
 class HeldComplete(Demanding):
-    """The equations of a complete model under supports, from those of the `free` one: rigid ones are `conditions`."""
+    """The equations of a model under supports, from those of the `free` one: rigid ones are `conditions`."""
 
-    free: Complete
+    free: Complete | Moments
     conditions: Conditions
     springs: Springs | None
 
@@ -96,11 +105,9 @@ class HeldComplete(Demanding):
         """Number of coordinates."""
         return self.conditions.size - len(self.conditions.dependent)
 
-    @property
-    def inertia(self) -> HeldInertia:
-        """Inertia of the particles."""
-        assert isinstance(self.free.inertia, Inertia)
-        return HeldInertia(self.free.inertia, self.conditions)
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        """Mass kg, and its first moment (..., 3) kg m about the root, its axes."""
+        return self.free.mass_moment(self.conditions.lifted(q))
 
     def strain_energy(self, q: Array) -> Array:
         """U, J, at coordinates (..., n)."""

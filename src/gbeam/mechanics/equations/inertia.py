@@ -275,6 +275,10 @@ class Inertia:
         steps = np.moveaxis(concatenated([array.imag for array in motion]), 0, -2)
         return out + 1j * np.moveaxis(steps @ slope, -2, 0)
 
+    def mass_moment(self, q: Array) -> tuple[Array, Array]:
+        """Mass kg, and its first moment (..., 3) kg m about the root, its axes."""
+        return self.mass.sum(), (self.mass[:, None] * self.field.positions(q)).sum(axis=-2)
+
     def expand(self, q: Array) -> tuple[Places, Geometric | None]:
         """Expand places about coordinates (n,), with geometric stiffness where only to first order (strain fields)."""
         if not isinstance(self.field, StrainField):

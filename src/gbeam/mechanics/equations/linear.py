@@ -39,6 +39,13 @@ class Geometric:
     al: Array
     ww: Array
 
+    def turned(self, basis: Array) -> Geometric:
+        """Geometric stiffness in coordinates p with q = basis p."""
+        return Geometric(*(basis.T @ part @ basis for part in (self.a, self.al, self.ww)))
+
+    def __add__(self, other: Geometric) -> Geometric:
+        return Geometric(self.a + other.a, self.al + other.al, self.ww + other.ww)
+
 
 @record
 class LoadTerms:
@@ -234,7 +241,7 @@ def coefficients(
     weighted = mass[:, None] * r0
     sums = xp.reshape(_summed(xp, mass[:, None], rows), (axes, n))
     moments = xp.moveaxis(xp.reshape(_summed(xp, weighted, rows), (axes, axes, n)), 0, 1)
-    extra = _weighted(xp, mass, weighted, places) if geometric is None else geometric
+    extra = geometric_by(mass, places) if geometric is None else geometric
     second = _summed(xp, weighted, r0)
     rigid = xp.stack(
         [
@@ -266,11 +273,12 @@ def inertial_forces(sums: Array, moments: Array) -> dict[str, Array]:
     return {"f_ww": -_spin_coefficients(xp, moments), "f_al": -_spin_up_coefficients(xp, moments), "f_a": -sums}
 
 
-def _weighted(xp: Any, mass: Array, weighted: Array, places: Places) -> Geometric:
-    """Geometric stiffness by the second derivatives H of places; `weighted` (k, 3) are m r0, kg m."""
+def geometric_by(mass: Array, places: Places) -> Geometric:
+    """Geometric stiffness by the second derivatives H of the places of particles (k,) kg."""
+    xp = namespace(mass, places.r0, places.first, places.second)
     points, axes, n, _ = places.second.shape
     flat = xp.reshape(places.second, (points, -1))
-    even, growing = _summed(xp, mass[:, None], flat), _summed(xp, weighted, flat)
+    even, growing = _summed(xp, mass[:, None], flat), _summed(xp, mass[:, None] * places.r0, flat)
     return geometric_of(xp.reshape(even, (axes, n, n)), xp.reshape(growing, (-1, axes, n, n)))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record
 from gbeam.mechanics.equations.linear import LoadTerms
-from gbeam.mechanics.fields.held import HeldStrainField
+from gbeam.mechanics.fields.held import HeldField
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Places, Polynomials
@@ -26,7 +26,7 @@ class LoadWork:
     weight (1, or m of a load per metre), and a flag, true if the load turns with the section.
     """
 
-    field: StrainField | SeriesField | HeldStrainField | Polynomials
+    field: StrainField | SeriesField | HeldField | Polynomials
     load: Array
     weight: Array
     follower: Array

@@ -1,4 +1,4 @@
-"""A field of strains in the coordinates that rigid supports leave.
+"""A field in the coordinates that rigid supports leave.
 
 A support holds components of a section's displacement and rotation vector: g(q) = 0 with rows A = ∂g/∂q. Of the
 coordinates q of the free beam the dependent ones d follow from the others, p, by Newton's method, and
@@ -19,9 +19,8 @@ import numpy as np
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.measures import Measures
-from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Places, Turns
-from gbeam.mechanics.fields.vectors import NONE, Vector
+from gbeam.mechanics.fields.vectors import Vector
 from gbeam.numerics.series import STEP
 
 CORRECTIONS, AS_LONG = 24, 4  # of Newton's method at most, and with the same slopes
@@ -76,10 +75,10 @@ class Conditions:
             return q - xp.linalg.solve(slope, self.measures.values(q)[..., None])[..., 0] @ onto
         q = _alike(np.real(p)) @ spread
         for k in range(CORRECTIONS):
-            tangents = self.measures.sections.tangents(q, points=True)
+            state = self.measures.state(q)
             if k % AS_LONG == 0:
-                slope = self.measures.rows_at(tangents, q)[..., held]
-            correction = np.linalg.solve(slope, self.measures.values_at(tangents, q)[..., None])[..., 0]
+                inverse = np.linalg.inv(self.measures.rows_at(state, q)[..., held])
+            correction = (inverse @ self.measures.values_at(state, q)[..., None])[..., 0]
             q = q - correction @ onto
             if not np.abs(correction).max(initial=0.0) > CLOSE * (1 + np.abs(q).max(initial=0.0)):
                 break
@@ -115,13 +114,13 @@ class Conditions:
             if stepped is not None:
                 return stepped
         q, held = self.lifted(p), np.array(self.dependent, dtype=int)
-        tangents = self.measures.sections.tangents(q, points=True)
-        rows = self.measures.rows_at(tangents, q)
-        phi = null_basis(rows, self.dependent)
-        qd, qdd = ((phi @ each[..., None])[..., 0] for each in (pd, pdd))
-        drift = self.measures.drift_at(tangents, q, qd)
-        fallen = namespace(rows, drift).linalg.solve(rows[..., held], drift[..., None])[..., 0]
-        return q, qd, qdd - fallen @ np.eye(self.size)[held], phi
+        state, unit = self.measures.state(q), np.eye(self.size)
+        rows, kept = self.measures.rows_at(state, q), unit[:, self.independent]
+        inverse = namespace(rows).linalg.inv(rows[..., held])
+        phi = kept - unit[:, held] @ (inverse @ (rows @ kept))
+        qd, qdd = ((phi @ rates[..., None])[..., 0] for rates in (pd, pdd))
+        fallen = (inverse @ self.measures.drift_at(state, q, qd)[..., None])[..., 0]
+        return q, qd, qdd - fallen @ unit[held], phi
 
     def _stepped(self, p: Array, pd: Array, pdd: Array) -> tuple[Array, Array, Array, Array] | None:
         """Motion as :meth:`moving` returns it, for complex steps of one real motion; else None."""
@@ -176,10 +175,10 @@ class Conditions:
 
 
 @record
-class HeldStrainField:
-    """A field of strains, `free`, in the coordinates that conditions leave."""
+class HeldField:
+    """A field, `free`, in the coordinates that conditions leave: of strains, or polynomials."""
 
-    free: StrainField
+    free: Any
     conditions: Conditions
 
     @property
@@ -192,19 +191,19 @@ class HeldStrainField:
         """Weights that integrate from the root to each point."""
         return self.free.cumulative
 
-    def __getitem__(self, at: Any) -> HeldStrainField:
+    def __getitem__(self, at: Any) -> HeldField:
         """The field at some of the points."""
         return replace(self, free=self.free[at])
 
-    def points(self, at: Any, offset: Array | None = None) -> HeldStrainField:
+    def points(self, at: Any, offset: Array | None = None) -> HeldField:
         """The field of points fixed to the sections `at`, `offset` (p, 3) m from the axis, section axes."""
         return replace(self, free=self.free.points(at, offset))
 
-    def sections(self, at: Any) -> HeldStrainField:
+    def sections(self, at: Any) -> HeldField:
         """The field of some sections."""
         return self.points(at)
 
-    def joined(self, axis: HeldStrainField) -> HeldStrainField:
+    def joined(self, axis: HeldField) -> HeldField:
         """Field of these points followed by the points of `axis`, a field of the same beam's axis."""
         return replace(self, free=self.free.joined(axis.free))
 
@@ -237,14 +236,15 @@ class HeldStrainField:
         """Rotations (..., p, 3, 3) of the points' sections, their angular velocities and accelerations, base axes."""
         return self.free.turning(*self.conditions.motion(q, qd, qdd))
 
-    def generalised_forces(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
-        """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
+    def generalised_forces(self, q: Array, push: Vector, *turn: Vector) -> Array:
+        """Generalised forces (..., n) of forces, and moments, on the points, base axes, by components (..., p)."""
         whole = self.conditions.lifted(q)
-        return self.conditions.projected(whole, self.free.generalised_forces(whole, push, turn))
+        return self.conditions.projected(whole, self.free.generalised_forces(whole, push, *turn))
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
-        return self.jacobians(q)[0]
+        whole = self.conditions.lifted(q)
+        return self.free.slopes(whole) @ self.conditions.basis(whole)[..., None, :, :]
 
     def jacobians(self, q: Array) -> tuple[Array, Array]:
         """Derivatives ∂r/∂q of the points and of their sections' angles by the coordinates, (..., p, 3, n) each."""
@@ -252,17 +252,6 @@ class HeldStrainField:
         phi = self.conditions.basis(whole)[..., None, :, :]
         slopes, angles = self.free.jacobians(whole)
         return slopes @ phi, angles @ phi
-
-    def expand(self, q: Array, mass: Array) -> tuple[Places, Array]:
-        """Places about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q², (4, 3, n, n)."""
-        whole = self.conditions.lifted(q)
-        places, bent = self.free.expand(whole, mass)
-        phi = self.conditions.basis(whole)
-        curved = self.conditions.curvature(whole, phi)
-        weights = np.concatenate([mass[None], mass * places.r0.T])
-        by_held = np.einsum("wp,pad->wad", weights, places.first[..., np.array(self.conditions.dependent, dtype=int)])
-        second = phi.T @ bent @ phi + np.einsum("wad,dij->waij", by_held, curved)
-        return Places(places.r0, places.first @ phi), second
 
     def curved(self, q: Array) -> tuple[Places, Array, Turns]:
         """Positions near coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""

@@ -1,4 +1,4 @@
-"""Displacements and rotation vectors of sections of a strain field, with their derivatives: what supports measure."""
+"""Displacements and rotation vectors of a beam's sections, with their derivatives: what supports measure."""
 
 from __future__ import annotations
 
@@ -9,24 +9,109 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
+from gbeam.mechanics.fields.products import times
 from gbeam.mechanics.fields.strains import StrainField, Tangents
+from gbeam.mechanics.fields.taylor import Expanded
 from gbeam.mechanics.fields.vectors import NONE, Vector, absent, add, cross, joined, mapped, skew
 
 SMALL = 1e-2  # rad²: squares of smaller angles have series
 
 
 def components(which: Sequence[tuple[int, int]], moved: Array, turned: Array) -> Array:
-    """Components (..., m, ...) of vectors (..., k, 3, ...): each `which` of one place's displacement or rotation."""
+    """Components (..., m, n) of vectors (..., k, 3, n): each `which` of one place's displacement or rotation."""
     xp, shape = namespace(moved, turned), moved.shape
     if not which:
         return xp.zeros((*shape[:-3], 0, shape[-1]))
     return xp.stack([moved[..., k, d, :] if d < 3 else turned[..., k, d - 3, :] for k, d in which], axis=-2)
 
 
-@record
 class Measures:
-    """Displacements and rotation vectors of sections of a beam, of a straight one at rest: m of them, each of a
-    section, by its number among the `sections`, in a direction from 0 to 5, in axes of the root.
+    """Measures of m displacements and rotations of sections, in axes of the root, by coordinates (..., n).
+
+    What several answers at the same coordinates share is their `state`.
+    """
+
+    def state(self, q: Array) -> Any:
+        """State of the sections at coordinates (..., n), for the answers below."""
+        raise NotImplementedError
+
+    def values_at(self, state: Any, q: Array) -> Array:
+        """Measures (..., m) by the state at coordinates (..., n)."""
+        raise NotImplementedError
+
+    def rows_at(self, state: Any, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
+        raise NotImplementedError
+
+    def drift_at(self, state: Any, q: Array, qd: Array) -> Array:
+        """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
+        raise NotImplementedError
+
+    def bent_rows(self, q: Array) -> Array:
+        """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
+        raise NotImplementedError
+
+    def values_and_rows(self, q: Array) -> tuple[Array, Array]:
+        """Measures (..., m), and their derivatives (..., m, n), at coordinates (..., n)."""
+        state = self.state(q)
+        return self.values_at(state, q), self.rows_at(state, q)
+
+    def values(self, q: Array) -> Array:
+        """Measures (..., m) at coordinates (..., n)."""
+        return self.values_at(self.state(q), q)
+
+    def rows(self, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
+        return self.rows_at(self.state(q), q)
+
+
+@record
+class PolynomialMeasures(Measures):
+    """Measures J q + ½ q H q of second degree: `first` J (m, n) and `second` H (m, n, n).
+
+    Displacements are those of the field's polynomials. Angles are of first degree: a bent section turns by its slope,
+    to third order but for the product with the stretch.
+    """
+
+    first: Array
+    second: Array
+
+    @classmethod
+    def from_stations(cls, field: Expanded, first: int, which: Sequence[tuple[int, int]]) -> PolynomialMeasures:
+        """Measures of a field's stations, by their numbers behind its point `first`, each in a direction."""
+        stations = [station for station, _ in which]
+        sections = field.sections(first + np.array(stations, dtype=int))
+        places, angles = sections.places, sections.rotation_vectors[0]
+        numbered = [(k, direction) for k, (_, direction) in enumerate(which)]
+        size, moved = places.first.shape[-1], places.second.reshape(len(which), 3, -1)
+        bent = components(numbered, moved, 0 * moved)
+        return cls(components(numbered, places.first, angles), bent.reshape(len(which), size, size))
+
+    def state(self, q: Array) -> Array:
+        """Products H q (..., m, n)."""
+        return times(self.second, q)
+
+    def values_at(self, state: Array, q: Array) -> Array:
+        """Measures (..., m) by the state at coordinates (..., n)."""
+        return ((self.first + state / 2) @ q[..., None])[..., 0]
+
+    def rows_at(self, state: Array, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
+        return self.first + state
+
+    def drift_at(self, state: Array, q: Array, qd: Array) -> Array:
+        """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
+        return (self.state(qd) @ qd[..., None])[..., 0]
+
+    def bent_rows(self, q: Array) -> Array:
+        """Second derivatives (m, n, n) of the measures by the coordinates, the same everywhere."""
+        return self.second
+
+
+@record
+class SectionMeasures(Measures):
+    """Measures of sections of a strain field, of a straight beam at rest: each of a section, by its number among the
+    `sections`, in a direction from 0 to 5.
     """
 
     sections: StrainField
@@ -34,36 +119,27 @@ class Measures:
     which: tuple[tuple[int, int], ...] = static()
 
     @classmethod
-    def from_stations(cls, field: StrainField, first: int, which: Sequence[tuple[int, int]]) -> Measures:
+    def from_stations(cls, field: StrainField, first: int, which: Sequence[tuple[int, int]]) -> SectionMeasures:
         """Measures of a field's stations, by their numbers behind its point `first`, each in a direction."""
         stations = sorted({station for station, _ in which})
         sections = field.sections(first + np.array(stations, dtype=int))
         numbered = tuple((stations.index(station), direction) for station, direction in which)
         return cls(sections, sections.positions(np.zeros(field.size)), numbered)
 
-    def values_and_rows(self, q: Array) -> tuple[Array, Array]:
-        """Measures (..., m), and their derivatives (..., m, n), at coordinates (..., n)."""
-        tangents = self.sections.tangents(q, points=True)
-        return self.values_at(tangents, q), self.rows_at(tangents, q)
+    def state(self, q: Array) -> Tangents:
+        """Tangents at the sections."""
+        return self.sections.tangents(q, points=True)
 
-    def values(self, q: Array) -> Array:
-        """Measures (..., m) at coordinates (..., n)."""
-        return self.values_at(self.sections.tangents(q, points=True), q)
-
-    def rows(self, q: Array) -> Array:
-        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
-        return self.rows_at(self.sections.tangents(q, points=True), q)
-
-    def values_at(self, tangents: Tangents, q: Array) -> Array:
+    def values_at(self, state: Tangents, q: Array) -> Array:
         """Measures (..., m) by the tangents at coordinates (..., n)."""
-        place = mapped(tangents.t, self.sections.cumulative)
+        place = mapped(state.t, self.sections.cumulative)
         moved = joined(namespace(q), place, (*q.shape[:-1], len(self.rest))) - self.rest
         angle = moved
         if any(direction > 2 for _, direction in self.which):
-            angle = rotation_vectors(self._rotation(tangents, q))
+            angle = rotation_vectors(self._rotation(state, q))
         return components(self.which, moved[..., None], angle[..., None])[..., 0]
 
-    def rows_at(self, tangents: Tangents, q: Array) -> Array:
+    def rows_at(self, state: Tangents, q: Array) -> Array:
         """Derivatives (..., m, n) of the measures by the coordinates (..., n): what unit loads on them do."""
         xp, count = namespace(q), len(self.rest)
         force = np.zeros((3, len(self.which), count))
@@ -74,14 +150,14 @@ class Measures:
         push: Any = tuple(force)
         turn: Any = NONE
         if turning:
-            vector_rate, _ = _vector_rates(rotation_vectors(self._rotation(tangents, q)))
+            vector_rate, _ = _vector_rates(rotation_vectors(self._rotation(state, q)))
             moment = xp.zeros((*q.shape[:-1], 3, len(self.which), count))
             for k, section, axis in turning:
                 unit = np.zeros((len(self.which), count))
                 unit[k, section] = 1.0
                 moment = moment + vector_rate[..., section, axis, :, None, None] * unit
             turn = tuple(moment[..., axis, :, :] for axis in range(3))
-        alike = _for_each_row(tangents)
+        alike = _for_each_row(state)
         return self.sections.pulled(alike, *self.sections.nodal_forces(alike, push, turn))
 
     def bent_rows(self, q: Array) -> Array:
@@ -116,14 +192,14 @@ class Measures:
             bent.append(field.inward(tangents, NONE, add(cross(spin, angle), grown)))
         return np.stack(bent, axis=-3)
 
-    def drift_at(self, tangents: Tangents, q: Array, qd: Array) -> Array:
+    def drift_at(self, state: Tangents, q: Array, qd: Array) -> Array:
         """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
         xp = namespace(q, qd)
-        moving = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=tangents)
+        moving = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=state)
         shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.rest))
         vectors = moving.tdd, moving.turn, moving.turnd
         change, w, alpha = (joined(xp, mapped(each, self.sections.cumulative), shape) for each in vectors)
-        vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(tangents, q)))
+        vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(state, q)))
         phi_rate = (vector_rate @ w[..., None])[..., 0]
         turned = vector_rate @ alpha[..., None] + by_vector(phi_rate) @ w[..., None]
         return components(self.which, change[..., None], turned)[..., 0]
@@ -183,3 +259,10 @@ def _vector_rates(phi: Array) -> tuple[Array, Any]:
         return -rate / 2 + c * (rate @ cross + cross @ rate) + growth * (cross @ cross)
 
     return np.eye(3) - cross / 2 + c * (cross @ cross), change
+
+
+def measures_of(field: StrainField | Expanded, first: int, which: Sequence[tuple[int, int]]) -> Measures:
+    """Measures of a field's stations, by their numbers behind its point `first`, each in a direction from 0 to 5."""
+    kind: Any = PolynomialMeasures if isinstance(field, Expanded) else SectionMeasures
+    measures: Measures = kind.from_stations(field, first, which)
+    return measures

@@ -9,7 +9,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.basis import Families, Quadrature
-from gbeam.mechanics.fields.held import HeldStrainField
+from gbeam.mechanics.fields.held import HeldField
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, StrainField
 from gbeam.mechanics.fields.taylor import EPSILON, Expanded, Places, Turns, exponential
@@ -171,7 +171,7 @@ class RootedField(Expanded):
 
 
 @record
-class HeldField(Expanded):
+class ReducedField(Expanded):
     """A field in fewer coordinates p, q = basis p, such as those that supports leave of an `inner` one's."""
 
     inner: Any  # one of those above
@@ -190,4 +190,4 @@ class HeldField(Expanded):
         return self.inner.turns().turned(self.basis)
 
 
-Field = StrainField | SeriesField | HeldStrainField | ExpandedField | ProjectedField | RootedField | HeldField
+Field = StrainField | SeriesField | HeldField | ExpandedField | ProjectedField | RootedField | ReducedField

@@ -159,6 +159,15 @@ class Polynomials:
         change = xp.einsum("...pabi,...i->...pab", (self.turns.slopes(q) + self.turns.first) / 2, q)
         return (xp.eye(3) if rest is None else rest) + change
 
+    @property
+    def rotation_vectors(self) -> tuple[Any, Any]:
+        """Derivatives (p, 3, n) and (p, 3, n, n) at rest of the sections' rotation vectors."""
+        xp = namespace(self.turns.first)
+        first, second = (
+            -0.5 * xp.einsum("abc,pbc...->pa...", EPSILON, part) for part in (self.turns.first, self.turns.second)
+        )
+        return first, second
+
     def generalised_forces(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
         """Generalised forces (..., n) of forces `push` and moments `turn` on the points, by components (..., p)."""
         straight = self.places.generalised_forces(q, push)
@@ -186,6 +195,10 @@ class Expanded:
 
     places: Callable[[], Places]
     turns: Callable[[], Turns]
+
+    def __getitem__(self, at: Any) -> Places:
+        """Places of some of the points."""
+        return self.points(at)
 
     def points(self, at: Any, offset: Any = None) -> Places:
         """Places of points fixed to the sections `at`, `offset` (p, 3) m from the axis, section axes."""

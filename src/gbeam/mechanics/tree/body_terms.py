@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from gbeam.arrays.namespace import is_traced
+from gbeam.arrays.namespace import Array, is_traced
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics.equations.moments import Moments, carried_inertia
+from gbeam.mechanics.fields.held import HeldField
+from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.taylor import Expanded
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import (
     Body,
-    FieldBody,
+    DeformingBody,
+    HeldPoints,
     LinearBody,
     Points,
     PolynomialPoints,
     StrainedPoints,
-    carried,
     polynomial_points,
 )
 from gbeam.mechanics.tree.rigid_body import RigidBody
@@ -56,15 +59,13 @@ def body_of(where: str, body: RigidBody | Structure, *, free: bool = False, hing
 def terms_of(body: Structure, *, free: bool = False) -> Body:
     """Terms of a structure in the equations on any root.
 
-    If it is `free`, a solid's terms include :func:`carried`, and the root of SFOAM does not feel the rates of its
-    coordinates: its printed equations lack these forces.
+    If it is `free`, a solid's terms include :func:`carried_inertia`, and the root of SFOAM does not feel the rates of
+    its coordinates: its printed equations lack these forces.
     """
     equations, stations = body.equations, np.array(list(stations_of(body).values()))
     points: Points
-    if isinstance(body.field, Expanded):
-        points = polynomial_points(body.field.sections(body.first_station + stations))
-    elif body.field is not None:
-        points = StrainedPoints(body.field[body.first_station + stations])
+    if body.field is not None:
+        points = _points(body.field, body.first_station + stations)
     else:
         places = body.station_places[stations]
         zeros = np.zeros((*places.first.shape, body.size))
@@ -73,6 +74,17 @@ def terms_of(body: Structure, *, free: bool = False) -> Body:
             turn = np.nan_to_num(body.turns[stations])
         points = PolynomialPoints(places.r0, places.first, second, turn, zeros)
     if isinstance(equations, Coefficients):
-        mean_inertia = carried(equations) if free and body.field is None else None
-        return LinearBody(equations, points, mean_inertia, body.hub_force or not free)
-    return FieldBody(equations, points)
+        mean_inertia = carried_inertia(equations) if free and body.field is None else None
+        return LinearBody(Moments(equations, mean_inertia, body.hub_force or not free), points)
+    return DeformingBody(equations, points)
+
+
+def _points(field: Field, at: Array) -> Points:
+    """Some points of a beam's field."""
+    if isinstance(field, HeldField):
+        free = _points(field.free, at)
+        assert not isinstance(free, HeldPoints)
+        return HeldPoints(free, field.conditions)
+    if isinstance(field, Expanded):
+        return polynomial_points(field.sections(at))
+    return StrainedPoints(field[at])

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, is_traced, namespace
-from gbeam.mechanics.tree.frames import cross
+from gbeam.mechanics.fields.products import cross
 from gbeam.mechanics.tree.steps import composed_parameters, parameter_rates, parameters_of_vector
 from gbeam.motion.profiles.profile import Profile
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import record, static
+from gbeam.mechanics.fields.products import cross, turned, turned_back
 from gbeam.mechanics.tree.bodies import Acting, Body, LinearBody, Rigid, momentum
 from gbeam.mechanics.tree.contraction import Roots
-from gbeam.mechanics.tree.frames import Frame, Wrench, cross, turned, turned_back
+from gbeam.mechanics.tree.frames import Frame, Wrench
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
 
 SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size

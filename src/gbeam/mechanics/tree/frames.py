@@ -15,23 +15,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
-
-_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # component after each, and the one before
-
-
-def cross(left: Array, right: Array) -> Array:
-    """Vector product of vectors (..., 3)."""
-    return left.take(_NEXT, -1) * right.take(_LAST, -1) - left.take(_LAST, -1) * right.take(_NEXT, -1)
-
-
-def turned(R: Array, v: Array) -> Array:
-    """R v of matrices (..., 3, 3) and vectors (..., 3)."""
-    return v @ R.T if R.ndim == 2 else (R @ v[..., None])[..., 0]
-
-
-def turned_back(R: Array, v: Array) -> Array:
-    """Rᵀ v."""
-    return v @ R if R.ndim == 2 else (v[..., None, :] @ R)[..., 0, :]
+from gbeam.mechanics.fields.products import cross, turned, turned_back
 
 
 def product(left: Array, right: Array) -> Array:

@@ -67,7 +67,7 @@ def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
 
 def _constant(body: Body) -> bool:
     """True if the coefficients of a body's equations do not change with its coordinates."""
-    return isinstance(body, LinearBody) and body.carried is None and body.coefficients.bending is None
+    return isinstance(body, LinearBody) and body.equations.carried is None and body.coefficients.bending is None
 
 
 def _rests(body: Body, on: int) -> bool:

@@ -12,8 +12,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, concatenated, namespace
 from gbeam.arrays.tree import record
+from gbeam.mechanics.fields.products import cross, turned_back
 from gbeam.mechanics.fields.taylor import EPSILON
-from gbeam.mechanics.tree.frames import Relative, Wrench, cross, product, turned_back
+from gbeam.mechanics.tree.frames import Relative, Wrench, product
 
 SMALL = 0.05  # rad²: below it functions of an angle's square are their Taylor series, to rounding
 
