@@ -48,7 +48,9 @@ class Samples:
     """Arguments with which the public functions can be called."""
 
     def __init__(self, folder: Path) -> None:
-        self.beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
+        self.beam = gb.Beam(
+            0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9, expansion=23e-6), damping_ratio=0.01
+        )
         self.structure = gb.assemble(self.beam, "FOAM", axial=0, y=1, z=1)
         pressed = replace(self.beam, loads=[gb.Load(0.3, force=(-1.0, 0.0, 0.0))])
         self.column = gb.assemble(pressed, "FOAM", axial=0, y=1, z=1)
@@ -93,6 +95,7 @@ class Samples:
                 {
                     "masses": [gb.PointMass(0.1, 0.1)],
                     "supports": [gb.Support(0.2, ["z"])],
+                    "temperature": gb.Temperature(300.0, 293.15),
                     "loads": [],
                     "root": gb.Root(),
                     "damping_ratio": 0.01,
@@ -156,7 +159,8 @@ class Samples:
             "MachineLimits": ((gb.AxisLimit(), gb.AxisLimit(), gb.AxisLimit()), {"inertia": 1.0, "power": 1.0}),
             "Material": (
                 (2700.0, 70e9),
-                {"yield_strength": 1e8, "fatigue_exponent": 5.0, "poissons_ratio": 0.3, "shear_modulus": 26e9},
+                {"yield_strength": 1e8, "fatigue_exponent": 5.0, "poissons_ratio": 0.3, "shear_modulus": 26e9,
+                 "expansion": 23e-6},
             ),
             "Model": (
                 ("exact", 1, 1, 1),
@@ -167,6 +171,7 @@ class Samples:
                 {},
             ),
             "Point": (("camera", 0.1), {}),
+            "Temperature": ((300.0, 293.15), {}),
             "Support": ((0.2,), {"holds": ["z"], "stiffness": {"ry": 5.0}, "damping": {"ry": 0.1}}),
             "PointMass": ((0.1, 0.1), {"inertia": (0.0, 0.0, 0.0), "offset": (0.0, 0.0, 0.0), "name": "body"}),
             "ResponseSettings": (

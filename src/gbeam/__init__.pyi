@@ -90,6 +90,7 @@ from .structure.material import Material as Material
 from .structure.material import Orthotropic as Orthotropic
 from .structure.section import Section as Section
 from .structure.supports import Support as Support
+from .structure.temperature import Temperature as Temperature
 from .studies.fit import fit as fit
 from .studies.optimise import optimise as optimise
 from .studies.sensitivity import sensitivity as sensitivity

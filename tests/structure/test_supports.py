@@ -123,6 +123,18 @@ def test_a_wide_vibration_between_pins_has_the_frequency_of_woinowsky_krieger(ki
     assert (len(crossed) - 1) / (crossed[-1] - crossed[0]) / lowest == pytest.approx(raised, rel=5e-3)
 
 
+@pytest.mark.parametrize("kind", ["FOAM", "CFOAM", "exact"])
+def test_a_load_bends_a_held_beam_as_an_acceleration_does(kind: str) -> None:
+    """Spread as the mass is; the reactions are those of the load."""
+    load = gb.Load(distributed=(0.0, 0.0, -1000.0 * LINE_MASS))
+    fixed = gb.Support(LENGTH, ["x", "z", "ry"])
+    loaded = gb.static(gb.assemble(beam(fixed, loads=[load]), kind, axial=2, z=4))
+    accelerated = gb.static(gb.assemble(beam(fixed), kind, axial=2, z=4), acceleration=(0.0, 0.0, 1000.0))
+    assert loaded.at("beam.span") == pytest.approx(accelerated.at("beam.span"), rel=1e-6, abs=1e-12)
+    assert loaded.loads is not None and accelerated.loads is not None
+    assert loaded.loads.support_force == pytest.approx(accelerated.loads.support_force, rel=1e-6, abs=1e-6)
+
+
 def test_a_spring_along_the_beam_stretches_it_less() -> None:
     """Of a strip between a pin and a spring: T = (δ/L) / (1/EA + 1/kL), by which FOAM is as stiff as exact."""
     spring = gb.Support(LENGTH, ["z"], stiffness={"x": 2e6})

@@ -47,6 +47,9 @@ KINDS: dict[str, Kind] = {
     "angular jerk": Kind("an angular jerk", "rad/s^3", "10 rad/s^3"),
     "power": Kind("a power", "W", "50 kW"),
     "frequency": Kind("a frequency", "1/s", "20 Hz"),
+    "temperature": Kind("a temperature", "K", "20 degC", "temperature rate"),
+    "temperature rate": Kind("a rate of temperature", "K/s", "0.1 K/s"),
+    "expansion": Kind("an expansion per kelvin", "1/K", "23e-6 1/K"),
     "ratio": Kind("a ratio", "", "1 %"),
     "amplitude ratio": Kind("a ratio of amplitudes", "", "3 dB"),
 }
@@ -94,6 +97,8 @@ _BY_KIND = {
     "pressure": "shear_moduli shear_modulus yield_strength youngs_moduli youngs_modulus",
     "stiffness": "translation_x translation_y translation_z",
     "rotational stiffness": "rotation_y rotation_z",
+    "temperature": "reference",
+    "expansion": "expansion",
     "torque": "torque",
     "time": "duration end hold residual_from sample smoothing span spin_down spin_up start step t time widths",
     "speed": "tip_velocity",

@@ -32,6 +32,7 @@ giga- = 1e9 = G-
 meter = [length] = m = metre
 gram = [mass] = g
 second = [time] = s = sec
+kelvin = [temperature] = K
 radian = [angle] = rad
 percent = 0.01 = %
 
@@ -59,6 +60,7 @@ m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W
 psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
 newton pascal inch foot pound percent
 """
+CELSIUS, ICE = ("degC", "°C"), 273.15  # names of the degree Celsius, and its zero in K
 BEGINNING = re.compile(r"\s*+(?:[+-]\s*+)?(\.?\d|inf|nan)", re.IGNORECASE)  # of a text that gives a number: 20 mm
 # A number and what follows it: its unit, or nothing.
 NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*+((?:.*\S)?)\s*", re.DOTALL)
@@ -104,6 +106,8 @@ def quantity(value: object, kind: str) -> float:
         try:
             if unit == "dB" and kind == "amplitude ratio":
                 number = math.inf if number > 6000 else 10.0 ** (number / 20)
+            elif unit in CELSIUS and kind == "temperature":
+                number += ICE
             else:
                 number *= _factor(unit, kind)
         except UnitError as error:

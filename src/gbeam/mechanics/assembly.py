@@ -14,7 +14,7 @@ from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
-from gbeam.mechanics.beam_terms import load_history, load_work, particles_of, sections_of, stiffness_of
+from gbeam.mechanics.beam_terms import heat_of, load_history, load_work, particles_of, sections_of, stiffness_of
 from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.fields.adapted import adapted_shapes
@@ -36,6 +36,7 @@ from gbeam.mechanics.supports import (
     refuse_shapeless,
     refuse_stretched,
     rigid_conditions,
+    static_counts,
     supported_shapes,
     turned,
     yielding_conditions,
@@ -112,7 +113,10 @@ def assemble(
     refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
     refuse_stretched(beam, model.kind)
     refuse_shapeless(beam, counts)
-    counts = plus(counts, plus(counts_by_family(rigid_conditions(beam)), counts_by_family(yielding_conditions(beam))))
+    if beam.temperature is not None and not counts[0]:
+        fix = "leave it out, or choose FOAM with modes.axial = 1" if not row.axial else "give modes.axial = 1 or more"
+        raise InputError("temperature", "stretches the beam, and the model has no shapes along it", fix)
+    counts = plus(counts, plus(counts_by_family(rigid_conditions(beam)), static_counts(beam)))
     families = families_of(beam, model.kind, counts, rule, model.shapes)
     return assembled(beam, model.kind, counts, rule, at, families, model.shapes, automatic=model.automatic)
 
@@ -133,24 +137,27 @@ def assembled(
     functions of its shapes are `families`; `automatic` marks their numbers. Rigid supports make as many coordinates
     dependent as they have conditions: those at the indices `dependents`, or some that suit.
     """
-    field, stiffness = _unheld(beam, kind, counts, rule, at, families)
+    field, stiffness, heat = _unheld(beam, kind, counts, rule, at, families)
 
-    def build(field: Field, stiffness: Array, damping: Array | None, taken: tuple[int, ...]) -> Structure:
+    def build(
+        field: Field, stiffness: Array, damping: Array | None, heat: Array | None, taken: tuple[int, ...]
+    ) -> Structure:
         """Structure in the coordinates that are not taken by supports."""
         left = counts_without(counts, taken)
-        return _structure(beam, kind, rule, at, shapes, left, field, stiffness, damping, automatic=automatic)
+        return _structure(beam, kind, rule, at, shapes, left, field, stiffness, damping, heat, automatic=automatic)
 
     if not beam.held_places:
-        return build(field, stiffness, None, ())
+        return build(field, stiffness, None, heat, ())
     first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
-    return hold(beam, field, stiffness, build, at, first_station, sum(counts), dependents, KINDS[kind].order)
+    return hold(beam, field, stiffness, heat, build, at, first_station, sum(counts), dependents, KINDS[kind].order)
 
 
 def hold(
     beam: Beam,
     field: Field,
     stiffness: Array,
-    build: Callable[[Any, Array, Array | None, tuple[int, ...]], Structure],
+    heat: Array | None,
+    build: Callable[[Any, Array, Array | None, Array | None, tuple[int, ...]], Structure],
     at: Array,
     first_station: int,
     shapes: int,
@@ -159,8 +166,9 @@ def hold(
 ) -> Structure:
     """Hold a beam at its supports beyond the root, in `at` (s,) m, the stations.
 
-    `field` and `stiffness` (n, n) are those without supports, of `shapes` shapes and then the root's springs; `build`
-    makes a structure of a field, a stiffness, a damping, by default that of the modes, and indices that are taken.
+    `field`, `stiffness` (n, n) and `heat` (n,) are those without supports, of `shapes` shapes and then the root's
+    springs; `build` makes a structure of a field, a stiffness, a damping, by default that of the modes, a heat and
+    indices that are taken.
     Those of `dependents` are, or some that suit, as many as there are rigid conditions. The places of the field are
     polynomials that end at an `order`; None is without end.
     """
@@ -185,13 +193,14 @@ def hold(
         dependents = chosen_dependents(conditions, held, np.diag(stiffness), shapes)
     basis = null_basis(held, dependents)
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)
-    supported = build(in_fewer, turned(stiffness, basis), None, dependents)
+    in_those = heat if curved or heat is None else heat @ basis
+    supported = build(in_fewer, turned(stiffness, basis), None, in_those, dependents)
     c = supported.coefficients
     # The damping of modes acts where their elastic forces do.
     kept = np.delete(np.eye(len(stiffness)), dependents, axis=1)
     felt = stiffness @ basis @ np.linalg.solve(c.stiffness, c.damping) @ kept.T
     supported = replace(supported, coefficients=c.damped(c.damping + turned(dashpots, basis)))
-    free = build(field, stiffness, felt + dashpots, ())
+    free = build(field, stiffness, felt + dashpots, heat, ())
     return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted, curved))
 
 
@@ -215,14 +224,15 @@ def _held_field(
 
 
 class _Unheld(NamedTuple):
-    """Field of a beam without supports beyond its root, and the stiffness of its shapes."""
+    """Field of a beam without supports beyond its root, the stiffness of its shapes, and what heats them."""
 
     field: Field
     stiffness: Array
+    heat: Array | None
 
 
 def _unheld(beam: Beam, kind: str, counts: Counts, rule: Quadrature, at: Array, families: Families) -> _Unheld:
-    """Field and stiffness of a beam by the functions of its shapes, without supports beyond its root."""
+    """Field, stiffness and heat of a beam by the functions of its shapes, without supports beyond its root."""
     row = KINDS[kind]
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, [m.at for m in beam.masses], loaded, at])
@@ -240,7 +250,7 @@ def _unheld(beam: Beam, kind: str, counts: Counts, rule: Quadrature, at: Array, 
         field = projected_field(rule, x, counts, families, foreshortening=row.order != 1)
         if springs:
             field = RootedField(field, x, *beam.root.directions(), linear=row.order == 1)
-    return _Unheld(field, stiffness_of(beam, rule, strains))
+    return _Unheld(field, stiffness_of(beam, rule, strains), heat_of(beam, rule, strains))
 
 
 def _structure(
@@ -253,10 +263,13 @@ def _structure(
     field: Field,
     stiffness: Array,
     damping: Array | None,
+    heat: Array | None,
     *,
     automatic: bool,
 ) -> Structure:
-    """Structure of a beam from its field, its stiffness and its damping (n, n), by default that of its modes."""
+    """Structure of a beam from its field, its stiffness, its damping (n, n), by default that of its modes, and the
+    forces of a rise of its temperature by 1 K.
+    """
     row = KINDS[kind]
     loaded = [load.at for load in beam.loads if load.at is not None]
     first_station, ratio = len(rule.node) + len(beam.masses) + len(loaded), beam.damping_ratio
@@ -267,8 +280,8 @@ def _structure(
     inertia = held_inertia(points, mass, line, len(rule.node), symmetric=beam.material is not None)
     history = load_history(beam)
     work, loaded_at = None, np.zeros(0, int)
-    if beam.loads:
-        work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(beam.masses))
+    if history is not None:
+        work, loaded_at = load_work(beam, field, rule, len(rule.node) + len(beam.masses), heat)
     rest = np.zeros(len(stiffness))
     places, geometric = inertia.expand(rest)
     c = coefficients(
@@ -276,7 +289,7 @@ def _structure(
         places,
         stiffness,
         geometric=geometric,
-        loads=None if work is None else work.linearise(len(beam.loads), rest),
+        loads=None if work is None or history is None else work.linearise(len(history.profiles), rest),
     )
     if damping is None:
         damping = damping_matrix(0.0 if ratio is None else ratio, c.mass, c.stiffness)
@@ -314,7 +327,7 @@ def families_of(beam: Beam, kind: str, counts: Counts, rule: Quadrature, shapes:
             return adapted_shapes(beam, rule, counts)
         return forms_of(beam, KINDS[kind], counts)
 
-    return supported_shapes(beam, rule, counts, base) if beam.held_places else base(counts)
+    return supported_shapes(beam, rule, counts, base)
 
 
 def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
@@ -339,8 +352,8 @@ def model_of(structure: Structure) -> Model:
     """Return the model of a structure of a beam."""
     assert structure.source is not None
     kind: Any = structure.kind
-    yielding = counts_by_family(yielding_conditions(structure.source.beam))  # whose static shapes come on top
-    axial, y, z, *others = (count - more for count, more in zip(structure.counts, yielding, strict=True))
+    statics = static_counts(structure.source.beam)  # which come on top
+    axial, y, z, *others = (count - more for count, more in zip(structure.counts, statics, strict=True))
     return Model(kind, axial, y, z, structure.source.shapes, structure.source.automatic, *others)
 
 

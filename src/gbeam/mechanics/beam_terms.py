@@ -75,20 +75,36 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
 
 
 def load_history(beam: Beam) -> LoadHistory | None:
-    """Components of the beam's loads over time, as profiles; None without loads."""
+    """Components of the beam's loads over time, as profiles, and the rise of its temperature behind them, as the first
+    component of one more; None without any.
+    """
 
     def profile(value: Any) -> Any:
         return value if callable(value) else constant(np.zeros(3) if value is None else value)
 
-    if not beam.loads:
+    profiles = [tuple(map(profile, load.acting)) for load in beam.loads]
+    if beam.temperature is not None:
+        profiles.append((beam.temperature.rise, profile(None)))
+    return LoadHistory(tuple(profiles)) if profiles else None
+
+
+def heat_of(beam: Beam, rule: Quadrature, strains: Array) -> Array | None:
+    """Forces (n,) by which a rise of the temperature by 1 K stretches shapes with strains (6, g, n): α ∫ EA ε dx.
+
+    None where the beam has no temperature.
+    """
+    if beam.temperature is None:
         return None
-    return LoadHistory(tuple(tuple(map(profile, load.acting)) for load in beam.loads))
+    axial, *_ = beam.rigidities(rule.node)
+    return beam.metal.expansion * (axial * rule.weight) @ strains[0]
 
 
-def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[LoadWork, Array]:
+def load_work(beam: Beam, field: Field, rule: Quadrature, first: int, heat: Array | None) -> tuple[LoadWork, Array]:
     """Work of the beam's loads, and the indices of the field's points where they act.
 
     A spread load acts at all quadrature nodes. A load at one place has its own point; these begin at index `first`.
+    `heat` (n,) are the forces of a rise of the temperature by 1 K, which acts along no point: it has the first one
+    with no weight.
     """
     station, load_index, weight = [], [], []
     for k, load in enumerate(beam.loads):
@@ -100,9 +116,15 @@ def load_work(beam: Beam, field: Field, rule: Quadrature, first: int) -> tuple[L
             weight.append(np.ones(1))
             first += 1
         load_index.append(np.full(len(station[-1]), k))
+    followers = [load.follower for load in beam.loads]
+    if heat is not None:
+        station.append(np.zeros(1, dtype=int))
+        load_index.append(np.full(1, len(beam.loads)))
+        weight.append(np.zeros(1))
+        followers.append(False)
     points, load_of_point = np.concatenate(station), np.concatenate(load_index)
-    follower = np.array([load.follower for load in beam.loads])[load_of_point]
-    return LoadWork(field.sections(points), load_of_point, np.concatenate(weight), follower), points
+    follower = np.array(followers)[load_of_point]
+    return LoadWork(field.sections(points), load_of_point, np.concatenate(weight), follower, heat), points
 
 
 def sections_of(

@@ -18,7 +18,7 @@ from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, S
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
 from gbeam.mechanics.models import KINDS
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.supports import counts_by_family, plus, rigid_conditions, unit_load, yielding_conditions
+from gbeam.mechanics.supports import counts_by_family, heat_load, plus, rigid_conditions, unit_load, yielding_conditions
 from gbeam.results.parts import Base
 from gbeam.structure.beam import Beam
 
@@ -243,6 +243,8 @@ def _loads(beam: Beam, space: Space, along: int) -> Array:
     for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
         if condition.family in space.families:
             columns.append(unit_load(space, condition))
+    if beam.temperature is not None and 0 in space.families:
+        columns.append(heat_load(space))
     for load in beam.loads:
         displacement, angle = (value, slope) if load.at is None else space.sensitivity(np.array([load.at]))
         weight = space.rule.weight if load.at is None else np.ones(1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -321,7 +322,7 @@ def _warn_of_missing_shapes(structure: Structure, base: Any, where: str, span: t
                 )
     if structure.history is None:
         return
-    values = _largest_loads(structure.history, span)
+    values = _largest_loads(structure, span)
     for axis in rigid_axes:
         # A moment about z bends along y, one about y along z.
         for part, column, unit in (("force", axis, "N"), ("moment", 6 - axis, "N m")):
@@ -334,7 +335,7 @@ def _twisting(structure: Structure, span: tuple[float, float]) -> Iterator[str]:
     """Warn of moments about the beam's axis if the model does not twist."""
     if structure.field is None or structure.history is None or structure.counts[3]:
         return
-    values = _largest_loads(structure.history, span)[:, 3:]
+    values = _largest_loads(structure, span)[:, 3:]
     for i in np.flatnonzero(values[:, 0] > NOTICED * values.max(initial=0.0)):
         yield (
             f"beam.loads[{i}].moment twists the beam about x with up to {values[i, 0]:.3g} N m, and "
@@ -359,8 +360,13 @@ def _warn_of_edgewise_bending(structure: Structure, motion: Any, base: Any, wher
         )
 
 
-def _largest_loads(history: Any, span: tuple[float, float]) -> Any:
-    """Largest sizes of the components of each load over a span of time, (loads, 6)."""
+def _largest_loads(structure: Structure, span: tuple[float, float]) -> Any:
+    """Largest sizes of the components of each load over a span of time, (loads, 6), without its temperature."""
+    history: Any = structure.history
+    if structure.work is not None and structure.work.heat is not None:
+        history = replace(history, profiles=history.profiles[:-1])
+    if not history.profiles:
+        return np.zeros((0, 6))
     corners = np.clip(history.corners((span[1] - span[0]) / 200), *span)
     samples = np.union1d(np.linspace(*span, 201), corners)
     return np.abs(history(samples)).max(axis=0)

@@ -61,6 +61,12 @@ def counts_by_family(conditions: list[Condition]) -> Counts:
     return axial, y, z, twist, shear_y, shear_z
 
 
+def static_counts(beam: Beam) -> Counts:
+    """Numbers of static shapes, by family, that no condition takes: of springs and dampers, and of the temperature."""
+    heated = int(beam.temperature is not None and not beam.coupled)
+    return plus(counts_by_family(yielding_conditions(beam)), (heated, 0, 0, 0, 0, 0))
+
+
 def counts_without(counts: Counts, taken: tuple[int, ...]) -> Counts:
     """Numbers of shapes without those whose indices are taken."""
     family = np.repeat(np.arange(6), counts)
@@ -97,18 +103,21 @@ def refuse_shapeless(beam: Beam, counts: Counts) -> None:
 
 
 def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callable[[Counts], Families]) -> Families:
-    """Families of `counts` shapes: those of `base`, and static deflections under unit loads at the supports.
+    """Families of `counts` shapes: those of `base`, and static deflections under unit loads at the supports and under
+    a rise of the temperature.
 
     Where the base contains a static deflection already, as polynomials do, it has one shape more instead.
     """
     conditions = [*rigid_conditions(beam), *yielding_conditions(beam)]
-    lacking = list(counts_by_family(conditions))
+    lacking = list(plus(counts_by_family(rigid_conditions(beam)), static_counts(beam)))
     statics: dict[int, Floats] = {}
     spaces: dict[int, Space] = {}
     for family, number in enumerate(lacking):
         if number:
             spaces[family] = space(beam, rule, family, counts)
-            loads = [unit_load(spaces[family], each) for each in conditions if each.family == family]
+            loads = [unit_load(spaces[family], condition) for condition in conditions if condition.family == family]
+            if len(loads) < number:
+                loads.append(heat_load(spaces[family]))
             statics[family] = np.stack(loads, axis=1) / spaces[family].stiffness[:, None]
     while True:
         plain = base(plus(counts, _negative(lacking)))
@@ -136,6 +145,14 @@ def unit_load(motions: Space, condition: Condition) -> Floats:
     """Generalised forces (n,) on strains of a unit load along a condition's direction."""
     value, angle = motions.sensitivity(np.array([condition.at]))
     return np.asarray(angle[0] if condition.direction.startswith("r") else value[0])
+
+
+def heat_load(motions: Space) -> Floats:
+    """Generalised forces (n,) on strains of a rise of the temperature, of unit strain where nothing holds the beam."""
+    forces = 0 * motions.stiffness
+    block = motions.block(0)
+    forces[block] = motions.stiffness[block]
+    return forces
 
 
 def _new(motions: Space, family: int, plain: Family, statics: Floats) -> list[int]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from gbeam.arrays.types import Floats
 from gbeam.mechanics.assembly import hold
-from gbeam.mechanics.beam_terms import load_work, particles_of, sections_of
+from gbeam.mechanics.beam_terms import heat_of, load_work, particles_of, sections_of
 from gbeam.mechanics.enrichment import Enrichment, enrichment, own_families
 from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import LoadTerms, coefficients, damping_matrix
@@ -198,7 +198,7 @@ class _Parts:
         loads = [inertia_of(coordinates), inertia(unit, still), inertia(np.cross(unit, place, axis=0), unit)]
         acting = [np.arange(len(self.points)) == k for k in self.hung]  # weights of the points, of each load
         if self.beam.loads:
-            work, points = self.work(self.field(coordinates))
+            work, points = self.work(self.field(coordinates), None)
             for load in range(len(self.beam.loads)):
                 acting.append(np.bincount(points, work.weight * (work.load == load), len(self.points)))
         for weights in acting:
@@ -232,9 +232,9 @@ class _Parts:
         nodal = np.einsum("gab,bgk->agk", matrices, strains[: 6 * nodes].reshape(6, nodes, count))
         return np.concatenate([nodal.reshape(6 * nodes, count), springs[6 * nodes :]])
 
-    def work(self, field: StrainField) -> tuple[LoadWork, Any]:
+    def work(self, field: StrainField, heat: Floats | None) -> tuple[LoadWork, Any]:
         """The loads on a field, and the points where they act."""
-        return load_work(self.beam, field, self.rule, self.first_load)
+        return load_work(self.beam, field, self.rule, self.first_load, heat)
 
     def theory(self, families: Families) -> Theory:
         """Models of both theories, slender and thick. Their shapes are the structure's own `families` and what the
@@ -311,30 +311,44 @@ class _Parts:
         springs = root.T @ (self.stiffness[-len(root) :, None] * root) if len(root) else 0.0
         return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
 
+    def heat(self, strains: Floats) -> Floats | None:
+        """Forces (n,) of a rise of the temperature by 1 K on shapes with the strains (m, n); None without any."""
+        nodes = len(self.rule.node)
+        return heat_of(self.beam, self.rule, strains[: 6 * nodes].reshape(6, nodes, -1))
+
     def model(self, strains: Floats, *, rotary: bool) -> Structure:
         """Linear structure whose shapes have the strains (m, n), with rotary inertia if `rotary`, held at its supports.
 
         Its coordinates are fewer where supports hold it rigidly.
         """
         field, stiffness, grip = self.field(strains), self.energy(strains), self.structure.grip
-        build = partial(self._build, rotary=rotary)
+        heat, build = self.heat(strains), partial(self._build, rotary=rotary)
         if grip is None:
-            return build(field, stiffness, None, ())
+            return build(field, stiffness, None, heat, ())
         stations, shapes = self.structure.stations, strains.shape[1]
-        return hold(self.beam, field, stiffness, build, stations, self.first_station, shapes, grip.dependents)
+        return hold(self.beam, field, stiffness, heat, build, stations, self.first_station, shapes, grip.dependents)
 
     def _build(
-        self, field: StrainField, stiffness: Floats, damping: Floats | None, taken: tuple[int, ...], *, rotary: bool
+        self,
+        field: StrainField,
+        stiffness: Floats,
+        damping: Floats | None,
+        heat: Floats | None,
+        taken: tuple[int, ...],
+        *,
+        rotary: bool,
     ) -> Structure:
-        """Linear structure of a field with its stiffness and damping (n, n), by default that of its modes."""
+        """Linear structure of a field with its stiffness, its damping (n, n), by default that of its modes, and the
+        forces of a rise of its temperature by 1 K.
+        """
         structure, beam, rest = self.structure, self.beam, np.zeros(len(stiffness))
         station, mass, offset = particles_of(beam, self.rule, rotary=rotary)
         inertia = held_inertia(field.points(station, offset), mass)
         places, geometric = inertia.expand(rest)
         work, loaded, loads = None, np.zeros(0, int), None
-        if beam.loads:
-            work, loaded = self.work(field)
-            loads = _load_terms(work, field, loaded, len(beam.loads))
+        if structure.history is not None:
+            work, loaded = self.work(field, heat)
+            loads = _load_terms(work, field, loaded, len(structure.history.profiles))
         c = coefficients(mass, places, stiffness, geometric=geometric, loads=loads)
         ratio: Any = beam.damping_ratio
         if isinstance(ratio, tuple):
@@ -365,8 +379,9 @@ class _Parts:
 
 def _load_terms(work: LoadWork, field: StrainField, at: Floats, count: int) -> LoadTerms:
     """Generalised forces of `count` loads on the points `at` to first order, summed over CHUNK points at a time."""
-    parts = []
+    parts = list[LoadTerms]()
     for chunk in np.array_split(np.arange(len(at)), -(-len(at) // CHUNK)):
-        acting = LoadWork(field[at[chunk]], work.load[chunk], work.weight[chunk], work.follower[chunk])
+        heat = None if parts else work.heat
+        acting = LoadWork(field[at[chunk]], work.load[chunk], work.weight[chunk], work.follower[chunk], heat)
         parts.append(acting.linearise(count, np.zeros(field.size)))
     return LoadTerms(sum(part.constant for part in parts), sum(part.slope for part in parts))

@@ -23,6 +23,7 @@ from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR, MATRICES
 from gbeam.structure.supports import Support, root_held
+from gbeam.structure.temperature import Temperature
 
 _ON_HULL = 33  # places on a line: chords of a quarter of a circle are off by 3e-4 of its radius
 # Springs of the root by the motions that they yield to: along x, and in the planes of y and z; what holds these.
@@ -82,6 +83,10 @@ class Beam(Value):
         "places that the base holds besides the root: [ { at, holds, stiffness, damping } ]; one at 0 says what the "
         "root holds, which is all where there is none",
     ] = ()
+    temperature: Annotated[
+        Temperature | None,
+        "temperature, the same in all of the beam: { value, reference }; it needs material.expansion",
+    ] = None
     rotary_inertia: Annotated[
         bool,
         "false for sections that do not resist turning by their own second moments, each a point on the axis: the "
@@ -127,6 +132,12 @@ class Beam(Value):
             raise InputError("material", "is given beside a section by matrices, which have it", "leave it out")
         if self.section.plate and self.metal.poissons_ratio is None:
             raise InputError("material.poissons_ratio", "is missing, and a plate bends by it", "give it, such as 0.3")
+        if self.temperature is not None:
+            if self.material is None:
+                raise InputError("temperature", "is given beside a section by matrices", "leave it out")
+            if self.material.expansion is None:
+                problem = "is missing, and the beam has a temperature"
+                raise InputError("material.expansion", problem, 'give it, such as "23e-6 1/K"')
         self._hold()
         ratios = self.damping_ratio
         if ratios is None or holds_jax(ratios):

@@ -56,6 +56,11 @@ class Material(Value):
         "left out",
     ] = None
 
+    expansion: Annotated[
+        Annotated[float, Quantity("expansion")] | None,
+        "strain by a kelvin; of bodies that have a temperature",
+    ] = None
+
     def __post_init__(self) -> None:
         ratio = self.poissons_ratio
         if ratio is not None and not is_jax(ratio) and not -1 < ratio <= 0.5:

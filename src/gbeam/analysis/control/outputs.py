@@ -111,8 +111,14 @@ class Outputs:
         drives, ground = self.drives, self.drives.ground
         efforts: Any = drives.efforts
         driven = [efforts[self.tree.unknowns[:1]]] if self.first_coordinate else [ground.a, ground.w, ground.alpha]
-        loads = [] if drives.loads[-1] is None else [np.ravel(drives.loads[-1])]
-        return np.concatenate([*driven, *loads])
+        loads = np.zeros(0) if drives.loads[-1] is None else np.ravel(drives.loads[-1])
+        return np.concatenate([*driven, loads[: len(loads) - self.idle]])
+
+    @property
+    def idle(self) -> int:
+        """Number of components of the loads that are no inputs: of a temperature, behind them, all but the first."""
+        work = self.structure.work
+        return 0 if work is None or work.heat is None else 5
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (t, p) of states (t, n) and inputs (t, m)."""
@@ -141,6 +147,7 @@ class Outputs:
             a, w, alpha, loads = np.split(u, [3, 6, 9], axis=-1)
             drives = replace(drives, ground=replace(ground, a=a, w=w, alpha=alpha))
         if drives.loads[-1] is not None:
+            loads = np.concatenate([loads, np.zeros((*loads.shape[:-1], self.idle))], axis=-1)
             of_body = loads.reshape(*u.shape[:-1], *np.shape(drives.loads[-1]))
             drives = replace(drives, loads=(*drives.loads[:-1], of_body))
         return drives
@@ -192,10 +199,12 @@ def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
         signals = [Signal(f"base_{named_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
         signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
     if structure.work is not None:
+        heated = structure.work.heat is not None
         counts = np.bincount(np.asarray(structure.work.load))
-        for k, per in enumerate("/m" if points > 1 else "" for points in counts):
+        for k, per in enumerate("/m" if points > 1 else "" for points in counts[: len(counts) - heated]):
             signals += [Signal(f"load_{k + 1}_force_{i}", f"N{per}") for i in "xyz"]
             signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{per}") for i in "xyz"]
+        signals += [Signal("temperature", "K")] * heated
     return tuple(signals)
 
 

@@ -24,12 +24,16 @@ from gbeam.motion.profiles.piecewise import constant
 class LoadWork:
     """Loads on a field, δW = Σ F·δr + M·δθ: of each of its points (p,) the index of the load that acts there, the
     weight (1, or m of a load per metre), and a flag, true if the load turns with the section.
+
+    The last load may be the rise of a temperature, K, in its first component: `heat` (m,) are the forces of 1 K on the
+    coordinates, or on those of the free beam where conditions hold it.
     """
 
     field: StrainField | SeriesField | HeldField | Polynomials
     load: Array
     weight: Array
     follower: Array
+    heat: Array | None = None
 
     def generalised(self, q: Array, values: Array) -> tuple[Array, Array, Array]:
         """Forces on the coordinates (..., n) of loads with components (..., loads, 6), and their resultant force N and
@@ -37,7 +41,16 @@ class LoadWork:
         """
         force, moment = self.forces(self.field.rotation(q), values)
         along = self.field.generalised_forces(q, split(force), split(moment))
+        if self.heat is not None:
+            along = along + values[..., -1, 0, None] * self._heating(q)
         return along, *self.resultant(self.field.positions(q), force, moment)
+
+    def _heating(self, q: Array) -> Array:
+        """Forces (n,) or (..., n) of a rise of the temperature by 1 K on the coordinates (..., n)."""
+        if not isinstance(self.field, HeldField):
+            return self.heat
+        conditions = self.field.conditions
+        return conditions.projected(conditions.lifted(q), self.heat)
 
     @staticmethod
     def resultant(r: Array, force: Array, moment: Array) -> tuple[Array, Array]:
@@ -67,7 +80,21 @@ class LoadWork:
     def linearise(self, count: int, q: Array) -> LoadTerms:
         """Generalised forces of the unit components of all `count` loads, to first order about coordinates (n,)."""
         places, rotation, turns = self.field.curved(q)
-        return self.terms(count, places, rotation, turns.first, turns.second)
+        terms = self.terms(count, places, rotation, turns.first, turns.second)
+        if self.heat is None:
+            return terms
+        n, xp = q.shape[-1], namespace(terms.constant, self.heat)
+        last = np.zeros((count, 6))
+        last[-1, 0] = 1.0
+        heating = xp.concatenate([np.zeros(6), self._heating(q)])
+        constant = terms.constant + last[..., None] * heating
+        if not isinstance(self.field, HeldField):
+            return LoadTerms(constant, terms.slope)
+        conditions = self.field.conditions
+        whole = conditions.lifted(q)
+        curved = conditions.curvature(whole, conditions.basis(whole))
+        bent = np.tensordot(self.heat[np.array(conditions.dependent, dtype=int)], curved, axes=1)
+        return LoadTerms(constant, terms.slope + last[..., None, None] * np.concatenate([np.zeros((6, n)), bent]))
 
     def terms(self, count: int, places: Places, rotation: Array, turn: Array, bend: Array) -> LoadTerms:
         """Constant part and slope of the loads' generalised forces about a shape, for each of `count` loads.

@@ -201,7 +201,7 @@ class HeldField:
 
     def sections(self, at: Any) -> HeldField:
         """The field of some sections."""
-        return self.points(at)
+        return replace(self, free=self.free.sections(at))
 
     def joined(self, axis: HeldField) -> HeldField:
         """Field of these points followed by the points of `axis`, a field of the same beam's axis."""
@@ -216,9 +216,9 @@ class HeldField:
         """Places of the points at coordinates (..., n), base axes, (..., p, 3) m."""
         return self.free.positions(self.conditions.lifted(q))
 
-    def rotation(self, q: Array, at: Any = slice(None)) -> Array:
+    def rotation(self, q: Array, *at: Any) -> Array:
         """Rotation matrices R_BS (..., p, 3, 3) of the sections `at` some points, of all unless given."""
-        return self.free.rotation(self.conditions.lifted(q), at)
+        return self.free.rotation(self.conditions.lifted(q), *at)
 
     def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""

@@ -23,12 +23,14 @@ from gbeam.structure.material import Material as _Material
 from gbeam.structure.section import Section as _Section
 from gbeam.structure.supports import DIRECTIONS
 from gbeam.structure.supports import Support as _Support
+from gbeam.structure.temperature import Temperature as _Temperature
 
 Material = read_as(_Material, table_of(_Material))
 PointMass = read_as(attachments.PointMass, table_of(attachments.PointMass))
 Point = read_as(attachments.Point, table_of(attachments.Point))
 Root = read_as(attachments.Root, table_of(attachments.Root))
 Load = read_as(attachments.Load, table_of(attachments.Load))
+Temperature = read_as(_Temperature, table_of(_Temperature))
 
 
 def _by_direction(**values: float) -> dict[str, float]:
