@@ -14,6 +14,7 @@ import {
 } from "three";
 import { BeamMesh } from "./beam";
 import { interpolate, locate, type Part, view } from "./data";
+import { drawn } from "./supports";
 import { SurfaceMesh } from "./surface";
 
 export type Colouring = "deflection" | "stress" | "none";
@@ -57,7 +58,7 @@ export class Body {
     if (part.beam) {
       this.mesh = new BeamMesh(part.beam, false);
       this.ghost = new BeamMesh(part.beam, true);
-      this.group.add(this.mesh.group, this.ghost.group);
+      this.group.add(this.mesh.group, this.ghost.group, drawn(part.beam));
     }
     if (part.surface) {
       this.surface = new SurfaceMesh(part.surface, numbers);

@@ -6,12 +6,21 @@ export interface Ref {
   shape: number[];
 }
 
+/** What holds a beam at a position, m: directions x, y, z, rx, ry, rz, with spaces between. */
+export interface Support {
+  at: number;
+  words: string;
+  rigid?: string;
+  yielding?: string;
+}
+
 export interface Shape {
   points: number[];
   width: number[];
   thickness: number[];
   round: boolean;
   bodies?: [number, number][];
+  supports?: Support[];
   /** Places of the points at rest and directions of the sections' y, of a beam that is not straight along x. */
   rest?: number[][];
   across?: number[][];
@@ -107,6 +116,8 @@ export interface Series {
   colour: number;
   dash?: boolean;
   points?: boolean;
+  /** Symbols of supports. */
+  supports?: boolean;
   /** Of a flight that others are compared with, and drawn above. */
   broad?: boolean;
 }

@@ -127,7 +127,7 @@ export class Plots {
         ...spec.series.map((each) => ({
           label: each.label,
           stroke: lineColour(each.colour, dark),
-          width: each.points ? 0 : (each.broad ? 4 : screen ? 1.4 : 1.1) * scale,
+          width: each.points || each.supports ? 0 : (each.broad ? 4 : screen ? 1.4 : 1.1) * scale,
           ...(each.dash ? { dash: [6 * scale, 4 * scale] } : {}),
           points: { show: each.points === true, size: 5 * scale, fill: lineColour(each.colour, dark) },
           spanGaps: true,
@@ -136,7 +136,11 @@ export class Plots {
       ],
       hooks: {
         drawClear: [(plot) => bands(plot, spec, dark)],
-        draw: [(plot) => levels(plot, spec, ink(dark), scale), (plot) => clock && this.mark(plot)],
+        draw: [
+          (plot) => levels(plot, spec, ink(dark), scale),
+          (plot) => supports(plot, spec, ink(dark), scale),
+          (plot) => clock && this.mark(plot),
+        ],
         setScale: [
           (plot, key) => {
             if (key !== "x" || !spec.time || !screen) return;
@@ -280,5 +284,26 @@ function levels(plot: uPlot, spec: Plot, ink: string, scale: number): void {
     ctx.stroke();
     ctx.fillText(label, left + 4 * dots, y - 2 * dots);
   }
+  ctx.restore();
+}
+
+/** Triangles that point to where a beam is held. */
+function supports(plot: uPlot, spec: Plot, ink: string, scale: number): void {
+  const { ctx } = plot;
+  const size = 9 * devicePixelRatio * scale;
+  ctx.save();
+  ctx.fillStyle = ink;
+  spec.series.forEach(({ supports: held }, k) => {
+    if (!held) return;
+    plot.data[k + 1]!.forEach((value, i) => {
+      if (value === null || value === undefined) return;
+      const [x, y] = [plot.valToPos(plot.data[0][i]!, "x", true), plot.valToPos(value, "y", true)];
+      ctx.beginPath();
+      ctx.moveTo(x, y);
+      ctx.lineTo(x - 0.6 * size, y + size);
+      ctx.lineTo(x + 0.6 * size, y + size);
+      ctx.fill();
+    });
+  });
   ctx.restore();
 }

@@ -242,6 +242,11 @@ export class Viewer {
       bar.style.borderColor = css(shade(0));
       legend.append(element("span", "", `${stress ? "stress" : "deflection"} 0`), bar, element("span", "", end));
     }
+    const supports = this.panels.flatMap((panel) => panel.motion.parts.flatMap((part) => part.beam?.supports ?? []));
+    if (supports.length) {
+      const each = new Set(supports.map(({ at, words }) => `at ${+(1e3 * at).toPrecision(4)} mm ${words}`));
+      legend.append(element("span", "", `supports, orange: ${[...each].join("; ")}`));
+    }
     if (largestLoad > 0) {
       const wanted = this.panels.some((panel) => panel.motion.reference);
       const rooted = this.panels.some((panel) => panel.motion.load && !panel.motion.reference);

@@ -27,6 +27,7 @@ from gbeam.results.description import (
     JointDescription,
     MassOnBeam,
 )
+from gbeam.structure.beam import Beam
 
 MODES = 6  # natural frequencies at most
 
@@ -131,11 +132,21 @@ def _body(system: System, name: str) -> BodyDescription:
         groups = np.repeat(FAMILIES, body.counts)
         described |= {
             "length": float(beam.length),
+            "supports": _supports(beam),
             "masses": tuple(MassOnBeam(mass.at, mass.mass) for mass in beam.masses),
             "counts": {way: n for way, n in zip(FAMILIES, counts, strict=True) if n or way in FAMILIES[:3]},
             "direction": tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
         }
     return BodyDescription(**described)
+
+
+def _supports(beam: Beam) -> dict[str, str]:
+    """Say what a beam's supports hold, by their positions."""
+    words = dict[str, str]()
+    for support in beam.supports:
+        place = f"{1e3 * support.at:.4g} mm"
+        words[place] = f"{words[place]}; {support.words}" if place in words else support.words
+    return words
 
 
 def _joint(joint: Joint) -> JointDescription:

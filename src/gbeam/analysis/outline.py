@@ -16,6 +16,7 @@ from gbeam.motion.protocol import Motion
 from gbeam.numerics.samples import attitude
 from gbeam.results.parts import Outline
 from gbeam.results.system import Assembly
+from gbeam.structure.beam import Beam
 
 
 def assembly_of(system: System) -> Assembly:
@@ -124,8 +125,21 @@ def outline_of(
         place=place,
         across=None if axes is None else axes[:, :, 1],
         **_carrier(motion),
+        **_supports(beam),
         attitude=_attitude(motion, time, sampled),
     )
+
+
+def _supports(beam: Beam) -> dict[str, Any]:
+    """Positions of a beam's supports and what they hold; nothing without supports."""
+    if not beam.supports:
+        return {}
+    return {
+        "supports": np.array([float(support.at) for support in beam.supports]),
+        "support_words": tuple(support.words for support in beam.supports),
+        "support_rigid": tuple(" ".join(support.rigid) for support in beam.supports),
+        "support_yielding": tuple(" ".join(support.yielding) for support in beam.supports),
+    }
 
 
 def _chosen(structure: Any, count: int) -> Any:

@@ -22,9 +22,10 @@ from gbeam.figures.description import (
     of_motion,
     scale_of,
     stretches,
+    support_lines,
 )
 from gbeam.results.equilibrium import Rest
-from gbeam.results.parts import Loads
+from gbeam.results.parts import Loads, Outline
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
@@ -54,12 +55,13 @@ def loads(response: Response, body: str, title: str = "") -> Figure:
     return Figure(title, subject, shaded, error_notes(response, body, carried), (response.outcome,))
 
 
-def load_panels_along(loads: Loads) -> tuple[Panel, ...]:
-    """Loads of the sections at one time, along the beam."""
+def load_panels_along(loads: Loads, outline: Outline | None = None) -> tuple[Panel, ...]:
+    """Loads of the sections at one time, along a beam, whose outline says what holds it."""
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
     panels = _load_panels(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
-    return tuple(replace(panel, x=f"position from the root, {unit}") for panel in panels)
+    held, x = support_lines(outline, scale), f"position from the root, {unit}"
+    return tuple(replace(panel, x=x, lines=(*panel.lines, *held)) for panel in panels)
 
 
 def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:

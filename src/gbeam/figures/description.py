@@ -14,6 +14,7 @@ from gbeam.printable import percent, raised
 from gbeam.results.accounting import Accounting
 from gbeam.results.declared import declarations
 from gbeam.results.machine import AxesResult
+from gbeam.results.parts import Outline
 from gbeam.results.result import Flags, Floats
 
 REFERENCE, GREY = 6, 7  # numbers of colours: what others are compared with, what was before
@@ -24,7 +25,7 @@ _SPAN = 1e-6  # s: shorter is rounding
 _DASHES: tuple[Dash, ...] = ("dotted", "dashed", "solid")  # of x, y and z
 
 Dash = Literal["solid", "dashed", "dotted"]
-Marks = Literal["", "joined", "dots", "rings"]
+Marks = Literal["", "joined", "dots", "rings", "supports"]
 Span = tuple[float, float, str]  # start, end s, reason
 
 
@@ -186,6 +187,24 @@ def imitation_look(index: int) -> dict[str, Any]:
 
 
 FLIGHT: dict[str, Any] = {"colour": 5, "broad": True}
+
+
+def support_lines(outline: Outline | None, scale: float, direction: str = "") -> tuple[Line, ...]:
+    """Symbols, along a beam's axis in a unit of `scale` a metre, of its supports: of all, or of those that hold a
+    direction.
+    """
+    held = () if outline is None else outline.holding(direction)
+    at = scale * np.array([place for place, _ in held])
+    return (Line(at, np.zeros(len(at)), "supports", colour=REFERENCE, marks="supports"),) if len(at) else ()
+
+
+def support_note(outline: Outline | None, name: str = "") -> tuple[str, ...]:
+    """Note on what the supports of a beam hold; none without supports."""
+    if outline is None or outline.supports is None:
+        return ()
+    scale, unit = scale_of("m", outline.points)
+    words = [f"at {scale * at:.4g} {unit} {held}" for at, held in outline.holding()]
+    return (f"supports{f' of {name}' if name else ''}: {'; '.join(words)}",)
 
 
 def limit_levels(allowed: float, values: Floats, label: str = "limit") -> tuple[Level, ...]:

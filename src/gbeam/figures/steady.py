@@ -30,6 +30,8 @@ from gbeam.figures.description import (
     of_motion,
     readable_scale,
     scale_of,
+    support_lines,
+    support_note,
     words_and_unit,
 )
 from gbeam.results.equilibrium import BodyRest, Critical, CriticalMap, Rest
@@ -62,6 +64,7 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
         moved = [_deflection(body) for body in bodies]
         axes = moving_axes(*(shape for _, shape in moved))
         notes += not_drawn(axes, *(shape for _, shape in moved))
+        notes += support_note(first.bodies[name].outline, name if len(bending) > 1 else "")
         x_scale, x_unit = scale_of("m", *(points for points, _ in moved))
         for i in axes:
             scale, unit = scale_of(words_and_unit(BodyRest, "displacement")[1], *(shape[:, i] for _, shape in moved))
@@ -69,6 +72,7 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
                 Line(x_scale * points, scale * shape[:, i], rest.motion, marks=_marks(points), **look)
                 for rest, (points, shape), look in zip(rests, moved, looks, strict=True)
             )
+            lines += support_lines(first.bodies[name].outline, x_scale, "xyz"[i])
             quantity = f"{name} {'xyz'[i]}" if len(bending) > 1 else "xyz"[i]
             x = f"position from the root, {x_unit}"
             legend = len(rests) > 1 and not panels
@@ -108,7 +112,9 @@ def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
     assert carried is not None
     owner = f" of {body}" if len(rest.bodies) > 1 else ""
     subject = of_motion(rest.motion, f"internal loads at rest{owner}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
-    return Figure(title, subject, load_panels_along(carried), error_notes(rest, body, carried))
+    outline = rest.bodies[body].outline
+    notes = *support_note(outline), *error_notes(rest, body, carried)
+    return Figure(title, subject, load_panels_along(carried, outline), notes)
 
 
 def modes(result: Modes, title: str = "") -> Figure:
@@ -123,7 +129,9 @@ def modes(result: Modes, title: str = "") -> Figure:
         panels.append(Panel("", x="share of the bodies in the kinetic energy", bars=bars, height=2.0))
     subject = ", ".join((f"modes about the equilibrium at {result.time:.4g} s", *_models(result)))
     errors = {"": math.nan if result.errors is None else result.errors.largest}
-    return Figure(title, of_motion(result.motion, subject), tuple(panels), error_note(errors))
+    several = len(result.bodies) > 1
+    notes = [note for name, body in result.bodies.items() for note in support_note(body.outline, name * several)]
+    return Figure(title, of_motion(result.motion, subject), tuple(panels), (*notes, *error_note(errors)))
 
 
 def _shapes(result: Modes, name: str) -> Panel:
@@ -141,6 +149,7 @@ def _shapes(result: Modes, name: str) -> Panel:
         if np.abs(moved.imag).max() > SMALL:
             lines.append(replace(real, y=moved.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))
     words = f"{name if len(result.bodies) > 1 else 'displacement'}, largest component 1"
+    lines += support_lines(body.outline, x_scale)
     return Panel(words, tuple(lines), x=f"position from the root, {x_unit}", height=2.0)
 
 

@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
+from matplotlib.markers import CARETUP
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from gbeam.figures.description import Bars, Figure, Line, Map, Panel, Span
@@ -105,6 +106,7 @@ _MARKS: dict[str, dict[str, Any]] = {
     "": {},
     "joined": {"marker": "o", "ms": 3.5},
     "dots": {"marker": ".", "ms": 3.5, "ls": ""},
+    "supports": {"marker": CARETUP, "ms": 9, "ls": "", "clip_on": False, "zorder": 3},
     "rings": {"marker": "o", "ms": 4, "mfc": "none", "mec": "black", "mew": 0.8, "ls": ""},
 }
 _SCREEN = 100  # dots per inch

@@ -83,6 +83,8 @@ def _facts(body: BodyDescription) -> Iterator[str]:
     shape_words = f": {count_words}" if count_words else ""
     coordinates = f"{body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}{shape_words}; "
     yield f"{coordinates if body.coordinates else ''}points {', '.join(body.points)}"
+    if body.supports:
+        yield f"supports {'; '.join(f'at {place} {held}' for place, held in body.supports.items())}"
     yield from (f"clamp {name} holds {nodes}" for name, nodes in body.clamps.items())
 
 

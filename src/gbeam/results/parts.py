@@ -73,6 +73,19 @@ class Outline(Part):
     R_HB: Floats = quantity(
         "", "rotation from base axes to hub axes", "hub_axis axis", name=None, default_factory=lambda: np.eye(3)
     )
+    supports: Floats | None = quantity(
+        "m", "position of what holds the beam, from the root", "holder", name="outline_support",
+        note="the root where a support says what it holds; None without supports", default=None,
+    )  # fmt: skip
+    support_words: tuple[str, ...] = quantity(
+        "", "directions that are held, and by what", "holder", name="outline_support_words", default=()
+    )
+    support_rigid: tuple[str, ...] = quantity(
+        "", "directions that are held rigidly", "holder", name="outline_support_rigid", default=()
+    )
+    support_yielding: tuple[str, ...] = quantity(
+        "", "directions that springs and dampers hold", "holder", name="outline_support_yielding", default=()
+    )
     attitude: Floats | None = quantity(
         "",
         "rotation (w, x, y, z) of the base axes since the first time, by the angular velocity given",
@@ -80,6 +93,15 @@ class Outline(Part):
         note="None without rates",
         default=None,
     )
+
+    def holding(self, direction: str = "") -> tuple[tuple[float, str], ...]:
+        """Positions, m, ascending, and words of the supports: of all, or of those that hold a direction."""
+        if self.supports is None:
+            return ()
+        held = zip(self.support_rigid, self.support_yielding, strict=True)
+        chosen = [not direction or direction in f"{rigid} {yielding}".split() for rigid, yielding in held]
+        places = zip(self.supports.tolist(), self.support_words, chosen, strict=True)
+        return tuple(sorted((at, words) for at, words, among in places if among))
 
     @declared("m", "position of the body from the root", "body")
     def body_position(self) -> Floats:

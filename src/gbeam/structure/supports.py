@@ -92,6 +92,13 @@ class Support(Value):
         """Directions that springs or dampers hold."""
         return tuple(direction for direction in DIRECTIONS if direction in self.stiffness or direction in self.damping)
 
+    @property
+    def words(self) -> str:
+        """Directions that are held, rigidly, by springs and by dampers: ``holds y z, spring ry``."""
+        kinds = {"holds": self.rigid, "spring": (*self.stiffness,), "damper": (*self.damping,)}
+        ordered = {kind: [each for each in DIRECTIONS if each in held] for kind, held in kinds.items()}
+        return ", ".join(f"{kind} {' '.join(held)}" for kind, held in ordered.items() if held)
+
 
 def root_held(support: Support) -> Root:
     """Root that a support at it makes: with springs where it gives way, and with none where nothing holds it."""

@@ -218,7 +218,9 @@ def _look(line: Line, quantity: str) -> dict[str, Any]:
         look["broad"] = True
     if line.dash != "solid" or line.colour == GREY:
         look["dash"] = True
-    if line.marks in ("dots", "rings") or len(line.x) == 1:
+    if line.marks == "supports":
+        look["supports"] = True
+    elif line.marks in ("dots", "rings") or len(line.x) == 1:
         look["points"] = True
     return look
 

@@ -23,6 +23,12 @@ MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
 GROUND = "ground_root_acceleration"
 _PLACED = ("place", "attitude", GROUND)  # of points, and of the ground
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
+SUPPORT = {
+    "at": "support",
+    "words": "support_words",
+    "rigid": "support_rigid",
+    "yielding": "support_yielding",
+}
 BASE = np.array([0.0, 0, 0, 1, 0, 0, 0, 0, 0, 0])  # frame of a body whose root is the origin and does not turn
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
@@ -105,6 +111,9 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
         else np.column_stack([get("body_position"), get("body_mass")]).tolist(),
         "displacement": numbers.add(get("outline")),
     }
+    if get("outline_support") is not None:
+        columns = {key: get(f"outline_{name}").tolist() for key, name in SUPPORT.items()}
+        header["supports"] = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     if get("outline_twist") is not None:
         header["twist"] = numbers.add(get("outline_twist"))
     stress = get("stress")
