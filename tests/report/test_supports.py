@@ -97,3 +97,33 @@ kind = "FOAM"
     described = gb.describe(gb.read_scenario(tmp_path / "strip.toml"))
     assert described.bodies["beam"].supports == {"600 mm": "holds y, spring z; holds rz"}
     assert "supports at 600 mm holds y, spring z; holds rz" in text(described)
+
+
+def test_reactions_are_drawn_over_time_with_their_peaks_and_errors() -> None:
+    """The pin has none, for it is the root; where a support gives no moment there is no panel of it."""
+    strip = gb.Beam(
+        LENGTH,
+        gb.Section.rectangle(0.02, 0.004),
+        gb.Material(2700, 70e9, poissons_ratio=0.3),
+        damping_ratio=0.01,
+        supports=[PIN, BEARING, gb.Support(LENGTH, ["z"])],
+    )
+    flight = gb.Flight(z=gb.trapezoid(50.0, jerk=2e3, start=0.02, hold=0.05))
+    response = gb.simulate(gb.assemble(strip, "FOAM", y=3, z=3), flight, duration=0.2)
+    described = figures_of(response)["supports"]()
+    assert [panel.y for panel in described.panels] == [
+        "force at 400 mm, N",
+        "moment at 400 mm, mN m",
+        "force at 600 mm, N",
+    ]
+    loads, peaks = response.loads, response.peaks.loads
+    assert loads is not None and loads.support_force is not None and peaks is not None
+    assert peaks.support_force is not None
+    (line,) = described.panels[2].lines
+    assert line.y.tolist() == loads.support_force[:, 1, 2].tolist()
+    largest = peaks.support_force.size
+    assert f"force at 600 mm up to {largest.value[1]:.4g} N at {largest.time[1]:.4g} s" in described.notes[0]
+    assert described.notes[-1].startswith("estimated error: loads ")
+    study = gb.Study("", {"first": response, "second": response})
+    words = [panel.y for panel in figures_of(study)["sizes"]().panels]
+    assert words[3:] == ["support force at 400 mm, N", "support moment at 400 mm, mN m", "support force at 600 mm, N"]

@@ -55,6 +55,33 @@ def loads(response: Response, body: str, title: str = "") -> Figure:
     return Figure(title, subject, shaded, error_notes(response, body, carried), (response.outcome,))
 
 
+def supports(response: Response, body: str, title: str = "") -> Figure:
+    """Describe over time the force and moment of every support on a body, with the peaks."""
+    described = response.bodies[body]
+    carried, peaks = described.loads, described.peaks.loads
+    assert carried is not None
+    panels, notes = list[Panel](), list[str]()
+    kinds = (("force", "N", carried.support_force), ("moment", "N m", carried.support_moment))
+    scale_along, unit_along = scale_of("m", carried.stations)
+    for k, at in enumerate([] if carried.supports is None else carried.supports):
+        for kind, si, histories in kinds:
+            values = np.zeros((0, 1, 3)) if histories is None else histories
+            if largest_size(values[:, k]) <= ROUNDING * largest_size(values):
+                continue
+            scale, unit = scale_of(si, values)
+            place = f"{kind} at {scale_along * at:.4g} {unit_along}"
+            panels.append(components(response.time, scale * values[:, k], "xyz", Panel(f"{place}, {unit}", zero=True)))
+            if peaks is not None and (largest := getattr(peaks, f"support_{kind}")) is not None:
+                size = largest.size
+                notes.append(f"{place} up to {scale * size.value[k]:.4g} {unit} at {size.time[k]:.4g} s")
+    spans = stretches(response.axes, response.time)
+    shaded = tuple(replace(panel, spans=spans) for panel in panels)
+    of_body = f" on {body}" if len(response.bodies) > 1 else ""
+    subject = of_motion(response.name, f"loads of the supports{of_body}, axes of the root")
+    errors = {name: error for name, error in _errors_of(response, body).items() if name in ("loads", "their peaks")}
+    return Figure(title, subject, shaded, ("; ".join(notes), *error_note(errors)), (response.outcome,))
+
+
 def load_panels_along(loads: Loads, outline: Outline | None = None) -> tuple[Panel, ...]:
     """Loads of the sections at one time, along a beam, whose outline says what holds it."""
     scale, unit = scale_of("m", loads.stations)
@@ -72,6 +99,14 @@ def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Ite
 
 def error_notes(result: Response | Rest, body: str, carried: Loads) -> tuple[str, ...]:
     """Notes on the estimated errors of a body's loads and, if it is known, stress."""
+    kinds = _errors_of(result, body)
+    if not np.isfinite(carried.stress).all():
+        kinds |= {"stress": math.nan, "its peaks": math.nan}
+    return error_note(kinds)
+
+
+def _errors_of(result: Response | Rest, body: str) -> dict[str, float]:
+    """Estimated errors of a body's loads and stress, by name."""
     errors = result.errors
     kinds = {"loads": errors.loads.total, "their peaks": errors.loads.peak}
     kinds |= {"stress": errors.stress.total, "its peaks": errors.stress.peak}
@@ -79,9 +114,7 @@ def error_notes(result: Response | Rest, body: str, carried: Loads) -> tuple[str
         by_body = errors.loads_by_beam, errors.load_peaks_by_beam, errors.stress_by_beam, errors.stress_peaks_by_beam
         errors_of_body = (dict(zip(errors.beams, values.tolist(), strict=False)) for values in by_body)
         kinds = {kind: values.get(body, math.nan) for kind, values in zip(kinds, errors_of_body, strict=True)}
-    if not np.isfinite(carried.stress).all():
-        kinds |= {"stress": math.nan, "its peaks": math.nan}
-    return error_note(kinds)
+    return kinds
 
 
 def _load_panels(

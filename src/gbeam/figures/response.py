@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,7 @@ from gbeam.results.study import ModelStudy, Study
 from gbeam.results.system import ENERGIES, Invariants, Loop
 
 Coordinates = Mapping[str, tuple[Floats, str, Floats]]  # of joints: history, unit and effort by name
+Size = tuple[str, str, Callable[[BodyResponse, Any], Floats]]  # words, unit and history of a body's loads
 COLOURS = 6
 DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
 
@@ -151,13 +153,14 @@ def _spans(responses: Mapping[str, Response], compared: Comparison) -> tuple[Spa
 
 
 def sizes(study: Study, body: str) -> Figure:
-    """Describe the sizes of stress, root force and root moment of a body, in all motions together."""
+    """Describe the sizes of stress and of force and moment of a body's root and supports, in all motions together."""
     loaded = {name: run for name, run in study.responses.items() if run.bodies[body].loads is not None}
-    kinds: tuple[tuple[str, str, Callable[[BodyResponse, Any], Floats]], ...] = (
+    kinds: list[Size] = [
         ("largest stress", "Pa", _largest_stress),
         ("root force", "N", lambda _, loads: np.linalg.norm(loads.section_force[:, 0], axis=1)),
         ("root moment", "N m", lambda _, loads: np.linalg.norm(loads.section_moment[:, 0], axis=1)),
-    )
+    ]
+    kinds += _on_supports([run.bodies[body].loads for run in loaded.values()])
     panels: list[Panel] = []
     for words, si, size in kinds:
         histories = {}
@@ -171,8 +174,27 @@ def sizes(study: Study, body: str) -> Figure:
         if lines:
             panels.append(Panel(f"{words}, {unit}", lines, zero=True, named=not panels))
     stress = " and largest stress anywhere" if len(panels) == len(kinds) else ""
+    held = " and the supports" if any(words.startswith("support") for words, *_ in kinds) else ""
     of_body = f" of {body}" if len(bodies(study)) > 1 else ""
-    return Figure(study.title, f"sizes of the loads at the root{of_body}{stress}", tuple(panels))
+    return Figure(study.title, f"sizes of the loads at the root{held}{of_body}{stress}", tuple(panels))
+
+
+def _on_supports(loads: Sequence[Any]) -> list[Size]:
+    """Sizes of force and moment of every support of one body, in runs of it, that are not zero in all of them."""
+    if not loads or loads[0].supports is None:
+        return []
+    scale, unit = scale_of("m", loads[0].stations)
+    sizes = list[Size]()
+    for k, at in enumerate(loads[0].supports):
+        for kind, si in (("force", "N"), ("moment", "N m")):
+            if any(getattr(carried, f"support_{kind}")[:, k].any() for carried in loads):
+                sizes.append((f"support {kind} at {scale * at:.4g} {unit}", si, partial(_on_support, k, kind)))
+    return sizes
+
+
+def _on_support(k: int, kind: str, _: BodyResponse, loads: Any) -> Floats:
+    """Size of the force or the moment of a support over time, (t,)."""
+    return np.asarray(np.linalg.norm(getattr(loads, f"support_{kind}")[:, k], axis=1))
 
 
 def _largest_stress(body: BodyResponse, loads: Any) -> Floats:
