@@ -313,3 +313,34 @@ def test_a_spring_follows_from_a_tap_test(tmp_path: Path) -> None:
     np.savetxt(taps, table, delimiter=",", header="mode,frequency", comments="")
     fit = gb.fit(gb.read_scenario(scenario), taps, [path])
     assert fit.before[0] == pytest.approx(5000.0) and fit.values[0] == pytest.approx(2000.0, rel=1e-4)
+
+
+def test_supports_and_loads_stand_where_a_named_point_is() -> None:
+    camera, joint = gb.PointMass(0.2, 0.1, name="camera"), gb.Point("joint", 0.4)
+    keys: dict[str, Any] = {"masses": [camera], "points": [joint]}
+    push = (0.0, 0.0, 1.0)
+    named = beam(gb.Support("joint", ["z"]), gb.Support("tip", ["z"]), loads=[gb.Load("camera", push)], **keys)
+    placed = beam(gb.Support(0.4, ["z"]), gb.Support(LENGTH, ["z"]), loads=[gb.Load(0.2, push)], **keys)
+    first, second = (gb.static(gb.assemble(each, "FOAM", z=4)) for each in (named, placed))
+    np.testing.assert_array_equal(first.q, second.q)
+    with pytest.raises(gb.InputError, match=r"supports\[0\].at is 'jiont'; did you mean 'joint'\? .* camera, tip"):
+        beam(gb.Support("jiont", ["z"]), **keys)
+
+
+NAMED = TAPPED.replace('at = "500 mm", stiffness = { z = "5 N/mm" }', 'at = "tip", holds = ["z"]').replace(
+    "[model]",
+    'loads = [ { at = "camera", force = { z = "1 N" } } ]\npoints = [ { name = "camera", at = "0.2 m" } ]\n[model]',
+)
+
+
+def test_a_file_keeps_the_names_of_places(tmp_path: Path) -> None:
+    """A support at the tip goes with it, and a load with its point."""
+    path = tmp_path / "strip.toml"
+    path.write_text(NAMED, encoding="utf-8")
+    case = gb.read_scenario(path, ["beam.length=500 mm", "beam.points[0].at=100 mm"])
+    source = case.system.flexible["beam"].source
+    assert source is not None
+    described = source.beam
+    assert [each.at for each in described.supports] == [0.5] and [each.at for each in described.loads] == [0.1]
+    with pytest.raises(gb.InputError, match="did you mean 'camera'"):
+        gb.read_scenario(path, ["beam.supports[0].at=camra"])

@@ -144,7 +144,7 @@ def _supports(beam: Beam) -> dict[str, str]:
     """Say what a beam's supports hold, by their positions."""
     words = dict[str, str]()
     for support in beam.supports:
-        place = f"{1e3 * support.at:.4g} mm"
+        place = f"{1e3 * support.place:.4g} mm"
         words[place] = f"{words[place]}; {support.words}" if place in words else support.words
     return words
 

@@ -135,7 +135,7 @@ def _supports(beam: Beam) -> dict[str, Any]:
     if not beam.supports:
         return {}
     return {
-        "supports": np.array([float(support.at) for support in beam.supports]),
+        "supports": np.array([support.place for support in beam.supports]),
         "support_words": tuple(support.words for support in beam.supports),
         "support_rigid": tuple(" ".join(support.rigid) for support in beam.supports),
         "support_yielding": tuple(" ".join(support.yielding) for support in beam.supports),

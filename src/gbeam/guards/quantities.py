@@ -7,6 +7,7 @@ words, ``at: Annotated[Position, "position from the root"]``. Checks and docstri
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
@@ -21,6 +22,7 @@ from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import LARGEST, SMALLEST
 from gbeam.guards.units import UnitError, quantity
 
+NAME_OF_POINT = r"[A-Za-z_]\w*"
 Sign = Literal["any", "positive", "zero or more"]
 
 # Kinds whose sizes are checked by the objects, which also suggest the unit that was meant: gbeam.guards.checks.
@@ -131,6 +133,18 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Place(Quantity):
+    """Annotation of a position along a beam, or of the name of a point that is there."""
+
+    def accepts(self, text: str) -> bool:
+        return re.fullmatch(NAME_OF_POINT, text) is not None
+
+    @property
+    def accepted(self) -> list[dict[str, Any]]:
+        return [{"type": "string", "description": "tip, or the name of a point or a mass", "examples": ["tip"]}]
+
+
+@dataclass(frozen=True)
 class Count:
     """Annotation of a whole number: its least and largest value."""
 
@@ -182,6 +196,7 @@ class Components:
 
 Length = Annotated[float, Quantity("length", "positive")]
 Position = Annotated[float, Quantity("length", "zero or more")]
+NamedPosition = Annotated[float | str, Place("length", "zero or more")]
 Offset = Annotated[float, Quantity("length")]
 Mass = Annotated[float, Quantity("mass", "zero or more")]
 MomentOfInertia = Annotated[float, Quantity("moment of inertia", "zero or more")]

@@ -339,7 +339,7 @@ def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
 
 def breaks_of(beam: Beam) -> list[float]:
     """Positions between which the section, the line and what supports bend are smooth, m."""
-    supports = [support.at for support in beam.held_places.values()]
+    supports = [support.place for support in beam.held_places.values()]
     return [*beam.section.stations, *(() if beam.line is None else beam.line.panels), *supports]
 
 
@@ -408,7 +408,7 @@ def _stations(beam: Beam, stations: ArrayLike) -> Array:
     named_positions = [
         position for name, position in beam.named_points.items() if name != TIP and position < beam.length
     ]
-    named_positions += [support.at for support in beam.held_places.values() if support.at < beam.length]
+    named_positions += [support.place for support in beam.held_places.values() if support.place < beam.length]
     if named_positions:
         positions = np.unique(np.concatenate([positions, named_positions]))
     return np.append(positions[positions < beam.length], beam.length)

@@ -186,7 +186,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     for k, family in enumerate(families):
         strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes) * (-1 if family == 2 else 1)
     move, turn = (np.pad(by_springs, ((0, 0), (strained, 0))) for by_springs in beam.root.directions())
-    loaded = [load.at for load in beam.loads if load.at is not None]
+    loaded = [load.place for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded])
     field = strain_field(rule, x, strains, move, turn, beam.line)
     at, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
@@ -297,7 +297,7 @@ class Enrichment:
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
         counts = plus(structure.counts, counts_by_family(rigid_conditions(beam)))
-        marks = [m.at for m in beam.masses] + [load.at for load in beam.loads if load.at is not None]
+        marks = [m.at for m in beam.masses] + [load.place for load in beam.loads if load.at is not None]
         breaks = [*breaks_of(beam), *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
         self.rule = quadrature(beam.length, max(PER_PANEL, -(-(NODES + 2 * max(counts)) // panels)), breaks)

@@ -46,13 +46,13 @@ class Condition(NamedTuple):
 def rigid_conditions(beam: Beam) -> list[Condition]:
     """Conditions of a beam's rigid supports beyond its root."""
     held = beam.held_places.items()
-    return [Condition(i, support.at, direction) for i, support in held for direction in support.rigid]
+    return [Condition(i, support.place, direction) for i, support in held for direction in support.rigid]
 
 
 def yielding_conditions(beam: Beam) -> list[Condition]:
     """Directions in which springs and dampers hold a beam beyond its root."""
     held = beam.held_places.items()
-    return [Condition(i, support.at, direction) for i, support in held for direction in support.yielding]
+    return [Condition(i, support.place, direction) for i, support in held for direction in support.yielding]
 
 
 def counts_by_family(conditions: list[Condition]) -> Counts:

@@ -15,7 +15,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array
 from gbeam.guards.limits import NAME
-from gbeam.guards.quantities import Components, Mass, Position, PositionVector, Quantity
+from gbeam.guards.quantities import NAME_OF_POINT, Components, Mass, NamedPosition, Position, PositionVector, Quantity
 from gbeam.motion.profiles.profile import Profile
 from gbeam.printable import shortened
 
@@ -34,14 +34,13 @@ MOMENT = Components(
 )
 _Spring = Annotated[float, Quantity("stiffness", "zero or more")]
 _Turning = Annotated[float, Quantity("rotational stiffness", "zero or more")]
-_NAME = re.compile(r"[A-Za-z_]\w*")
 # Of quantities that stand where a point's name may stand.
 _TAKEN = (TIP, "root_force", "root_moment", "hub", "strain", "size")
 
 
 def checked_name(name: str) -> None:
     """Raise InputError unless a name is one word, and not that of a quantity."""
-    if not _NAME.fullmatch(name) or name in _TAKEN:
+    if not re.fullmatch(NAME_OF_POINT, name) or name in _TAKEN:
         fix = f"give letters, digits and underscores, and none of {', '.join(_TAKEN)}"
         raise InputError("name", f"is {shortened(repr(name))}", fix)
     if len(name) > NAME:
@@ -178,7 +177,10 @@ class Load(Value):
     -12.04 mm
     """
 
-    at: Annotated[Position | None, "position of force and moment from the root, along the beam"] = None
+    at: Annotated[
+        NamedPosition | None,
+        "position of force and moment from the root, along the beam; or a point's name, such as tip",
+    ] = None
     force: Annotated[Numbers | Profile | None, Quantity("force"), FORCE, "force at the station: { x, y, z }"] = None
     moment: Annotated[Numbers | Profile | None, Quantity("torque"), MOMENT, "moment at the station: { x, y, z }"] = None
     distributed: Annotated[
@@ -217,6 +219,12 @@ class Load(Value):
             components = array(name, value)
             if components.shape != (3,):
                 raise InputError(name, f"is {value!r}", "give three finite components, along x, y and z, or a profile")
+
+    @property
+    def place(self) -> float:
+        """Position from the root, m: where it names a point, of one that stands on a beam."""
+        assert self.at is not None and not isinstance(self.at, str)
+        return self.at
 
     @property
     def acting(self) -> tuple[Any, Any]:

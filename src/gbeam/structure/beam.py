@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Annotated, Any
 
@@ -15,7 +15,7 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import damping_ratios
+from gbeam.guards.checks import choice, damping_ratios
 from gbeam.guards.quantities import OneOrSome, Quantity
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.line import Line
@@ -104,11 +104,11 @@ class Beam(Value):
         object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "points", tuple(self.points))
         object.__setattr__(self, "supports", tuple(self.supports))
+        self._place_by_names()
         positions = [(f"masses[{i}].at", mass.at) for i, mass in enumerate(self.masses)]
-        positions += [(f"loads[{i}].at", load.at) for i, load in enumerate(self.loads) if load.at is not None]
+        positions += [(f"loads[{i}].at", load.place) for i, load in enumerate(self.loads) if load.at is not None]
         positions += [(f"points[{i}].at", point.at) for i, point in enumerate(self.points)]
-        positions += [(f"supports[{i}].at", support.at) for i, support in enumerate(self.supports)]
-        self._refuse_names_twice()
+        positions += [(f"supports[{i}].at", support.place) for i, support in enumerate(self.supports)]
         if self.line is not None and not abs(self.line.length - self.length) <= 1e-9 * self.line.length:
             fix = f"give length = {self.line.length!r}"
             raise InputError("length", f"is {self.length:g} m, and the line is {self.line.length:g} m long", fix)
@@ -152,7 +152,7 @@ class Beam(Value):
         """Let a support at 0 say what the root holds. Raise InputError if two say it, or something is free to move as
         a rigid body.
         """
-        at_root = [i for i, support in enumerate(self.supports) if support.at == 0]
+        at_root = [i for i, support in enumerate(self.supports) if support.place == 0]
         if len(at_root) > 1:
             raise InputError(f"supports[{at_root[1]}].at", "is 0 a second time", "say in one what the root holds")
         where = "root"
@@ -169,7 +169,7 @@ class Beam(Value):
             held = list[list[float]]()  # displacements of rigid motions of what is loose, along what is held
             for support in self.held_places.values():
                 grip = {*support.rigid, *support.stiffness}
-                moved = {names[0]: 1.0, names[-1]: float(support.at) if turns else 1.0}
+                moved = {names[0]: 1.0, names[-1]: support.place if turns else 1.0}
                 if slides in grip:
                     held.append([moved[name] for name in loose])
                 if turns in grip:
@@ -179,10 +179,23 @@ class Beam(Value):
                 problem = f"leaves the root free ({' and '.join(loose)}), and nothing else holds the beam"
                 raise InputError(where, problem, fix)
 
+    def _place_by_names(self) -> None:
+        """Put loads and supports that name a point where it is. Raise InputError if there is no such point."""
+        self._refuse_names_twice()
+        named = self._points | {TIP: self.length}
+        for kind in ("loads", "supports"):
+            placed = list[Any]()
+            for i, each in enumerate(getattr(self, kind)):
+                if isinstance(each.at, str):
+                    choice(f"{kind}[{i}].at", each.at, named)
+                    each = replace(each, at=named[each.at])
+                placed.append(each)
+            object.__setattr__(self, kind, tuple(placed))
+
     @property
     def held_places(self) -> dict[int, Support]:
         """Supports beyond the root, by their indices."""
-        return {i: support for i, support in enumerate(self.supports) if support.at > 0}
+        return {i: support for i, support in enumerate(self.supports) if support.place > 0}
 
     def _refuse_names_twice(self) -> None:
         """Raise InputError if two points, or masses with a name, have the same one."""
@@ -195,15 +208,20 @@ class Beam(Value):
     @property
     def named_points(self) -> dict[str, float]:
         """Positions of the named points, bodies and middles of spans among them, and of the tip, from the root, m."""
-        bodies = {mass.name: mass.at for mass in self.masses if mass.name}
-        named = {point.name: point.at for point in self.points} | bodies
+        named = self._points
         spans = {name: at for name, at in self._spans.items() if name not in named}
         return named | spans | {TIP: self.length}
 
     @property
+    def _points(self) -> dict[str, float]:
+        """Positions of the points and masses that have a name, m."""
+        bodies = {mass.name: mass.at for mass in self.masses if mass.name}
+        return {point.name: point.at for point in self.points} | bodies
+
+    @property
     def _spans(self) -> dict[str, float]:
         """Middles of the spans between root and supports, by name: `span`, or `span_1` and so on of several."""
-        ends = [0.0, *sorted({support.at for support in self.held_places.values()})]
+        ends = [0.0, *sorted({support.place for support in self.held_places.values()})]
         names = ["span"] if len(ends) == 2 else [f"span_{k}" for k in range(1, len(ends))]
         return {name: (a + b) / 2 for name, (a, b) in zip(names, pairwise(ends), strict=True)}
 

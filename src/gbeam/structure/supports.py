@@ -12,7 +12,7 @@ from gbeam.constants import Direction
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive
-from gbeam.guards.quantities import Position
+from gbeam.guards.quantities import NamedPosition
 from gbeam.structure.attachments import Root
 
 DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
@@ -48,7 +48,10 @@ class Support(Value):
     160.3 Hz
     """
 
-    at: Annotated[Position, "position from the root, along the beam; 0 says what the root itself holds"]
+    at: Annotated[
+        NamedPosition,
+        "position from the root, along the beam; or a point's name, such as tip; 0 says what the root itself holds",
+    ]
     holds: Annotated[
         Sequence[Direction],
         "directions that are held, of x, y, z and the rotations rx, ry, rz, in axes of the root: rigidly, or by the "
@@ -81,6 +84,12 @@ class Support(Value):
                 raise InputError(f"damping.{direction}", f"damps {direction}, which is held rigidly", fix)
         if not (self.holds or self.stiffness or self.damping):
             raise InputError("holds", "is empty", 'say what is held, such as holds = ["y", "z"]')
+
+    @property
+    def place(self) -> float:
+        """Position from the root, m: where it names a point, of one that stands on a beam."""
+        assert not isinstance(self.at, str)
+        return self.at
 
     @property
     def rigid(self) -> tuple[Direction, ...]:
