@@ -35,7 +35,8 @@ def test_clamped_free_shapes_converge_to_it_too() -> None:
 
 @pytest.mark.parametrize("kind", ["CFOAM", "exact"])
 def test_stiff_springs_clamp(kind: str) -> None:
-    stiff = Root(*[1e9] * 5)
+    ways = [f"{motion}_{axis}" for motion in ("translation", "rotation") for axis in "xyz"]
+    stiff = Root(**dict.fromkeys(filter("rotation_x".__ne__, ways), 1e9))
     clamped = frequencies(Root(), Model(kind, 1, 3, 3, "adapted"))
     np.testing.assert_allclose(frequencies(stiff, Model(kind, 1, 3, 3, "adapted"))[:6], clamped[:6], rtol=1e-5)
 

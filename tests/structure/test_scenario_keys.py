@@ -71,7 +71,7 @@ def test_what_they_build() -> None:
     ("old", "new", "place", "words"),
     [
         ('rotation_y = "500 N m/rad"', 'rotation_y = "500 N/m"', "beam.root.rotation_y", "rotational stiffness"),
-        ('rotation_y = "500 N m/rad"', "rotation_x = 5", "beam.root.rotation_x", "unknown key"),
+        ('rotation_y = "500 N m/rad"', "rotation_w = 5", "beam.root.rotation_w", "unknown key"),
         ('z = "5 N"', 'z = "5 kg"', "beam.loads[0].force.z", "is a mass"),
         ('level = "-2 N"', 'level = "-2 m"', "beam.loads[0].force.x.level", "is a length"),
         ('profile = "trapezoid"', 'profile = "trapezium"', "beam.loads[0].force.x.profile", "trapezoid"),

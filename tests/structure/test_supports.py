@@ -219,13 +219,19 @@ def test_what_cannot_be_held_is_refused_by_name(problem: str) -> None:
 
 @pytest.mark.parametrize(("keys", "problem"), [
     ({"supports": [gb.Support(0.7, ["z"])]}, "supports[0].at is 0.7 m, beyond the tip"),
-    ({"supports": [PIN]}, "leaves the root free (rotation_y), and nothing else holds the beam"),
+    ({"supports": [PIN]}, "leaves the beam free to turn about y, as a whole"),
     ({"supports": [PIN, PIN]}, "supports[1].at is 0 a second time"),
     ({"supports": [PIN, gb.Support(0.6, ["z"])], "root": gb.Root(rotation_y=5.0)}, "both say what the root holds"),
-    ({"root": gb.Root(rotation_y=0.0)}, "leaves the root free (rotation_y)"),
+    ({"root": gb.Root(rotation_y=0.0)}, "leaves the beam free to turn about y"),
+    ({"supports": [gb.Support(0.0, ["x", "y", "z", "ry", "rz"])]}, "free to turn about x, as a whole; give the root a"),
+    ({"supports": [gb.Support(0.0, ["y", "z", "rx", "ry", "rz"])]}, "free to move along x, as a whole"),
     (
-        {"supports": [gb.Support(0.0, ["x", "y", "z", "rx", "rz"], {"ry": 5.0}, {"ry": 0.1})]},
-        "supports[0].damping.ry is of the root, whose springs take no dampers",
+        {"supports": [gb.Support(0.0, ["x", "y", "rx", "rz"]), gb.Support(0.45, ["z"])]},
+        "free to turn about y at 450 mm, as a whole",
+    ),
+    (
+        {"supports": [gb.Support(0.0, ["x", "y", "rx", "rz"]), gb.Support(0.45, ["ry"])]},
+        "free to move along z, as a whole",
     ),
 ])  # fmt: skip
 def test_a_beam_that_is_not_held_is_refused(keys: dict[str, Any], problem: str) -> None:
@@ -344,3 +350,74 @@ def test_a_file_keeps_the_names_of_places(tmp_path: Path) -> None:
     assert [each.at for each in described.supports] == [0.5] and [each.at for each in described.loads] == [0.1]
     with pytest.raises(gb.InputError, match="did you mean 'camera'"):
         gb.read_scenario(path, ["beam.supports[0].at=camra"])
+
+
+OPEN = ["x", "y", "z", "ry", "rz"]  # what a root holds that turns about the beam's axis
+SHAFT = gb.Material(DENSITY, MODULUS, poissons_ratio=0.3)
+
+
+def shaft(*supports: gb.Support, **keys: Any) -> gb.Beam:
+    return gb.Beam(LENGTH, gb.Section.rectangle(WIDTH, THICKNESS), SHAFT, supports=list(supports), **keys)
+
+
+@pytest.mark.parametrize("shapes", ["clamped-free", "adapted"])
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_root_turns_about_the_axis_where_something_else_holds_that(kind: Any, shapes: Any) -> None:
+    """A quarter of a wave of torsion, whichever end is held; and with a spring at the root β tan β = k L / GJ."""
+    section = gb.Section.rectangle(WIDTH, THICKNESS)
+    torsion = SHAFT.rigidity * float(section.torsion_constant(np.zeros(1))[0])
+    polar = DENSITY * WIDTH * THICKNESS * (WIDTH**2 + THICKNESS**2) / 12
+    for supports, root in (
+        ([gb.Support(0.0, OPEN), gb.Support(LENGTH, ["rx"])], np.pi / 2),
+        ([gb.Support(0.0, OPEN, {"rx": 5.0})], brentq(lambda b: b * np.tan(b) - 5.0 * LENGTH / torsion, 0.01, 1.57)),
+    ):
+        modes = gb.modes(gb.assemble(shaft(*supports), kind, z=1, twist=3, shapes=shapes))
+        expected = root / LENGTH * np.sqrt(torsion / polar) / (2 * np.pi)
+        assert np.abs(modes.frequency / expected - 1).min() < 3e-5
+
+
+def test_a_root_slides_along_the_beam_where_something_else_holds_that() -> None:
+    """A quarter of a wave along the beam, and under the beam's own weight the root moves by ρ g L² / 2E."""
+    held = gb.assemble(
+        shaft(gb.Support(0.0, ["y", "z", "rx", "ry", "rz"]), gb.Support(LENGTH, ["x"])), "exact", axial=3, z=1
+    )
+    modes = gb.modes(held)
+    assert np.abs(modes.frequency * 4 * LENGTH / np.sqrt(MODULUS / DENSITY) - 1).min() < 1e-4
+    rest = gb.static(held, acceleration=(1e4, 0.0, 0.0))
+    assert rest.loads is not None and rest.loads.support_force is not None
+    assert rest.loads.support_force[0, 0, 0] == pytest.approx(LINE_MASS * LENGTH * 1e4)
+    assert rest.loads.root_force[0, 0] == pytest.approx(0.0, abs=1e-6)
+    assert rest.q[-1] == pytest.approx(-DENSITY * 1e4 * LENGTH**2 / (2 * MODULUS), rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_springs_and_dampers_at_the_root_are_those_of_a_support_seen_from_the_other_end(kind: Any) -> None:
+    """A clamp with a sprung, damped end; and the same beam turned round, its root sprung and damped."""
+    spring, damper = {"z": 500.0, "ry": 3.0}, {"z": 2.0, "ry": 1e-3}
+    first = beam(gb.Support(LENGTH, [], spring, damper), damping_ratio=0.0)
+    root = gb.Support(0.0, ["x", "y", "rx", "rz"], spring, damper)
+    second = beam(root, gb.Support(LENGTH, ["z", "ry"]), damping_ratio=0.0)
+    before, after = (gb.modes(gb.assemble(each, kind, z=6)) for each in (first, second))
+    assert after.frequency[:3] == pytest.approx(before.frequency[:3], rel=2e-3)
+    assert after.damping_ratio[:3] == pytest.approx(before.damping_ratio[:3], rel=1e-2)
+    alone = beam(gb.Support(0.0, ["x", "y", "rx", "ry", "rz"], {"z": 0.5}, {"z": 0.1}), damping_ratio=0.0)
+    ratio = gb.modes(gb.assemble(alone, kind, z=4)).damping_ratio[0]
+    assert ratio == pytest.approx(0.1 / (2 * np.sqrt(0.5 * LINE_MASS * LENGTH)), rel=1e-2)  # nearly rigid
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_reactions_balance_where_the_root_gives_way(kind: Any) -> None:
+    """Also its damper's force is in them, in a turn, with a body beside the axis."""
+    camera = gb.PointMass(0.2, 0.3, inertia=(2e-5, 3e-5, 4e-5), offset=(0.01, 0.02, 0.015))
+    supports = [gb.Support(0.0, OPEN, {"z": 2e4}, {"rx": 1e-3, "z": 3.0}), gb.Support(LENGTH, ["rx", "y"])]
+    held = gb.assemble(shaft(*supports, masses=[camera], damping_ratio=0.01), kind, y=2, z=2, twist=1)
+    motion = gb.Flight(y=gb.Sine(30.0, 0.2), z=gb.constant(50.0), rates=gb.constant(np.array([2.0, 0.5, 0.0])))
+    response = gb.simulate(held, motion, duration=0.1, step=1e-3, estimate=False)
+    assert response.loads is not None and response.loads.base_force is not None
+    accelerated = -response.ground_force
+    np.testing.assert_allclose(response.loads.base_force, accelerated, atol=1e-10 * np.abs(accelerated).max())
+
+
+def test_a_beam_without_rotary_inertia_does_not_turn_about_its_axis() -> None:
+    with pytest.raises(gb.InputError, match="rotary_inertia is false, and the root gives way about x"):
+        gb.assemble(beam(gb.Support(0.0, OPEN, {"rx": 5.0})), "FOAM", z=2)

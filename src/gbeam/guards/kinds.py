@@ -96,7 +96,7 @@ _BY_KIND = {
     "moment of inertia": "inertia",
     "pressure": "shear_moduli shear_modulus yield_strength youngs_moduli youngs_modulus",
     "stiffness": "translation_x translation_y translation_z",
-    "rotational stiffness": "rotation_y rotation_z",
+    "rotational stiffness": "rotation_x rotation_y rotation_z",
     "temperature": "reference",
     "expansion": "expansion",
     "torque": "torque",

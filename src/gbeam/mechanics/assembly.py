@@ -14,7 +14,15 @@ from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
-from gbeam.mechanics.beam_terms import heat_of, load_history, load_work, particles_of, sections_of, stiffness_of
+from gbeam.mechanics.beam_terms import (
+    heat_of,
+    load_history,
+    load_work,
+    particles_of,
+    root_dashpots,
+    sections_of,
+    stiffness_of,
+)
 from gbeam.mechanics.equations.held import held_inertia
 from gbeam.mechanics.equations.linear import coefficients, damping_matrix
 from gbeam.mechanics.fields.adapted import adapted_shapes
@@ -147,7 +155,9 @@ def assembled(
         return _structure(beam, kind, rule, at, shapes, left, field, stiffness, damping, heat, automatic=automatic)
 
     if not beam.held_places:
-        return build(field, stiffness, None, heat, ())
+        free = build(field, stiffness, None, heat, ())
+        c = free.coefficients
+        return replace(free, coefficients=c.damped(c.damping + root_dashpots(beam, c.size)))
     first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
     return hold(beam, field, stiffness, heat, build, at, first_station, sum(counts), dependents, KINDS[kind].order)
 
@@ -188,7 +198,7 @@ def hold(
         for name in ("stiffness", "damping")
     )
     stiffness = stiffness + sprung.T @ (spring[:, None] * sprung)
-    dashpots = sprung.T @ (damper[:, None] * sprung)
+    dashpots = sprung.T @ (damper[:, None] * sprung) + root_dashpots(beam, len(stiffness))
     if dependents is None:
         dependents = chosen_dependents(conditions, held, np.diag(stiffness), shapes)
     basis = null_basis(held, dependents)

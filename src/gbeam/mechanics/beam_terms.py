@@ -74,6 +74,13 @@ def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
     return sum(parts, start=xp.diag(by_springs))
 
 
+def root_dashpots(beam: Beam, size: int) -> Array:
+    """Damping (n, n) of the dampers beside a root's springs, the last of `size` coordinates."""
+    dampers = beam.root_dampers
+    xp = namespace(*dampers)
+    return xp.diag(xp.concatenate([np.zeros(size - len(dampers)), xp.asarray(dampers, dtype=float)]))
+
+
 def load_history(beam: Beam) -> LoadHistory | None:
     """Components of the beam's loads over time, as profiles, and the rise of its temperature behind them, as the first
     component of one more; None without any.

@@ -54,6 +54,9 @@ def refuse_disparate(beam: Beam) -> None:
 
 def refuse_unknown(beam: Beam, *, twist: bool, shear_y: bool, shear_z: bool) -> None:
     """Raise InputError if a stiffness or inertia is missing for strains that a model has."""
+    if "rotation_x" in beam.root.springs and not beam.rotary_inertia:
+        fix = "set it to true: a beam that turns about its axis has no other inertia"
+        raise InputError("rotary_inertia", "is false, and the root gives way about x", fix)
     if beam.material is None or not (twist or shear_y or shear_z):
         return
     material, section = beam.material, beam.section

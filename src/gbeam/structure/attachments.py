@@ -233,7 +233,7 @@ class Load(Value):
 
 
 @typed
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Root(Value):
     """Springs between the base and the root; where there is none, the root is rigid in that direction.
 
@@ -254,11 +254,12 @@ class Root(Value):
     20.99 Hz
     """
 
-    translation_x: Annotated[_Spring | None, "spring along x, along the beam"] = None
+    translation_x: Annotated[_Spring | None, "spring along x, along the beam; 0 beside supports that hold x"] = None
     translation_y: Annotated[_Spring | None, "spring along y, along the width; 0 beside supports that hold y"] = None
     translation_z: Annotated[_Spring | None, "spring along z, through the thickness; 0 beside supports that hold z"] = (
         None
     )
+    rotation_x: Annotated[_Turning | None, "spring about x, against turning; 0 beside supports that hold rx"] = None
     rotation_y: Annotated[_Turning | None, "spring about y, against bending along z; 0 for a pin, beside supports"] = (
         None
     )

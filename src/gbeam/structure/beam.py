@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Annotated, Any
@@ -22,15 +22,16 @@ from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
 from gbeam.structure.section import Section
 from gbeam.structure.shapes import ASSUMED_SHEAR, MATRICES
-from gbeam.structure.supports import Support, root_held
+from gbeam.structure.supports import ROOT, Support, root_held
 from gbeam.structure.temperature import Temperature
 
 _ON_HULL = 33  # places on a line: chords of a quarter of a circle are off by 3e-4 of its radius
-# Springs of the root by the motions that they yield to: along x, and in the planes of y and z; what holds these.
+# Springs of the root by the motions that they yield to: along x, in the planes of y and z, about x; what holds these.
 _PLANES = (
     (("translation_x",), "x", ""),
     (("translation_y", "rotation_z"), "y", "rz"),
     (("translation_z", "rotation_y"), "z", "ry"),
+    (("rotation_x",), "rx", ""),
 )
 NO_TWIST = "no twist (section.torsion_constant is not given)"
 
@@ -175,9 +176,9 @@ class Beam(Value):
                 if turns in grip:
                     held.append([float(name == names[-1]) for name in loose])
             if loose and (not held or np.linalg.matrix_rank(held) < len(loose)):
+                words = " and ".join(_adrift(loose, np.array(held).reshape(-1, len(loose))))
                 fix = f"give the root a stiffness, or hold {slides}{f' or {turns}' if turns else ''} at one more place"
-                problem = f"leaves the root free ({' and '.join(loose)}), and nothing else holds the beam"
-                raise InputError(where, problem, fix)
+                raise InputError(where, f"leaves the beam free to {words}, as a whole", fix)
 
     def _place_by_names(self) -> None:
         """Put loads and supports that name a point where it is. Raise InputError if there is no such point."""
@@ -224,6 +225,13 @@ class Beam(Value):
         ends = [0.0, *sorted({support.place for support in self.held_places.values()})]
         names = ["span"] if len(ends) == 2 else [f"span_{k}" for k in range(1, len(ends))]
         return {name: (a + b) / 2 for name, (a, b) in zip(names, pairwise(ends), strict=True)}
+
+    @property
+    def root_dampers(self) -> list[Any]:
+        """Dampers beside the root's springs, N s/m or N m s/rad, in their order."""
+        at_root = [support.damping for support in self.supports if support.place == 0]
+        dampers: Mapping[str, Any] = {ROOT[key]: value for damping in at_root for key, value in damping.items()}
+        return [dampers.get(name, 0.0) for name in self.root.springs]
 
     @property
     def body_centres(self) -> Floats:
@@ -286,6 +294,17 @@ class Beam(Value):
         shear, area, ratio = self.material.rigidity, self.section.at(x).area, self.material.ratio
         in_shear = (shear * area * k for k in self.section.shear_coefficients(x, ratio))
         return axial, *in_shear, shear * self.section.torsion_constant(x), about_y, about_z
+
+
+def _adrift(loose: Sequence[str], held: Floats) -> Iterator[str]:
+    """Yield words for the rigid motions of the `loose` ones of a root's motions that `held` rows of them leave."""
+    if not held.any():
+        for motion, axis in (name.split("_") for name in loose):
+            yield f"move along {axis}" if motion == "translation" else f"turn about {axis}"
+        return
+    slide, turn = np.linalg.svd(held)[2][-1]  # of two: one is held
+    axis = loose[-1][-1]
+    yield f"turn about {axis} at {-1e3 * slide / turn:.4g} mm" if abs(turn) > 1e-9 else f"move along {loose[0][-1]}"
 
 
 def assumptions(beam: Beam) -> tuple[str, ...]:

@@ -17,13 +17,10 @@ from gbeam.structure.attachments import Root
 
 DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 _UNITS = {"stiffness": ("N/m", "N m/rad"), "damping": ("N s/m", "N m s/rad")}
-# Springs of a root by the directions that they give way along; a root is never free to turn about the beam's axis.
-_ROOT: dict[Direction, str] = {
-    "x": "translation_x",
-    "y": "translation_y",
-    "z": "translation_z",
-    "ry": "rotation_y",
-    "rz": "rotation_z",
+# Springs of a root by the directions that they give way along.
+ROOT: dict[Direction, str] = {
+    direction: f"{'rotation' if direction.startswith('r') else 'translation'}_{direction[-1]}"
+    for direction in DIRECTIONS
 }
 
 
@@ -111,17 +108,9 @@ class Support(Value):
 
 def root_held(support: Support) -> Root:
     """Root that a support at it makes: with springs where it gives way, and with none where nothing holds it."""
-    if "rx" not in support.rigid:
-        raise InputError("holds", "leaves the root free to turn about the beam's axis", "add rx to holds")
-    if "x" not in support.rigid and "x" not in support.stiffness:
-        fix = "add x to holds, or give x a stiffness"
-        raise InputError("holds", "leaves the root free to move along the beam", fix)
-    for direction in support.damping:
-        fix = "leave it out: the beam's damping_ratio damps the motion of its root, too"
-        raise InputError(f"damping.{direction}", "is of the root, whose springs take no dampers", fix)
     springs: dict[str, Any] = {
         name: support.stiffness.get(direction, 0.0)
-        for direction, name in _ROOT.items()
+        for direction, name in ROOT.items()
         if direction not in support.rigid
     }
     return Root(**springs)

@@ -84,11 +84,12 @@ def springs_for_shapes(beam: Beam) -> dict[str, Any]:
     answers exist; the root's motion itself is a coordinate anyway.
     """
     along, about_y, about_z = (rigidity[0] for rigidity in beam.rigidities(np.zeros(1)))
-    length = beam.length
+    about_x, length = float(beam.stiffnesses(np.zeros(1))[3][0]), beam.length
     like_the_beam = {
         "translation_x": along / length,
         "translation_y": about_z / length**3,
         "translation_z": about_y / length**3,
+        "rotation_x": (about_y + about_z if np.isnan(about_x) else about_x) / length,
         "rotation_y": about_y / length,
         "rotation_z": about_z / length,
     }
@@ -100,7 +101,7 @@ def springs_for_shapes(beam: Beam) -> dict[str, Any]:
 
 
 GROUPS = ((0,), (1, 4), (2, 5), (3,))  # families that move the beam along x, y and z, and turn it about x
-_HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z", "rotation_y"), ())
+_HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z", "rotation_y"), ("", "rotation_x"))
 
 
 def spaces_of(beam: Beam, rule: Quadrature, counts: Counts) -> tuple[Space, ...]:
@@ -129,9 +130,9 @@ def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
         first = rule.cumulative(x)
         move, turn = {0: (first, 0 * first), 3: (0 * first, first)}.get(along, (first @ sums, first))
         value, angle = [move, *[first] * len(families[1:])], [turn, *[0 * first] * len(families[1:])]
-        if held:
-            value.append(np.stack([x**0, x], axis=1)[:, free])
-            angle.append(np.stack([0 * x, x**0], axis=1)[:, free])
+        carried = 0 * x if along == 3 else x  # by a turn of the root
+        value.append(np.stack([x**0, carried], axis=1)[:, free])
+        angle.append(np.stack([0 * x, x**0], axis=1)[:, free])
         return np.concatenate(value, axis=1), np.concatenate(angle, axis=1)
 
     value, angle = sensitivity(rule.node)
