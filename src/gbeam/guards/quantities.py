@@ -7,7 +7,6 @@ words, ``at: Annotated[Position, "position from the root"]``. Checks and docstri
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
@@ -20,7 +19,7 @@ from gbeam.errors import InputError
 from gbeam.guards.checks import finite, positive, possible
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.limits import LARGEST, SMALLEST
-from gbeam.guards.units import UnitError, quantity
+from gbeam.guards.units import BEGINNING, UnitError, quantity
 
 NAME_OF_POINT = r"[A-Za-z_]\w*"
 Sign = Literal["any", "positive", "zero or more"]
@@ -133,15 +132,17 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Place(Quantity):
-    """Annotation of a position along a beam, or of the name of a point that is there."""
+class QuantityOrName(Quantity):
+    """Annotation of a number in whose place a name may stand: any text that does not begin as a number does."""
 
     def accepts(self, text: str) -> bool:
-        return re.fullmatch(NAME_OF_POINT, text) is not None
+        """True if a text is no number."""
+        return not BEGINNING.match(text)
 
     @property
     def accepted(self) -> list[dict[str, Any]]:
-        return [{"type": "string", "description": "tip, or the name of a point or a mass", "examples": ["tip"]}]
+        """Names, as an alternative of the JSON schema."""
+        return [{"type": "string", "description": "the name of a point, a mass or a group", "examples": ["tip"]}]
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,7 @@ class Components:
 
 Length = Annotated[float, Quantity("length", "positive")]
 Position = Annotated[float, Quantity("length", "zero or more")]
-NamedPosition = Annotated[float | str, Place("length", "zero or more")]
+NamedPosition = Annotated[float | str, QuantityOrName("length", "zero or more")]
 Offset = Annotated[float, Quantity("length")]
 Mass = Annotated[float, Quantity("mass", "zero or more")]
 MomentOfInertia = Annotated[float, Quantity("moment of inertia", "zero or more")]

@@ -34,13 +34,14 @@ class Hung(NamedTuple):
 
 class Reactions(NamedTuple):
     """Forces (t, k, 3) and moments (t, k, 3) about their places (t, k, 3) of supports on the stations (k,) of a
-    structure, in axes of its root.
+    structure, in axes of its root; by their names where they have some.
     """
 
     station: Array
     place: Array
     force: Array
     moment: Array
+    names: tuple[str, ...] = ()
 
     @property
     def demanded(self) -> Hung:
@@ -74,7 +75,7 @@ def reactions_of(
         root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
         demanded = terms_of(free).demanded(whole, rate, change, root, loads)[0]
     xp = namespace(demanded)
-    stations = free.field.sections(slice(free.first_station, None))  # type: ignore[union-attr]
+    stations = free.poses
     if hung is not None and len(hung.station):
         at_stations = stations[hung.station]
         place = at_stations.positions(whole)
@@ -86,6 +87,8 @@ def reactions_of(
         held = np.array(grip.dependents)
         rows = grip.conditions.measures.rows(whole) if grip.curved else grip.rows
         rigid = xp.linalg.solve(xp.swapaxes(rows[..., held], -1, -2), demanded[:, held, None])[..., 0]
+        if grip.second is not None:
+            rigid = rigid + xp.einsum("kij,ti,tj->tk", grip.second / 2, whole, whole)
     if grip.curved and grip.sprung:
         drawn, sprung_rows = grip.measures(grip.sprung).values_and_rows(whole)
         drawn_rate = (sprung_rows @ rate[..., None])[..., 0]
@@ -111,4 +114,5 @@ def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:
     for k, (station, direction) in enumerate(every):
         unit[k, np.searchsorted(places, station), direction] = 1.0
     wrench = xp.einsum("tm,mkd->tkd", sizes, unit)
-    return Reactions(places, stations[places].positions(q), wrench[..., :3], wrench[..., 3:])
+    at = stations[places].positions(q) if grip.places is None else np.broadcast_to(grip.places, wrench[..., :3].shape)
+    return Reactions(places, at, wrench[..., :3], wrench[..., 3:], grip.names)

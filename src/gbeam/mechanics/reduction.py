@@ -44,12 +44,13 @@ class Reduced:
     """Shapes (u, n) of unit modal mass, their stiffness (n, n), and static displacements (u, m) under the loads. The
     first `size` shapes, ascending in frequency, are a model's coordinates: they span `modes` modes and the static
     displacements. The others are what a few more modes have beside these, by which their error is judged, as it is by
-    the forces of `bending`, where these are known.
+    the forces of `bending`, where these are known. Static displacements `apart` (u, k) are in no shape.
     """
 
     shapes: Floats
     stiffness: Floats
     static: Floats
+    apart: Floats
     modes: int
     size: int
     bending: Bending | None = None
@@ -84,11 +85,19 @@ def inertial_loads(weights: Floats) -> Floats:
     return -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
 
 
-def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int, bending: BendingOf | None = None) -> Reduced:
+def reduce(
+    stiffness: Any,
+    mass: Any,
+    loads: Floats,
+    modes: int,
+    bending: BendingOf | None = None,
+    apart: Floats | None = None,
+) -> Reduced:
     """Reduce matrices (u, u) of the free unknowns to lowest modes and static displacements under `loads` (u, m).
 
     `bending` returns the forces of higher order from shapes (u, n), their stiffness (n, n), and a function that answers
-    loads (u, m). InputError unless there are so many modes, and stiffness and mass are positive.
+    loads (u, m). Loads `apart` (u, k) are answered alone. InputError unless there are so many modes, and stiffness and
+    mass are positive.
     """
     count, extra = len(loads), min(MORE, len(loads) - modes)
     if not 1 <= modes <= count:
@@ -101,6 +110,8 @@ def reduce(stiffness: Any, mass: Any, loads: Floats, modes: int, bending: Bendin
             start_vectors = np.random.default_rng(0).standard_normal((count, WIDTH))
             inverse_eigenvalues, vectors = lowest_modes(solve, mass, start_vectors, modes, extra)
         reduced = _reduced(stiffness, mass, static, modes, extra, inverse_eigenvalues, vectors)
+        if apart is not None and apart.size:
+            reduced = replace(reduced, apart=solve(apart))
         if bending is None:
             return reduced
         return replace(reduced, bending=bending(reduced.shapes, reduced.stiffness, solve))
@@ -144,7 +155,7 @@ def _reduced(
         shapes = np.concatenate([shapes, beyond], axis=1)
     reduced = shapes.T @ (stiffness @ shapes)
     reduced[:size, :size] = np.diag(1 / inverse)
-    return Reduced(shapes, reduced, static, modes, size)
+    return Reduced(shapes, reduced, static, static[:, :0], modes, size)
 
 
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:

@@ -102,10 +102,11 @@ def section_forces(
 
 def with_supports(loads: Loads, structure: Structure, reactions: Reactions) -> Loads:
     """Add to loads those of the supports, and what the base does to the structure in all, about its root."""
-    demanded = reactions.demanded
+    demanded, named = reactions.demanded, bool(reactions.names)
     return replace(
         loads,
-        supports=np.asarray(structure.stations)[reactions.station],
+        supports=reactions.place[0, :, 0] if named else np.asarray(structure.stations)[reactions.station],
+        support_names=reactions.names if named else None,
         support_force=reactions.force,
         support_moment=reactions.moment,
         base_force=loads.root_force - demanded.force.sum(axis=1),
@@ -122,12 +123,14 @@ def _end_loads(
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
     wrench = terms_of(structure).demanded(q, qd, qdd, root, applied)[1]
     demanded = [wrench.force, wrench.moment]
-    if hung is not None:
-        demanded = [demanded[0] + hung.force.sum(axis=1), demanded[1] + hung.moment.sum(axis=1)]
+    reactions = reactions_of(structure, base, q, qd, qdd, applied, hung)
+    on_root = hung if reactions is None else reactions.with_hung(hung)
+    if on_root is not None:
+        demanded = [demanded[0] + on_root.force.sum(axis=1), demanded[1] + on_root.moment.sum(axis=1)]
     force, moment = (xp.stack([-at_root, 0 * at_root], axis=1) for at_root in demanded)
     tip = absolute_accelerations(xp, base, *structure.output[-1:].paths(q, qd, qdd))
     unknown = xp.full(force.shape[:2], np.nan)
-    return Loads(
+    loads = Loads(
         stations=np.append(0.0, structure.stations[-1:]),
         force=force,
         moment=moment,
@@ -137,6 +140,7 @@ def _end_loads(
         stress_compression=unknown,
         acceleration=xp.concatenate([base.a_WO_B[:, None], tip], axis=1),
     )
+    return loads if reactions is None else with_supports(loads, structure, reactions)
 
 
 def _equivalent(section_data: Sections, force: Array, moment: Array) -> Array:

@@ -31,7 +31,7 @@ from gbeam.mechanics.fields.measures import Measures, measures_of
 from gbeam.mechanics.fields.projected import Field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
-from gbeam.mechanics.fields.taylor import Expanded, Places
+from gbeam.mechanics.fields.taylor import Expanded, Places, Polynomials, exponential
 from gbeam.mechanics.recovery import Recovery, Sections, Source
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
@@ -44,8 +44,10 @@ class Grip:
 
     Its coordinates q (m,) are those of the structure, `basis` (m, n) times them: conditions `rows` (k, m) times q are
     zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The
-    conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`. They are
-    `curved` where the rows change with q, as those of a beam that shortens as it bends.
+    conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`; where supports
+    have `names`, on these in place of stations, at their `places` (k, 3) m. They are `curved` where the rows change
+    with q, as those of a beam that shortens as it bends. What bends beside what is held pulls on conditions by
+    ½ q · `second` (k, m, m) q.
     """
 
     free: Structure
@@ -58,6 +60,9 @@ class Grip:
     held: tuple[tuple[int, int], ...] = static()
     sprung: tuple[tuple[int, int], ...] = static()
     curved: bool = static(default=False)
+    names: tuple[str, ...] = static(default=())
+    places: Array | None = None
+    second: Array | None = None
 
     def measures(self, which: tuple[tuple[int, int], ...]) -> Measures:
         """Displacements and rotations of the free structure's stations, each in a direction."""
@@ -380,6 +385,15 @@ class Structure:
         history = self.history.freeze(float(time))
         return replace(self, history=history, load_values=history(np.zeros(())))
 
+    @property
+    def poses(self) -> Any:
+        """Places and rotations of the stations."""
+        if self.field is not None:
+            return self.field.sections(slice(self.first_station, None))
+        places, xp = self.station_places, namespace(self.station_places.first)
+        turns = 0 * places.first if self.turns is None else xp.nan_to_num(self.turns)
+        return Polynomials(places, exponential(turns, xp.zeros((*turns.shape, self.size))))
+
     def turned(self, basis: Array) -> Structure:
         """Return a linear structure of particles in coordinates p with q = basis p, without what is recovered.
 
@@ -395,8 +409,11 @@ class Structure:
         """
         c = self.coefficients.turned(basis)
         turns = None if self.turns is None else self.turns @ basis
+        grip = self.grip and replace(self.grip, basis=self.grip.basis @ basis)
         places, stations = self.places.turned(basis), self.station_places.turned(basis)
-        return replace(self, coefficients=c, places=places, station_places=stations, turns=turns, recovery=None)
+        return replace(
+            self, coefficients=c, places=places, station_places=stations, turns=turns, grip=grip, recovery=None
+        )
 
     @property
     def particles(self) -> StrainField | SeriesField | HeldField | Places:

@@ -106,7 +106,7 @@ def tip_is_held(body: Facts) -> bool:
 
 
 def supports_table(bodies: Facts, row_of: str) -> Block:
-    """Table of the largest loads of supports on beams. `row_of` says what a row of bodies is."""
+    """Table of the largest loads of supports on bodies. `row_of` says what a row of bodies is."""
     rows = [
         {"name": name, **support}
         for name, body in bodies.items()
@@ -114,29 +114,36 @@ def supports_table(bodies: Facts, row_of: str) -> Block:
     ]
     cells: Columns = {
         row_of: "name",
-        "support at, mm": lambda support: number(1e3 * support["at"]),
+        "support at": _support_words,
         "force, N": "force.size.max_abs",
         "at, s": "force.size.time_of_max",
         "moment, N m": "moment.size.max_abs",
         "at, s ": "moment.size.time_of_max",
     }
-    return table(rows, cells, "Largest loads of supports on the beam", detail=True)
+    return table(rows, cells, "Largest loads of supports on the body", detail=True)
+
+
+def _support_words(support: Facts) -> str:
+    """Name of a support, or its position along a beam."""
+    return support.get("name") or f"{number(1e3 * support['at'])} mm"
 
 
 def resting_supports(loads: Facts, row_of: str = "motion") -> Block:
-    """Table of the loads of supports on beams at rest. `row_of` says what a row of loads is."""
+    """Table of the loads of supports on bodies at rest. `row_of` says what a row of loads is."""
     rows = list[Facts]()
     for of_body in name_rows(loads):
         places = of_body.get("supports", ())
+        names = of_body.get("support_names", [None] * len(places))
         for k, at in enumerate(places):
-            row: dict[str, Cell | str] = {"name": of_body["name"], "at": number(1e3 * at)}
+            row: dict[str, Cell | str] = {"name": of_body["name"]}
+            row["at"] = _support_words({"at": at, "name": names[k]})
             for key in ("force", "moment"):
                 vectors = [[*vector.values()] for vector in _by_place(of_body[f"support_{key}"], len(places))]
                 size = max((abs(component) for vector in vectors for component in vector), default=0.0)
                 row[key] = f"({', '.join(map(number, tidy(vectors[k], size)))})"
             rows.append(row)
-    cells: Columns = {row_of: "name", "support at, mm": "at", "force, N": "force", "moment, N m": "moment"}
-    return table(rows, cells, "Of the supports on the beam, axes of the root")
+    cells: Columns = {row_of: "name", "support at": "at", "force, N": "force", "moment, N m": "moment"}
+    return table(rows, cells, "Of the supports on the body, axes of the root")
 
 
 def _by_place(vectors: Facts, count: int) -> list[Facts]:

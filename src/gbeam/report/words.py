@@ -135,8 +135,9 @@ def largest_loads(peaks: LoadPeaks) -> str:
     words = f"root: largest force {number(force)} N, moment {number(moment)} N m"
     if peaks.supports is not None and peaks.support_force is not None and peaks.support_moment is not None:
         sizes = peaks.support_force.size.value, peaks.support_moment.size.value
-        for place, force, moment in zip(peaks.supports, *sizes, strict=True):
-            words += f"; support at {number(1e3 * place)} mm: {number(force)} N, {number(moment)} N m"
+        names = peaks.support_names or [f"{number(1e3 * place)} mm" for place in peaks.supports]
+        for name, force, moment in zip(names, *sizes, strict=True):
+            words += f"; support at {name}: {number(force)} N, {number(moment)} N m"
     if np.isfinite(peaks.tension.value).all():
         extremes = peaks.tension.value, peaks.compression.value
         words += f"; {stress_words(peaks.stations, *extremes, peaks.yield_strength)}"

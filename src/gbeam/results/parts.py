@@ -198,15 +198,19 @@ class LoadPeaks(Part):
         "largest size of the torque that the beam takes from a hub", unit="N m", name=None, optional=True, default=None
     )
     supports: Floats | None = quantity(
-        "m", "position of the support along the beam from the root", "support", name=None, key="at", optional=True,
+        "m", "position of the support along x from the root", "support", name=None, key="at", optional=True,
+        default=None,
+    )  # fmt: skip
+    support_names: tuple[str, ...] | None = quantity(
+        "", "name of the support", "support", name=None, key="name", note="None of a beam", optional=True,
         default=None,
     )  # fmt: skip
     support_force: VectorPeaks | None = part(
-        "of the support on the beam, axes of the root", "support", unit="N", name="support_force_max_", key="force",
+        "of the support on the body, axes of the root", "support", unit="N", name="support_force_max_", key="force",
         optional=True, default=None,
     )  # fmt: skip
     support_moment: VectorPeaks | None = part(
-        "of the support on the beam about its own place, axes of the root", "support", unit="N m",
+        "of the support on the body about its own place, axes of the root", "support", unit="N m",
         name="support_moment_max_", key="moment", optional=True, default=None,
     )  # fmt: skip
     stations: Floats = quantity(
@@ -397,20 +401,23 @@ class Loads(Part):
         key="",
     )
     supports: Floats | None = quantity(
-        "m", "position of the support along the beam from the root", "support", role="coordinate", key="supports",
+        "m", "position of the support along x from the root", "support", role="coordinate", key="supports",
         optional=True, default=None,
     )  # fmt: skip
+    support_names: tuple[str, ...] | None = quantity(
+        "", "name of the support", "support", note="None of a beam", optional=True, default=None, key="support_names"
+    )
     support_force: Floats | None = quantity(
-        "N", "force of the support on the beam", "time support axis", frame=_BASE_AXES, optional=True, default=None,
+        "N", "force of the support on the body", "time support axis", frame=_BASE_AXES, optional=True, default=None,
         key="support_force",
     )  # fmt: skip
     support_moment: Floats | None = quantity(
-        "N m", "moment of the support on the beam about its own place", "time support axis", frame=_BASE_AXES,
+        "N m", "moment of the support on the body about its own place", "time support axis", frame=_BASE_AXES,
         optional=True, default=None, key="support_moment",
     )  # fmt: skip
-    base_force: Floats | None = internal("N", "force of root and supports on the beam", "time axis", default=None)
+    base_force: Floats | None = internal("N", "force of root and supports on the body", "time axis", default=None)
     base_moment: Floats | None = internal(
-        "N m", "moment of root and supports on the beam about the root", "time axis", default=None
+        "N m", "moment of root and supports on the body about the root", "time axis", default=None
     )
     yield_strength: float | None = fact("yield strength of the material", "Pa", name=None, optional=True, default=None)
     fatigue_exponent: float = internal("", "exponent of the material's Wöhler curve", default=math.nan)

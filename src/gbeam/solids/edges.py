@@ -9,15 +9,17 @@ from gbeam.solids.elements import Block
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.shape_functions import jacobians, reference, shapes_at
 from gbeam.solids.stress import FACES, corners_of, face_nodes, outer_faces
+from gbeam.structure.supports import DIRECTIONS
 
+ACROSS = 0.1  # of a unit normal: a direction in which more than that of it presses a face
 SHARP = np.cos(np.radians(30.0))  # between the normals of two faces; in a fillet's elements they are nearer
 
 
 def singular_nodes(mesh: Mesh) -> Flags:
     """Flags (k,) of nodes where stress has no limit as a mesh gets finer.
 
-    They are on the edges of clamps and rigid links, where the stress grows slowly, and in the elements at re-entrant
-    edges.
+    They are on the edges of clamps, supports and rigid links, where the stress grows slowly, and in the elements at
+    re-entrant edges.
     """
     flags, corner = _held_edges(mesh), _re_entrant(mesh)
     for block in mesh.blocks:
@@ -26,15 +28,34 @@ def singular_nodes(mesh: Mesh) -> Flags:
 
 
 def _held_edges(mesh: Mesh) -> Flags:
-    """Flags (k,) of nodes at the edge of a clamp or rigid link: those on an outer face that is held in part."""
+    """Flags (k,) of nodes at the edge of a clamp, support or rigid link: those on an outer face that is held in part.
+
+    A support that holds faces along directions in which it slides on the face beside, as at a plane of symmetry, has no
+    such edge there.
+    """
     flags = np.zeros(len(mesh.points), dtype=bool)
     rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
-    for nodes in (np.flatnonzero(mesh.clamped), *rigid):
-        held = np.zeros_like(flags)
+    every = np.eye(3)
+    sets = [(nodes, every, False) for nodes in (np.flatnonzero(mesh.clamped), *rigid)]
+    for place in mesh.supports:
+        ways = [DIRECTIONS.index(way) for way in place.support.rigid if way in "xyz"]
+        if place.kind == "nodes" and ways:
+            sets.append((place.points, every[ways], True))
+    for nodes, directions, by_support in sets:
+        held, whole, outer = np.zeros_like(flags), np.zeros_like(flags), np.zeros_like(flags)
         held[nodes] = True
         for block, face, elements in outer_faces(mesh):
             on = block.nodes[elements][:, face_nodes(block.kind, face)]  # nodes of each face
-            flags[on[held[on] & ~held[on].all(axis=1, keepdims=True)]] = True
+            whole[on[held[on].all(axis=1)]] = True
+            corners = mesh.points[on[:, :3]]
+            normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+            pressed = np.abs(normal @ directions.T).max(axis=1) > ACROSS
+            part = held[on] & ~held[on].all(axis=1, keepdims=True)
+            flags[on[part & pressed[:, None]]] = True
+            outer[on] = True
+        if by_support:  # where points and lines are held alone
+            flags |= held & outer & ~whole
     return flags
 
 

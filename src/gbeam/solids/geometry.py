@@ -9,6 +9,7 @@ import numpy as np
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Flags, Floats, Indices, Numbers
 from gbeam.solids.elements import Block, masses
+from gbeam.solids.held import HeldPlace
 from gbeam.solids.links import Links
 
 
@@ -29,6 +30,7 @@ class Mesh(Value):
     exponents: dict[str, float] = field(default_factory=dict)
     turns: dict[str, Numbers] = field(default_factory=dict)
     clamps: dict[str, int] = field(default_factory=dict)
+    supports: tuple[HeldPlace, ...] = ()
 
     @property
     def mass(self) -> float:

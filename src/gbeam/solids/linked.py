@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Any
 
 import numpy as np
 
 from gbeam.arrays.types import Floats, Indices
+from gbeam.errors import InputError
+from gbeam.mechanics.holding import Held
 from gbeam.mechanics.reduction import Reduced
 from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.solids.geometry import Mesh
+from gbeam.solids.held import HeldPlace
 from gbeam.solids.links import ON_A_LINE, coupling
+from gbeam.structure.supports import DIRECTIONS
 
 CROSS = np.zeros((3, 3, 3))  # θ × r = θ_a r_b CROSS[a, b]
 for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
@@ -97,7 +102,7 @@ class Linked:
             ),
             shape=(3 * len(points), len(free)),
         ).tocsr()[:, free]
-        self._kept = np.flatnonzero(free)
+        self._kept, self._selected = np.flatnonzero(free), not len(self._tied)
         number = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)[:, None, 3:]
         turns = np.broadcast_to(number >= 0, self._axes.shape)
         row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turns.shape)[turns]
@@ -124,6 +129,49 @@ class Linked:
         self._turn = self._turn + on_unknowns(3 * link + np.arange(3), mean[3:], self._turn.shape[0])
         rows = (3 * np.array(members)[:, None] + np.arange(3)).ravel()
         self._map = self._map + on_unknowns(rows, moved, points)
+
+    def held(self, i: int, place: HeldPlace) -> Held:
+        """Motions of the nodes of a place that the support of number `i` holds, by the unknowns."""
+        from scipy.sparse import csr_array, vstack
+
+        points, count = place.points, len(place.points)
+        each = self._map[(3 * points[:, None] + np.arange(3)).ravel()]
+        if place.kind == "interface":
+            mean = coupling(place.name, self.points[points])[1].reshape(6, -1)
+            rows = [csr_array(mean[axis : axis + 1]) @ each for axis in range(6)]
+        else:
+            shared = np.bincount(place.node)
+            sums = csr_array((1 / shared[place.node], (place.node, np.arange(count))), shape=(len(shared), count))
+            if place.kind == "link":
+                sums = csr_array(np.full((1, count), 1 / count))
+            rows = [sums @ each[axis::3] for axis in range(3)]
+            rows += self._turns(i, place)
+        motions = {
+            way: (vstack([rows[DIRECTIONS.index(way)]], format="csr"), place.levers(self.points, way))
+            for way in (*place.support.rigid, *place.support.yielding)
+        }
+        return Held(place.support, place.centre, motions)
+
+    def _turns(self, i: int, place: HeldPlace) -> list[Any]:
+        """Rotations of a place's nodes about x, y and z by the unknowns, where its support, number `i`, holds any."""
+        wanted = [way for way in (*place.support.rigid, *place.support.yielding) if way.startswith("r")]
+        if not wanted:
+            return []
+        first = place.points[np.unique(place.node, return_index=True)[1]]
+        of_point = np.full(len(self.points), -1)
+        of_point[self._tied] = self._of
+        links = np.array([self._number[place.name]]) if place.kind == "link" else of_point[first]
+        if (links < 0).any():
+            fix = "hold its displacements, or name its group in interfaces and hold the interface, by its mean"
+            problem = f"holds {wanted[0]} at {place.name}, where nodes of solid elements have no rotations"
+            raise InputError(f"supports[{i}]", problem, fix)
+        return [self._turn[3 * links + axis] for axis in range(3)]
+
+    def narrowed(self, basis: Any) -> Linked:
+        """Return the same in fewer unknowns, of which sparse columns of `basis` (u, f) are motions."""
+        left = copy(self)
+        left._map, left._turn, left._selected = self._map @ basis, self._turn @ basis, False
+        return left
 
     def _turn_displacements(self, arms: Floats) -> Floats:
         """Displacements (p, 3, 3) of tied points by unit rotations about their links' axes, in columns."""
@@ -159,7 +207,7 @@ class Linked:
         """Express a sparse matrix, or loads, of all points by the independent unknowns: Tᵀ A T, or Tᵀ f."""
         from scipy.sparse import issparse
 
-        if not len(self._tied):
+        if self._selected:
             return matrix[self._kept][:, self._kept] if issparse(matrix) else matrix[self._kept]
         by_unknowns = self._map.T @ matrix
         return by_unknowns @ self._map if issparse(matrix) else by_unknowns
@@ -194,16 +242,24 @@ class Linked:
         """Rows of the tied points in a stiffness of all points: what they take up of a displacement."""
         return stiffness[self._rows]
 
-    def geometric_stiffness(self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced) -> Floats:
-        """Two halves (2, m, n, n) of what links add to :func:`gbeam.solids.elements.geometric_stiffness`: the work of
-        the forces that hold tied points on a link, in the displacements θ × (θ × r)/2 as it turns by θ.
+    def rotations(self, unknowns: Floats) -> Floats:
+        """Rotations (l, 3, n) of the links by unknowns (u, n)."""
+        return np.asarray(self._turn @ unknowns).reshape(len(self._axes), 3, unknowns.shape[1])
+
+    def geometric_stiffness(
+        self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced, lifted: Floats
+    ) -> Floats:
+        """Two halves (2, m, n + s, n + s) of what links add to :func:`gbeam.solids.elements.geometric_stiffness`: the
+        work of the forces that hold tied points on a link, in the displacements θ × (θ × r)/2 as it turns by θ.
 
         In the first half the forces are those under loads (points · 3, m), whose answers are `static` (u, m), and two
         coordinates turn the links; in the second the forces are a coordinate's, and a load and another coordinate turn
-        them. `held` are the tied points' rows of the stiffness.
+        them. `held` are the tied points' rows of the stiffness; `lifted` (l, 3, s) turn the links besides, in the first
+        half alone.
         """
         shapes = reduced.shapes
-        halves = np.zeros((2, loads.shape[-1], shapes.shape[-1], shapes.shape[-1]))
+        n, count = shapes.shape[-1], shapes.shape[-1] + lifted.shape[-1]
+        halves = np.zeros((2, loads.shape[-1], count, count))
         if not len(self._tied):
             return halves
         static_moved, moved = self._map @ static, self._map @ shapes
@@ -212,12 +268,12 @@ class Linked:
         pulling = self._moments(held @ static_moved - loads[self._rows])
         holding = self._moments(held @ moved - inertia[self._rows])
         holding += np.swapaxes(holding, 1, 2)
-        turn, turned = self._rotations(shapes), self._rotations(static)
+        turn, turned = np.concatenate([self.rotations(shapes), lifted], axis=2), self.rotations(static)
         for load in range(loads.shape[-1]):
-            flat = turn.reshape(-1, turn.shape[-1])
+            flat = turn.reshape(-1, count)
             halves[0, load] = flat.T @ np.matmul(pulling[..., load], turn).reshape(flat.shape) / 2
-            pulled = np.einsum("lb,lbcn->lcn", turned[..., load], holding)
-            halves[1, load] = pulled.reshape(flat.shape).T @ flat / 2
+            pulled = np.einsum("lb,lbcn->lcn", turned[..., load], holding).reshape(-1, n)
+            halves[1, load, :n, :n] = pulled.T @ flat[:, :n] / 2
         return halves
 
     def _moments(self, forces: Floats) -> Floats:
@@ -230,10 +286,6 @@ class Linked:
         tied = forces.reshape(len(self._tied), 1, 3, -1)
         np.add.at(moments, self._of, self._arms[:, :, None, None] * tied)
         return moments - np.einsum("lbbm,ac->lacm", moments, np.eye(3))
-
-    def _rotations(self, unknowns: Floats) -> Floats:
-        """Rotations (l, 3, n) of the links by unknowns (u, n)."""
-        return np.asarray(self._turn @ unknowns).reshape(len(self._axes), 3, -1)
 
 
 def _particles(body: RigidBody) -> tuple[Floats, Floats]:

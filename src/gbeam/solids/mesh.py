@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from gbeam.arrays.types import Numbers
+from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import Kinds, kinds
@@ -27,6 +27,7 @@ from gbeam.guards.quantities import (
 )
 from gbeam.mechanics.equations.linear import coefficients, geometric_of
 from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.holding import Holding
 from gbeam.mechanics.reduction import inertial_loads, linear_fields, particles_of, reduce
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.mechanics.tree.joints import kind_of_value
@@ -42,6 +43,7 @@ from gbeam.solids.reading import read_solid
 from gbeam.solids.stations import Stations
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.material import Material, Orthotropic
+from gbeam.structure.supports import Support
 
 LOCKED = "the error of the mesh is not known: meshes whose elements lock differ by less than they are wrong"
 
@@ -84,6 +86,8 @@ class SolidMesh(Mesh):
         Nodes that move as rigid bodies, what they carry, and springs between them.
     clamps : dict of int
         Numbers of nodes that each group of the clamp holds, by its name.
+    supports : tuple of HeldPlace
+        Places that supports hold.
 
     Examples
     --------
@@ -115,9 +119,9 @@ class SolidMesh(Mesh):
         ],
         clamp: Annotated[
             str | Sequence[str],
-            "name of the group whose nodes follow the base or the joint, or a list of them. A number that surfaces and "
-            'volumes have is refused: it is written "surface 1" or "volume 1"',
-        ],
+            "name of the group whose nodes follow the base or the joint, or a list of them; none where supports hold "
+            'the solid. A number that surfaces and volumes have is refused: it is written "surface 1" or "volume 1"',
+        ] = (),
         unit: Annotated[str | None, 'unit of the coordinates in the mesh, such as "mm"; STEP files say theirs'] = None,
         mass_unit: Annotated[
             str | None,
@@ -164,6 +168,12 @@ class SolidMesh(Mesh):
             "springs by name, between two rigid links or one and the base: { between, stiffness }, in the middle of "
             "the first link's nodes and along the axes of the base",
         ] = None,
+        supports: Annotated[
+            Sequence[Support],
+            "places that the base holds besides: [ { at, holds, stiffness, damping } ], each a group, every node of "
+            "which is held, a point, or an interface or rigid link by its mean motion. A node that the clamp or an "
+            "earlier support holds in a direction is that one's",
+        ] = (),
         origin: Annotated[PositionVector, "the root in the mesh, whose acceleration the motion gives: [x, y, z]"] = (
             0.0,
             0.0,
@@ -205,7 +215,8 @@ class SolidMesh(Mesh):
         return read_solid(
             cls, source, materials=materials, clamp=clamp, unit=unit, thickness=thickness, element_size=element_size,
             points=points or {}, point_masses=point_masses or {}, interfaces=interfaces or {}, links=links or {},
-            carried=carried or {}, springs=springs or {}, origin=origin, turn=turn, scale=scale, mass_unit=mass_unit,
+            carried=carried or {}, springs=springs or {}, supports=supports, origin=origin, turn=turn, scale=scale,
+            mass_unit=mass_unit,
         )  # fmt: skip
 
     def __repr__(self) -> str:
@@ -253,6 +264,7 @@ class SolidMesh(Mesh):
         >>> [f"{each:.0f} Hz" for each in solid.reduced(modes=2, damping_ratio=0.02).frequency]
         ['65 Hz', '190 Hz']
         """
+        from scipy.linalg import block_diag
         from scipy.sparse import diags_array, eye_array, kron
 
         if coarser is not None and len(coarser.mesh.points) >= len(self.points):
@@ -266,37 +278,47 @@ class SolidMesh(Mesh):
         named = Stations.from_mesh(self)
         loads = np.concatenate([loads, linked.widened_loads(named.forces)], axis=1)
         stiffness = linked.elastic(stiffness_matrix(self.points, self.blocks))
-        held, stiffness = linked.tied_rows(stiffness), linked.condensed_stiffness(stiffness)
+        tied, stiffness = linked.tied_rows(stiffness), linked.condensed_stiffness(stiffness)
+        places = [linked.held(i, place) for i, place in enumerate(self.supports)]
+        holding = Holding(places, stiffness.shape[0])
+        stiffness = stiffness + holding.stiffness
+        left = linked.narrowed(holding.basis) if holding.taken else linked
         reduced = reduce(
-            stiffness,
-            linked.condensed(kron(mass, eye_array(3), format="csr")),
-            linked.condensed(loads),
+            holding.left(stiffness),
+            left.condensed(kron(mass, eye_array(3), format="csr")),
+            np.concatenate([left.condensed(loads), holding.left(holding.yielding.T.toarray())], axis=1),
             modes,
             # Links would have to turn by more than their linear map.
-            None if linked.tied else partial(bending, self, linked, modes, named.displacements),
+            None if linked.tied else partial(bending, self, left, modes, named.displacements),
+            holding.static_loads(stiffness),
         )
+        motions = holding.everywhere(reduced.shapes, reduced.apart)
+        total = len(reduced.stiffness)
+        lifting = motions[:, total:].T @ (stiffness @ motions[:, total:])
         del stiffness
-        everywhere, static = (linked.displacements(unknowns) for unknowns in (reduced.shapes, reduced.static))
-        shapes = everywhere[:count]
+        everywhere, static = linked.displacements(motions), left.displacements(reduced.static)
+        shapes = everywhere[:count, :, :total]
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(named.centres)) for axis in range(3)]
         stressed = [*range(12), *pushed]
-        halves = geometric_stiffness(self.points, self.blocks, static[:count, :, stressed], shapes)
-        halves += linked.geometric_stiffness(held, mass, loads[:, stressed], reduced.static[:, stressed], reduced)
+        halves = geometric_stiffness(self.points, self.blocks, static[:count, :, stressed], everywhere[:count])
+        halves += left.geometric_stiffness(
+            tied, mass, loads[:, stressed], reduced.static[:, stressed], reduced, linked.rotations(motions[:, total:])
+        )
+        lifted = everywhere[:count, :, total:]
+        pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes).sum(axis=0) if lifted.size else None
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
         locked = coarser is not None and bool(locking(self))
         doubts = () if coarser is None else (*hardly_coarser(coarser.mesh, self), *[LOCKED] * locked)
         nodal, length = NodalStress.from_shapes(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
 
-        def build(n: int, damping_ratio: Any) -> Structure:
-            """Structure in the first coordinates."""
-            masses, *paths = particles_of(linked.points, everywhere[..., :n], mass)
-            stiffness = reduced.stiffness[:n, :n]
-            fields = coupled(halves[..., :n, :n], stiffness)
-            inertial = fields[:12].reshape(3, 4, n, n)
+        def moving(chosen: Any, stiffness: Floats, fields: Floats, damping_ratio: Any) -> Structure:
+            """Structure in the chosen of all motions, with its geometric stiffness by the loads' `fields`."""
+            masses, *paths = particles_of(linked.points, everywhere[..., chosen], mass)
+            inertial = fields[:12].reshape(3, 4, *stiffness.shape)
             stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
-            stations, turns = named.expansion(shapes[..., :n], fields[12:])
-            structure = linear_structure(
+            stations, turns = named.expansion(everywhere[:count, :, chosen], fields[12:])
+            return linear_structure(
                 coefficients(masses, Places(*paths), stiffness, geometric=stress),
                 masses,
                 Places(*paths),
@@ -309,7 +331,22 @@ class SolidMesh(Mesh):
                 warnings=(*self.warnings, *doubts),
                 modes=modes,
             )
-            return replace(structure, recovery=replace(nodal, size=n))
+
+        def build(n: int, damping_ratio: Any) -> Structure:
+            """Structure in the first coordinates."""
+            stiffness = reduced.stiffness[:n, :n]
+            fields = coupled(halves[..., :n, :n], stiffness)
+            structure = moving(slice(n), stiffness, fields, damping_ratio)
+            structure = replace(structure, recovery=replace(nodal, size=n))
+            if not holding.places:
+                return structure
+            chosen = np.r_[:n, total : everywhere.shape[2]]
+            first = halves[0][:, chosen[:, None], chosen]
+            every = first + first.swapaxes(1, 2)  # of the lifted motions as of stiff modes, which no soft ones turn
+            every[:, :n, :n] = fields
+            free = moving(chosen, block_diag(stiffness, lifting), every, 0.0)
+            second = None if pulls is None else pulls[:, :n, :n] + pulls[:, :n, :n].swapaxes(1, 2)
+            return holding.hold(structure, free, motions[:, chosen], second)
 
         structure = reduced.structure(build, damping_ratio)
         if coarser is not None:

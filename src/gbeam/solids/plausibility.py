@@ -9,8 +9,10 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS
 from gbeam.solids.elements import determinants
 from gbeam.solids.geometry import Mesh
+from gbeam.solids.held import HeldPlace, about, levers, refuse_free
 from gbeam.solids.shape_functions import KINDS
 from gbeam.solids.stress import corners_of, outer_triangles
+from gbeam.structure.supports import DIRECTIONS
 
 FLAT = 1e-6  # of the largest volume of a part of it: an element with less anywhere is folded
 STRAIGHT = 1e-6  # of the size: points that are nearer to a line do not hold a body
@@ -60,7 +62,7 @@ def refuse_twice(mesh: Mesh) -> None:
 
 
 def refuse_loose(mesh: Mesh) -> None:
-    """Refuse a part of the mesh that the clamp does not hold."""
+    """Refuse a part of the mesh that neither the clamp nor supports hold."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -81,10 +83,25 @@ def refuse_loose(mesh: Mesh) -> None:
         size = np.linalg.svd(held - held.mean(axis=0), compute_uv=False) if len(held) > 2 else np.zeros(3)
         if size[1] > STRAIGHT * np.linalg.norm(np.ptp(mesh.points[nodes], axis=0)):
             continue
+        if supports := [place for place in mesh.supports if nodes[place.points].any()]:
+            moved = [motion for place in supports for motion in _held_motions(mesh, place)]
+            refuse_free("supports", np.concatenate([*moved, *_clamped_motions(held)]), mesh.points[nodes])
+            continue
         middle = ", ".join(f"{x:.3g}" for x in mesh.points[nodes].mean(axis=0))
         where = "the mesh" if count == 1 else f"a part of {nodes.sum()} nodes about ({middle}) m"
         fix = "clamp three nodes or more that lie on no line" + ("" if count == 1 else ", or merge coincident nodes")
         raise InputError("clamp", f"holds {where} at {len(held)} nodes, so that it moves without strain", fix)
+
+
+def _held_motions(mesh: Mesh, place: HeldPlace) -> list[Floats]:
+    """Rigid motions (g, 6) about the origin, each along the directions that a support holds."""
+    elastic = *place.support.rigid, *place.support.stiffness
+    return [place.levers(mesh.points, way) @ about(place.centre) for way in elastic]
+
+
+def _clamped_motions(points: Floats) -> list[Floats]:
+    """Rigid motions (g, 6) about the origin at clamped points (g, 3), along x, y and z."""
+    return [levers(points, way) for way in DIRECTIONS[:3]] if len(points) else []
 
 
 def doubts_of(mesh: Mesh, unit: str) -> list[str]:

@@ -32,7 +32,7 @@ class Support(Value):
     Raises
     ------
     InputError
-        If the position is impossible, a direction is unknown or stands twice, a stiffness is not positive, a damping is
+        If the place is impossible, a direction is unknown or stands twice, a stiffness is not positive, a damping is
         negative or of a direction that is held rigidly, or nothing is held.
 
     Examples
@@ -47,7 +47,9 @@ class Support(Value):
 
     at: Annotated[
         NamedPosition,
-        "position from the root, along the beam; or a point's name, such as tip; 0 says what the root itself holds",
+        "of a beam the position from the root, or the name of a point of it, such as tip; 0 says what the root itself "
+        "holds. Of a mesh the name of a group, whose nodes are held each, of a point, or of an interface or rigid "
+        "link, held by its mean motion",
     ]
     holds: Annotated[
         Sequence[Direction],

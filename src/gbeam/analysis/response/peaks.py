@@ -131,6 +131,7 @@ def load_peaks(
         von_mises=Extremes(v[2 * s : 3 * s], w[2 * s : 3 * s]) if _sheared(loads) else None,
         beam_torque=None if loads.beam_torque is None else Extremes(v[-1], w[-1]),
         supports=loads.supports,
+        support_names=loads.support_names,
         support_force=on_supports[:supports] if supports else None,
         support_moment=on_supports[supports:] if supports else None,
         stations=loads.stations,
