@@ -20,6 +20,7 @@ MODULES: tuple[str, ...] = (
     "codes.calculix_fillet",
     "codes.calculix_bent",
     "codes.calculix_links",
+    "codes.calculix_supports",
     "codes.scipy_place",
     "codes.exudyn_plane",
     "codes.exudyn_space",
