@@ -44,6 +44,74 @@ def frame(elements: int, rotary: float = 0.0) -> tuple[np.ndarray, np.ndarray, n
     return m, k, np.stack([np.linspace(0, L, count), *np.zeros((2, count))], axis=1)
 
 
+# First roots β L of the frequency equations, and forces of supports over the weight.
+HELD: dict[str, tuple[list[gb.Support], list[int], list[float], list[float]]] = {
+    "clamped": ([gb.Support("tip", ["z", "ry"])], [0], [4.73004074, 7.85320462], [1 / 2]),
+    "pinned": ([gb.Support("tip", ["z"])], [0], [3.92660231, 7.06858275], [3 / 8]),
+    "hinged": (
+        [gb.Support("foot", ["x", "y", "z", "rx", "rz"]), gb.Support("tip", ["z"])],
+        [],
+        [np.pi, 2 * np.pi],
+        [1 / 2, 1 / 2],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_a_beam_of_nodes_is_held_at_its_points(name: str) -> None:
+    supports, clamp, roots, forces = HELD[name]
+    model = gb.ImportedModel(*frame(40, rotary=1e-9))
+    held = model.reduced(modes=8, damping_ratio=0.01, clamp=clamp, points={"foot": 0}, supports=supports)
+    modes = gb.modes(held)
+    flap = np.array([f for f, way in zip(modes.frequency, modes.direction, strict=True) if way == "z"][:2])
+    np.testing.assert_allclose(np.sqrt(2 * np.pi * flap) * (MU / EI_Y) ** 0.25 * L, roots, rtol=1e-3)
+    loads = gb.static(held, acceleration=(0.0, 0.0, 5.0)).loads
+    assert loads is not None and loads.support_force is not None
+    np.testing.assert_allclose(loads.support_force[0, :, 2] / (5 * MU * L), forces, rtol=1e-3)
+    whole = loads.root_force[0] + loads.support_force[0].sum(axis=0)
+    np.testing.assert_allclose(whole, [0, 0, 5 * MU * L], atol=1e-9)
+
+
+def test_a_spring_of_a_node_is_that_of_a_beam() -> None:
+    section, metal = gb.Section.rectangle(B, H), gb.Material(RHO, E)
+    stay = {"z": 3e3, "ry": 20.0}
+    beam = gb.Beam(L, section, metal, damping_ratio=0.0, rotary_inertia=False, supports=[gb.Support(L, stiffness=stay)])
+    true = gb.assemble(beam, "FOAM", z=6)
+    spring = gb.Support("tip", stiffness=stay)
+    ours = gb.ImportedModel(*frame(40, rotary=1e-9)).reduced(modes=6, damping_ratio=0.0, clamp=[0], supports=[spring])
+    modes = gb.modes(ours)
+    flap = [f for f, way in zip(modes.frequency, modes.direction, strict=True) if way == "z"][:2]
+    np.testing.assert_allclose(flap, gb.modes(true).frequency[:2], rtol=1e-3)
+    loads = [gb.static(each, acceleration=(0.0, 0.0, 5.0)).loads for each in (ours, true)]
+    for name in ("support_force", "support_moment"):
+        mine, theirs = (getattr(each, name)[0, 0] for each in loads)
+        np.testing.assert_allclose(mine, theirs, rtol=1e-3, atol=1e-6)
+
+
+def test_what_matrices_cannot_hold_is_refused() -> None:
+    m, k, nodes = frame(8)
+    whole, plain = gb.ImportedModel(m, k, nodes), gb.ImportedModel(np.eye(27), np.eye(27), nodes)
+    how = dict(modes=2, damping_ratio=0.0)
+    for model, supports, keys, words in (
+        (whole, [gb.Support("lid", ["z"])], {"clamp": [0]}, r"supports\[0\]\.at is 'lid'; choose one of tip"),
+        (
+            plain,
+            [gb.Support("tip", ["ry"])],
+            {},
+            r"supports\[0\] holds ry at tip, whose node has no such unknown",
+        ),
+        (whole, [gb.Support("tip", ["z"])], {}, r"supports leave the body free to move along x and along y"),
+        (
+            whole,
+            2 * [gb.Support("tip", ["z"])],
+            {"clamp": [0]},
+            r"supports\[1\] holds z at tip, where it is held",
+        ),
+    ):
+        with pytest.raises(gb.InputError, match=words):
+            model.reduced(**how, supports=supports, **keys)
+
+
 def test_a_beam_of_nodes_is_the_beam() -> None:
     """Euler and Bernoulli's frequencies and deflection; the base's acceleration reaches all nodes."""
     m, k, nodes = frame(40)

@@ -96,6 +96,30 @@ def test_particles_that_stand_in_have_the_moments_of_the_beams(tmp_path: Path) -
         np.testing.assert_allclose(*sums, atol=1e-12 * np.abs(sums[1]).max())
 
 
+@pytest.mark.parametrize("stiffness", [{}, {"z": 500.0}], ids=["rigid", "spring"])
+def test_a_support_holds_it_in_the_shapes_of_its_file(tmp_path: Path, stiffness: dict[str, float]) -> None:
+    """As the beam with a support, whose shapes suit it: six of a cantilever are 0.1 % too high in frequency."""
+    path = tmp_path / "strip.sid"
+    path.write_text(written(beam(1, 1, 6)), encoding="ascii")
+    support = gb.Support("tip", [] if stiffness else ["z"], stiffness=stiffness)  # type: ignore[arg-type]
+    read = gb.read_sid(path, supports=[support])
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    at_tip = gb.Support(0.3, [] if stiffness else ["z"], stiffness=stiffness)  # type: ignore[arg-type]
+    whole = gb.Beam(0.3, strip, gb.Material(2700, 70e9), damping_ratio=0.01, supports=[at_tip])
+    true = gb.assemble(whole, "FOAM", axial=1, y=1, z=6)
+    assert read.size == 8 - (not stiffness) and "what shapes it lacks there is not known" in read.warnings[-1]
+    assert gb.modes(read).frequency[0] == pytest.approx(gb.modes(true).frequency[0], rel=2e-3)
+    pulse = gb.Flight(z=gb.Sine(20.0, duration=0.05), y=gb.Sine(10.0, duration=0.05))
+    mine, theirs = (gb.simulate(each, pulse, duration=0.1, step=5e-4, estimate=False) for each in (read, true))
+    loads, others = mine.body.loads, theirs.body.loads
+    whole_force = loads.root_force + loads.support_force.sum(axis=1)
+    np.testing.assert_allclose(whole_force, -mine.ground_force, atol=1e-9 * np.abs(whole_force).max())
+    force, other = loads.support_force[:, 0, 2], others.support_force[:, 0, 2]
+    np.testing.assert_allclose(force, other, atol=0.05 * np.abs(other).max())
+    with pytest.raises(gb.InputError, match=r"supports\[0\]\.at is 'lid'; choose one of tip"):
+        gb.read_sid(path, supports=[gb.Support("lid", ["z"])])
+
+
 def test_the_example_is_the_strip() -> None:
     """To the digits in which processors differ."""
     number = re.compile(r"[-+]?\d\.\d+E[-+]\d+")

@@ -17,9 +17,11 @@ import numpy as np
 from gbeam.arrays.types import Floats
 from gbeam.constants import Direction
 from gbeam.errors import InputError
+from gbeam.guards.checks import choice
+from gbeam.mechanics.equations.linear import damping_matrix
 from gbeam.mechanics.structure import Grip, Structure
 from gbeam.numerics.conditions import free_motions, least_motions
-from gbeam.structure.supports import Support
+from gbeam.structure.supports import DIRECTIONS, Support
 
 NOTHING = 1e-9  # of the largest: a force or moment that a place does not take up
 
@@ -131,6 +133,43 @@ class Holding:
             second=None if second is None else np.pad(second, ((0, 0), (0, count - n), (0, count - n))),
         )
         return replace(structure, coefficients=c.damped(felt[:n, :n]), grip=grip)
+
+
+def held_at_points(structure: Structure, supports: Sequence[Support], damping_ratio: Any = None) -> Structure:
+    """Hold a linear structure at its named points, in the shapes that it has.
+
+    A `damping_ratio` is of the modes that are left; without one they have the damping of the structure.
+    """
+    from scipy.sparse import csr_array
+
+    places = []
+    for i, support in enumerate(supports):
+        choice(f"supports[{i}].at", support.at, structure.points)
+        station = structure.points.index(support.at)
+        moved = structure.station_places.first[station]
+        rows = moved if structure.turns is None else np.concatenate([moved, structure.turns[station]])
+        motions = {}
+        for way in (*support.rigid, *support.yielding):
+            number = DIRECTIONS.index(way)
+            if number >= len(rows) or not np.isfinite(rows[number]).all():
+                problem = f"holds {way} at {support.at}, which does not say how it turns"
+                raise InputError(f"supports[{i}]", problem, f"leave {way} out")
+            motions[way] = csr_array(rows[[number]]), np.eye(6)[[number]]
+        places.append(Held(support, structure.station_places.r0[station], motions))
+    holding, c = Holding(places, structure.size), structure.coefficients
+    left, stiffness = holding.basis.toarray(), c.stiffness + holding.stiffness.toarray()
+    if not left.shape[1]:
+        fix = "hold fewer directions, or take a body with more shapes"
+        raise InputError("supports", f"hold all {structure.size} shapes of the body", fix)
+    answers = np.linalg.solve(left.T @ stiffness @ left, holding.static_loads(stiffness))
+    motions_of_all = holding.everywhere(np.eye(left.shape[1]), answers)
+    sprung = replace(structure, coefficients=replace(c, stiffness=stiffness))
+    held, free = sprung.turned(left), sprung.turned(motions_of_all)
+    if damping_ratio is not None:
+        kept = held.coefficients
+        held = replace(held, coefficients=kept.damped(damping_matrix(damping_ratio, kept.mass, kept.stiffness)))
+    doubt = "supports hold the body in the shapes that it has: what shapes it lacks there is not known"
+    return holding.hold(replace(held, warnings=(*held.warnings, doubt)), free, motions_of_all)
 
 
 def _acting(levers: Floats) -> list[int]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gbeam.arrays.tree import Value
-from gbeam.arrays.types import Floats, Indices
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
@@ -20,9 +20,11 @@ from gbeam.guards.quantities import MODAL_DAMPING, MODES_KEPT, Count, Mass, Moda
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.holding import Held, Holding
 from gbeam.mechanics.reduction import equivalent_particles, particles_of, reduce
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.solids.foreign import unit_size
+from gbeam.solids.held import about, levers, refuse_free
 from gbeam.solids.matrices import (
     EXACT,
     MOST,
@@ -35,6 +37,7 @@ from gbeam.solids.matrices import (
     mass_defect,
     mass_of_nodes,
     refuse_held,
+    resisted,
     rigid_body,
     rigid_motions,
     sparse_matrix,
@@ -43,6 +46,7 @@ from gbeam.solids.matrices import (
 )
 from gbeam.solids.plausibility import refuse_far
 from gbeam.structure.attachments import TIP
+from gbeam.structure.supports import DIRECTIONS, Support
 
 InertialLoad = Literal[
     "a_x", "a_y", "a_z", "alpha_x", "alpha_y", "alpha_z", "w_xx", "w_yy", "w_zz", "w_xy", "w_yz", "w_zx"
@@ -196,6 +200,10 @@ class ImportedModel(Value):
             "names of points, with displacements and rotations, on which other bodies hang: the static answers to "
             "forces and moments there come on top, so that the reduction is one by Craig and Bampton",
         ] = (),
+        supports: Annotated[
+            Sequence[Support],
+            "places that the base holds besides: [ { at, holds, stiffness, damping } ], each a point by its name",
+        ] = (),
         geometric: Annotated[
             Mapping[InertialLoad, Any] | None,
             "stiffness that the stress of a static load adds, by the motion of the root whose inertial load it is: "
@@ -234,6 +242,8 @@ class ImportedModel(Value):
         >>> model.reduced(modes=3, damping_ratio=0.01, total_mass=2.0)
         Structure(matrices, 3 coordinates, 2 kg)
         """
+        from scipy.linalg import block_diag
+
         places, unknowns = np.asarray(self.nodes), np.asarray(self.unknowns)
         held = [self._node(f"clamp[{i}]", number) for i, number in enumerate(clamp)]
         named = {name: self._node(f"points.{name}", number) for name, number in (points or {}).items()}
@@ -245,21 +255,37 @@ class ImportedModel(Value):
         if held:
             refuse_held(self.stiffness, rigid)
         free = (unknowns[:, 1] == OWN) | ~np.isin(unknowns[:, 0], held)
+        places_held = [self._held(i, support, named, free) for i, support in enumerate(supports)]
+        if places_held and not held and not resisted(self.stiffness, rigid).any():
+            elastic = [(each, way) for each in places_held for way in (*each.support.rigid, *each.support.stiffness)]
+            moved = [each.motions[way][1] @ about(each.centre) for each, way in elastic]
+            refuse_free("supports", np.concatenate([np.zeros((0, 6)), *moved]), places)
         attached = self._attached(interfaces, named)
         loads = np.concatenate([-(self.mass @ fields), attached], axis=1)
         length = extent_of(places, body)
         tip = self._number(named[TIP])
         tip_clamped = [f"the tip, node {tip}, is clamped and stays at 0"] if named[TIP] in held else []
-        reduction = reduce(self.stiffness[free][:, free], self.mass[free][:, free], loads[free], modes)
-        all_shapes = np.zeros((len(free), len(reduction.stiffness)))
-        all_shapes[free] = reduction.shapes
+        holding = Holding(places_held, int(free.sum()))
+        stiffness = self.stiffness[free][:, free] + holding.stiffness
+        reduction = reduce(
+            holding.left(stiffness),
+            holding.left(self.mass[free][:, free]),
+            np.concatenate([holding.left(loads[free]), holding.left(holding.yielding.T.toarray())], axis=1),
+            modes,
+            apart=holding.static_loads(stiffness),
+        )
+        motions, total = holding.everywhere(reduction.shapes, reduction.apart), len(reduction.stiffness)
+        lifting = motions[:, total:].T @ (stiffness @ motions[:, total:])
+        every_shape = np.zeros((len(free), motions.shape[1]))
+        every_shape[free] = motions
 
-        def build(n: int, damping_ratio: Any) -> Structure:
-            """Structure in the first coordinates."""
-            shapes = all_shapes[:, :n]
+        def moving(chosen: Indices, stiffness: Floats, damping_ratio: Any) -> Structure:
+            """Structure in the chosen of all motions, of which those of the reduction have unit mass."""
+            shapes = every_shape[:, chosen]
             products = (fields.T @ (self.mass @ shapes)).reshape(3, 4, -1)
             stress, unstressed = _geometric(geometric, shapes)
-            terms, particles, omitted = self._terms(shapes, reduction.stiffness[:n, :n], products, body, stress)
+            count = int((chosen < total).sum())
+            terms, particles, omitted = self._terms(shapes, stiffness, products, body, stress, count)
             first, turns = self._outputs(list(named.values()), shapes)
             return linear_structure(
                 terms,
@@ -275,7 +301,31 @@ class ImportedModel(Value):
                 modes=modes,
             )
 
+        def build(n: int, damping_ratio: Any) -> Structure:
+            """Structure in the first coordinates."""
+            stiffness = reduction.stiffness[:n, :n]
+            structure = moving(np.arange(n), stiffness, damping_ratio)
+            if not supports:
+                return structure
+            chosen = np.r_[:n, total : motions.shape[1]]
+            return holding.hold(structure, moving(chosen, block_diag(stiffness, lifting), 0.0), motions[:, chosen])
+
         return reduction.structure(build, damping_ratio)
+
+    def _held(self, i: int, support: Support, named: Mapping[str, int], free: Flags) -> Held:
+        """Motions of the point of the support number `i` by the `free` ones (u,) of the unknowns."""
+        from scipy.sparse import eye_array
+
+        choice(f"supports[{i}].at", support.at, tuple(named))
+        node, unknowns = named[support.at], np.asarray(self.unknowns)
+        rows, motions = eye_array(len(free), format="csr")[:, np.flatnonzero(free)], {}
+        for way in (*support.rigid, *support.yielding):
+            row = np.flatnonzero((unknowns[:, 0] == node) & (unknowns[:, 1] == 1 + DIRECTIONS.index(way)))
+            if not len(row):
+                problem = f"holds {way} at {support.at}, whose node has no such unknown in the matrices"
+                raise InputError(f"supports[{i}]", problem, f"leave {way} out, or export a node that has it")
+            motions[way] = rows[row], levers(np.zeros((1, 3)), way)
+        return Held(support, np.asarray(self.nodes)[node], motions)
 
     def _node(self, where: str, number: int) -> int:
         """Index of the node with a number. InputError about `where` if there is none."""
@@ -317,16 +367,16 @@ class ImportedModel(Value):
         return moved[:, :3], moved[:, 3:]
 
     def _terms(
-        self, shapes: Floats, stiffness: Floats, products: Floats, body: Floats, stress: Geometric
+        self, shapes: Floats, stiffness: Floats, products: Floats, body: Floats, stress: Geometric, count: int
     ) -> tuple[Coefficients, tuple[Floats, Places], list[str]]:
         """Coefficients of the equations, particles with their places, and warnings of what the matrices leave out.
 
         `products` (3, 4, n) are those of the shapes with the fields 1, x, y, z along each axis, `body` (10,) is that of
-        :func:`rigid_body`.
+        :func:`rigid_body`. The first `count` shapes have unit mass.
         """
         nodes, rows = displaced(np.asarray(self.unknowns), len(np.asarray(self.nodes)))
         of_nodes, moved = mass_of_nodes(self.mass, rows), shapes[rows]
-        sums, moments, missing = products[:, 0], products[:, 1:], mass_defect(of_nodes, moved)
+        sums, moments, missing = products[:, 0], products[:, 1:], mass_defect(of_nodes, moved[..., :count])
         unknown = missing > MOST and (np.asarray(self.unknowns)[:, 1] == OWN).any()
         if unknown:
             mass, *paths = equivalent_particles(body, sums, moments)
@@ -334,7 +384,9 @@ class ImportedModel(Value):
             mass, *paths = particles_of(np.asarray(self.nodes)[nodes], moved, of_nodes)
         places = Places(*paths)
         terms = coefficients(mass, places, stiffness, geometric=stress)
-        terms = replace(terms, mass=np.eye(len(stiffness)), rigid=body, **inertial_forces(sums, moments))
+        whole = shapes.T @ (self.mass @ shapes)
+        whole[:count, :count] = np.eye(count)
+        terms = replace(terms, mass=whole, rigid=body, **inertial_forces(sums, moments))
         if missing <= EXACT:
             return terms, (mass, places), []
         if not unknown:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Floats, Indices
+from gbeam.arrays.types import Flags, Floats, Indices
 from gbeam.errors import InputError
 from gbeam.mechanics.equations.linear import PAIRS
 from gbeam.mechanics.fields.taylor import EPSILON
@@ -113,12 +113,21 @@ def extent_of(places: Floats, body: Floats) -> float:
     return farthest if farthest >= gyration else 3**0.5 * gyration
 
 
+def resisted(stiffness: Any, rigid: Floats) -> Flags:
+    """Flags (6,) of rigid motions (u, 6) that a stiffness resists."""
+    return _strains(stiffness, rigid) > STRAINED
+
+
+def _strains(stiffness: Any, rigid: Floats) -> Floats:
+    """Largest forces (6,) against rigid motions (u, 6), as shares of those in a stiffness."""
+    force, magnitude = np.abs(stiffness @ rigid), abs(stiffness) @ np.abs(rigid)
+    return np.asarray(force.max(axis=0) / np.maximum(magnitude.max(axis=0), 1e-300))
+
+
 def refuse_held(stiffness: Any, rigid: Floats) -> None:
     """Refuse a stiffness that resists rigid motions (u, 6): the structure is held, or its nodes lie elsewhere."""
-    force, magnitude = np.abs(stiffness @ rigid), abs(stiffness) @ np.abs(rigid)
-    share = force.max(axis=0) / np.maximum(magnitude.max(axis=0), 1e-300)
-    if share.max() > STRAINED:
-        i = int(share.argmax())
+    if resisted(stiffness, rigid).any():
+        i, force = int(_strains(stiffness, rigid).argmax()), np.abs(stiffness @ rigid)
         name = f"moving along {'xyz'[i]}" if i < 3 else f"turning about {'xyz'[i - 3]}"
         problem = f"resists {name} as a rigid body, in row {int(force[:, i].argmax())}"
         fix = "are nodes, units and the order of rows right? Give the matrices of the free structure, or no clamp"

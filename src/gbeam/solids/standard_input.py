@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any
 
@@ -16,9 +16,11 @@ from gbeam.guards.quantities import ModalDamping
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, rest_modes
 from gbeam.mechanics.fields.taylor import EPSILON, Places
+from gbeam.mechanics.holding import held_at_points
 from gbeam.mechanics.reduction import equivalent_particles
 from gbeam.mechanics.structure import Structure, linear_structure
 from gbeam.solids.matrices import with_tip
+from gbeam.structure.supports import Support
 
 ALIKE = 1e-6  # of the largest: two ways to the same moments
 # Columns of the centrifugal terms: the standard's, and another that is met.
@@ -38,6 +40,11 @@ def read_sid(
         Mapping[str, int] | None,
         "numbers of nodes of output by name; the ``tip`` is the farthest from the root otherwise",
     ] = None,
+    supports: Annotated[
+        Sequence[Support],
+        "places that the base holds besides: [ { at, holds, stiffness, damping } ], each a point by its name; the body "
+        "keeps the shapes of its file",
+    ] = (),
     kind: Annotated[str, "name for results"] = "standard input data",
 ) -> Structure:
     """Read a flexible body of standard input data (SID).
@@ -100,11 +107,16 @@ def read_sid(
         warnings=("Ct has no geometric stiffness: what the stress of loads stiffens or softens is left out",) * lacking,
         unstiffened=lacking,
     )
+    if damping_ratio is None:
+        structure = replace(structure, coefficients=terms)
+    if supports:
+        structure = held_at_points(structure, supports, damping_ratio)
     if damping_ratio is not None:
         return structure
+    terms = structure.coefficients
     frequency, modes = rest_modes(terms.mass, terms.stiffness)
     ratios = tuple(np.diagonal(modes.T @ terms.damping @ modes) / (2 * frequency))
-    return replace(structure, coefficients=terms, damping_ratio=ratios)
+    return replace(structure, damping_ratio=ratios)
 
 
 def _slope(block: Mapping[str, Floats], count: int) -> Floats:
