@@ -253,7 +253,7 @@ def test_what_supports_cannot_hold_is_refused(supports: list[gb.Support], keys: 
         model(*supports, **keys)
 
 
-def test_a_beam_is_held_at_positions() -> None:
+def test_a_beam_is_held_at_its_points() -> None:
     section, foot = gb.Section.rectangle(WIDTH, HEIGHT), gb.Support("foot", ["z"])
-    with pytest.raises(gb.InputError, match=r"supports\[0\]\.at is 'foot', and a beam is held at positions; give"):
+    with pytest.raises(gb.InputError, match=r"supports\[0\]\.at is 'foot'; choose one of tip"):
         gb.Beam(LENGTH, section, STIFF, supports=[foot])

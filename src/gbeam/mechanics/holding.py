@@ -144,7 +144,7 @@ def held_at_points(structure: Structure, supports: Sequence[Support], damping_ra
 
     places = []
     for i, support in enumerate(supports):
-        choice(f"supports[{i}].at", support.at, structure.points)
+        choice(f"supports[{i}].at", support.name, structure.points)
         station = structure.points.index(support.at)
         moved = structure.station_places.first[station]
         rows = moved if structure.turns is None else np.concatenate([moved, structure.turns[station]])

@@ -316,13 +316,13 @@ class ImportedModel(Value):
         """Motions of the point of the support number `i` by the `free` ones (u,) of the unknowns."""
         from scipy.sparse import eye_array
 
-        choice(f"supports[{i}].at", support.at, tuple(named))
-        node, unknowns = named[support.at], np.asarray(self.unknowns)
+        choice(f"supports[{i}].at", support.name, tuple(named))
+        node, unknowns = named[support.name], np.asarray(self.unknowns)
         rows, motions = eye_array(len(free), format="csr")[:, np.flatnonzero(free)], {}
         for way in (*support.rigid, *support.yielding):
             row = np.flatnonzero((unknowns[:, 0] == node) & (unknowns[:, 1] == 1 + DIRECTIONS.index(way)))
             if not len(row):
-                problem = f"holds {way} at {support.at}, whose node has no such unknown in the matrices"
+                problem = f"holds {way} at {support.name}, whose node has no such unknown in the matrices"
                 raise InputError(f"supports[{i}]", problem, f"leave {way} out, or export a node that has it")
             motions[way] = rows[row], levers(np.zeros((1, 3)), way)
         return Held(support, np.asarray(self.nodes)[node], motions)

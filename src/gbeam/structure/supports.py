@@ -91,6 +91,11 @@ class Support(Value):
         return self.at
 
     @property
+    def name(self) -> str:
+        """Name of the place, of one on a mesh or matrices; of a position its number, which is no name there."""
+        return str(self.at)
+
+    @property
     def rigid(self) -> tuple[Direction, ...]:
         """Directions that are held rigidly."""
         return tuple(direction for direction in self.holds if direction not in self.stiffness)
