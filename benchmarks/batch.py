@@ -33,7 +33,7 @@ import numpy as np
 from exudyn_choices import PROBLEMS, Choice, Problem
 
 import gbeam as gb
-from gbeam.analysis.response.batch import TOGETHER
+from gbeam.analysis import TOGETHER
 from gbeam.integrate import side_by_side
 
 spec = importlib.util.spec_from_file_location("comparison", os.path.join(HERE, "exudyn.py"))

@@ -16,7 +16,7 @@ import jax
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.response.batch import TOGETHER
+from gbeam.analysis import TOGETHER
 
 SECTION, MATERIAL = gb.Section.general(7.2968e-5, 8.2189e-9, 8.2189e-9), gb.Material(2766.7, 6.8952e10)
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gbeam.motion import machines
+from gbeam import machines
 
 F16 = Path(__file__).parents[1] / "examples" / "data" / "f16_8g_turn.csv"
 SCENARIO = """\

@@ -13,6 +13,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
+from importlib import import_module
 from importlib.metadata import files
 from typing import Any
 
@@ -22,12 +23,12 @@ import numpy as np
 import scipy.sparse
 from plan_minute import TIME, f16, maneuvers
 
+from gbeam import Centrifuge, Flight, MachineLimits, machines
 from gbeam.constants import STANDARD_GRAVITY
-from gbeam.motion import Centrifuge, Flight, MachineLimits, machines
+from gbeam.motion import PiecewiseLinear
 from gbeam.motion.centrifuge import course
-from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.numerics import minimise as sequential
 
+sequential = import_module("gbeam.numerics.minimise")  # altered below
 G, IDLE, LAST = STANDARD_GRAVITY, 1.4 * STANDARD_GRAVITY, 60.0
 MACHINE = machines["specimen-3.3m"]
 LIMITS = MachineLimits(*MACHINE.limits.axes, inertia=2000.0, power=80e3)

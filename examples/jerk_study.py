@@ -13,9 +13,22 @@ from typing import Self
 import numpy as np
 from jerk_laws import Floats, first_mode, flat_terms, from_rest_terms, hann_transform
 
-from gbeam import Beam, Centrifuge, Flight, InputError, Material, Section, Structure, assemble, simulate, tabulated
-from gbeam.guards.checks import positive
-from gbeam.motion import Base, Profile, smoothed
+from gbeam import (
+    Beam,
+    Centrifuge,
+    Flight,
+    InputError,
+    Material,
+    Section,
+    Structure,
+    assemble,
+    simulate,
+    smoothed,
+    tabulated,
+)
+from gbeam.guards import positive
+from gbeam.motion import Profile
+from gbeam.results import Base
 
 G = 9.81  # m/s², as the paper has it
 LAWS = ("from-rest", "flat")

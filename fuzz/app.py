@@ -96,8 +96,7 @@ def play(_: list[str]) -> int:
     """Make the requests that a file of the folder lists; an answer of 500 is the exception behind it."""
     import httpx
 
-    from gbeam.app.access import Door
-    from gbeam.app.server import create_app
+    from gbeam.app import Door, create_app
 
     home, host = Path("home").absolute(), f"http://127.0.0.1:{PORT}"
     steps = json.loads(Path("steps.json").read_text(encoding="utf-8"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fuzz.cases import ROOT, Case, Random
 from fuzz.scenarios import NUMBERS, UNITS, WORDS, texts
-from gbeam.cli.program import verbs
+from gbeam.cli import verbs
 
 # Options of one verb or another, each with a sound value; a flag has none.
 OPTIONS: dict[str, str | None] = {

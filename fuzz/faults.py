@@ -104,7 +104,7 @@ def disturbed(folder: Path, number: int, delay: float) -> tuple[int, str]:
 
 def unsound(folder: Path, *, hidden: bool = False) -> Iterator[str]:
     """List what is wrong with a folder after a fault."""
-    from gbeam.io.netcdf import read_stored
+    from gbeam.io import read_stored
 
     out = folder / "out"
     names = {each.name for each in out.iterdir()} if out.exists() else set()

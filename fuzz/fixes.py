@@ -11,9 +11,7 @@ from typing import Any
 from fuzz.cases import Case
 from fuzz.judge import judge
 from fuzz.worker import Answer
-from gbeam.scenario.schema.fields import fields_of
-from gbeam.scenario.schema.record import Record
-from gbeam.scenario.text.revise import with_entry, without_entry
+from gbeam.scenario import Record, fields_of, with_entry, without_entry
 
 CALLS = 16  # of a case: a few mistakes have dozens of orders in which they can be mended
 RECORD = ("motion", "flight", "record")

@@ -12,8 +12,8 @@ import numpy as np
 
 from fuzz.cases import ROOT, Random
 from fuzz.scenarios import toml
-from gbeam.mechanics.models import KINDS as MODELS
-from gbeam.mechanics.tree.joints import KINDS, SLIDES
+from gbeam.mechanics import JOINT_KINDS, SLIDES
+from gbeam.mechanics import MODEL_KINDS as MODELS
 
 CELLS, SIZE = (4, 2, 1), (0.2, 0.04, 0.01)
 METAL = {"density": "2700 kg/m^3", "youngs_modulus": "70 GPa", "poissons_ratio": 0.3}
@@ -122,9 +122,9 @@ def _carrying(body: dict[str, Any]) -> list[str]:
 
 
 def _joint(chosen: Random, body: str, on: str) -> dict[str, Any]:
-    kind = chosen.choice(list(KINDS))
+    kind = chosen.choice(list(JOINT_KINDS))
     joint: dict[str, Any] = {"kind": kind, "body": body, "on": on}
-    if axes := KINDS[kind].axes:
+    if axes := JOINT_KINDS[kind].axes:
         joint["axes"] = [[0, 1, 0], [0, 0, 1]][:axes] if chosen.random() < 0.7 else [[1, 0, 0], [0, 1, 0]][:axes]
     if chosen.random() < 0.3:
         joint["turn"] = [0, f"{chosen.uniform(-90, 90):.2g} deg", 0]
@@ -132,7 +132,7 @@ def _joint(chosen: Random, body: str, on: str) -> dict[str, Any]:
         joint["at"] = [0, 0, "50 mm"]
     told: dict[str, dict[str, Any]] = {}
     prescribed = chosen.random() < 0.25
-    for name in KINDS[kind].names_in("stiffness"):
+    for name in JOINT_KINDS[kind].names_in("stiffness"):
         if kind == "fixed" and chosen.random() < 0.6:
             continue
         slides = name in SLIDES
@@ -146,7 +146,9 @@ def _joint(chosen: Random, body: str, on: str) -> dict[str, Any]:
         if not prescribed and chosen.random() < 0.15:
             told.setdefault("stops", {})[name] = ["-5 mm", "5 mm"] if slides else ["-10 deg", "10 deg"]
             told.setdefault("stop_stiffness", {})[name] = "1e5 N/m" if slides else "1e3 N m/rad"
-    rates = [each for each in KINDS[kind].names_in("rate") if kind != "fixed" or each in told.get("stiffness", {})]
+    rates = [
+        each for each in JOINT_KINDS[kind].names_in("rate") if kind != "fixed" or each in told.get("stiffness", {})
+    ]
     for name in rates:
         slides = name in SLIDES
         smooth = {"profile": "smooth-step", "level": "0.2 m/s" if slides else "90 deg/s", "duration": "0.1 s"}
@@ -162,7 +164,7 @@ def _joint(chosen: Random, body: str, on: str) -> dict[str, Any]:
         if chosen.random() < 0.2:
             told.setdefault("effort", {})[name] = smooth | {"level": "2 N" if slides else "0.5 N m"}
     for key, values in told.items():
-        joint[key] = next(iter(values.values())) if len(KINDS[kind].names_in(key)) == 1 else values
+        joint[key] = next(iter(values.values())) if len(JOINT_KINDS[kind].names_in(key)) == 1 else values
     return joint
 
 
@@ -170,7 +172,7 @@ def _drives(joints: dict[str, Any]) -> list[tuple[str, list[str]]]:
     """Coordinates that a controller may drive, and what measures them."""
     free: list[tuple[str, list[str]]] = []
     for name, joint in joints.items():
-        kind = KINDS[joint["kind"]]
+        kind = JOINT_KINDS[joint["kind"]]
         if "rate" not in joint and kind.axes:
             free += [(f"{name}.{each}", [f"{name}.{each}", f"{name}.{each}_rate"]) for each in kind.names]
         elif "rate" not in joint and kind.turns:

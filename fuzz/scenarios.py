@@ -11,8 +11,8 @@ from functools import cache
 from typing import Any
 
 from fuzz.cases import ROOT, Case, Random
-from gbeam.guards.kinds import KINDS, USUAL
-from gbeam.scenario.template import template
+from gbeam.guards import KINDS, USUAL
+from gbeam.scenario import template
 
 UNITS = sorted({unit for kind in KINDS.values() for unit in (kind.unit, kind.example.split(" ", 1)[-1])})
 UNITS += [unit for known in USUAL.values() for unit in known] + [

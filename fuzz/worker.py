@@ -115,7 +115,7 @@ def _child(arguments: list[str], folder: Path, aside: str, out: Path, err: Path,
 
 def _show_words_on_files() -> None:
     """Print what a library says of a file as the program does; another warning keeps its place in the source."""
-    from gbeam.cli.process import shorten_warnings
+    from gbeam.cli import shorten_warnings
 
     as_python = warnings.showwarning
     shorten_warnings()

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from gbeam.cli.process import FIGURES
+from gbeam.cli import FIGURES
 from gbeam.progress import INTERVAL
 
 (COMMAND,) = entry_points(group="console_scripts", name="gbeam")

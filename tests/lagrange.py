@@ -17,8 +17,7 @@ import numpy as np
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam import Structure
-from gbeam.arrays.namespace import is_jax, namespace
-from gbeam.arrays.tree import record
+from gbeam.arrays import is_jax, namespace, record
 
 from .differences import along, hessian, jacobian
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.response.settings import Settings
-from gbeam.results.criteria import Limits
+from gbeam.analysis import Settings
+from gbeam.results import Limits
 
 
 def respond(structure: gb.Structure, motion: gb.Flight) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from gbeam import Hub, Structure
-from gbeam.motion import Base
+from gbeam.results import Base
 from validation.residuals import hinged
 
 from .differences import jacobian

@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 
 import gbeam as gb
-from gbeam.results.body_response import BodyResponse
-from gbeam.results.parts import Base, Extremes, Outline, Peaks, VectorPeaks
-from gbeam.results.system import Assembly, Maxima
+from gbeam.results import Assembly, Base, BodyResponse, Extremes, Maxima, Outline, Peaks, VectorPeaks
 
 
 def of_beam(

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.response.settings import Settings
-from gbeam.guards.kinds import kind_of_argument
+from gbeam.analysis import Settings
+from gbeam.guards import kind_of_argument
 
 from .scenarios import FAST, FREE_HUB
 

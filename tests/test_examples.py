@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gbeam
-from gbeam.report.facts import facts as to_json
+from gbeam.report import facts as to_json
 from gbeam.scenario import build, loads, template
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.checks import RANGES, implausible
+from gbeam.guards import RANGES, implausible
 from gbeam.scenario import template
 
 from . import scenarios, specimens
@@ -127,7 +127,7 @@ def test_a_slip_of_a_motion_is_named(slip: str) -> None:
 
 def test_an_arm_in_millimetres_is_named_by_plan() -> None:
     machine = gb.Centrifuge(FLIGHT, arm=3300.0, control_point=0.15, inverse="flat", gravity=False).over(0.0, 0.5)
-    from gbeam.motion.protocol import implausible_motion
+    from gbeam.motion import implausible_motion
 
     (warning,) = implausible_motion(machine, "motion.spin", (0.0, 0.5))
     assert warning.startswith("motion.spin.arm is 3300 m") and "3300 mm" in warning

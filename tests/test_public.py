@@ -15,16 +15,14 @@ import pytest
 import gbeam
 from gbeam import constants
 from gbeam.constants import Verb
-from gbeam.integrate.schemes import SCHEMES
-from gbeam.mechanics.models import KINDS as MODELS
-from gbeam.mechanics.tree.joints import KINDS as JOINTS
-from gbeam.motion.centrifuge.centrifuge import MOUNTINGS
-from gbeam.motion.centrifuge.course import INVERSES
-from gbeam.motion.records.units import UNITS
+from gbeam.integrate import SCHEMES
+from gbeam.mechanics import JOINT_KINDS as JOINTS
+from gbeam.mechanics import MODEL_KINDS as MODELS
+from gbeam.motion import INVERSES, MOUNTINGS, UNITS
 from gbeam.questions import QUESTIONS, Options
-from gbeam.results.result import Result
-from gbeam.scenario.schema.response import PARAMETERS
-from gbeam.structure.shapes import SHAPES, Dimensions
+from gbeam.results import Result
+from gbeam.scenario import PARAMETERS
+from gbeam.structure import SHAPES, Dimensions
 
 SOURCE = Path(gbeam.__file__)
 STUB = ast.parse(SOURCE.with_suffix(".pyi").read_text(encoding="utf-8")).body

@@ -18,13 +18,21 @@ import pint
 import pytest
 
 import gbeam as gb
-from gbeam.arrays.tree import Value
-from gbeam.guards.arguments import typed
-from gbeam.guards.kinds import KINDS, PLAIN, USUAL, WRITTEN, Kinds, common_kind, element_kinds, kind_of_argument
-from gbeam.guards.units import unit_of
-from gbeam.mechanics.tree.joints import OF_COORDINATES
-from gbeam.results.errors import Errors
-from gbeam.results.measures import LoadDifference
+from gbeam.arrays import Value
+from gbeam.guards import (
+    KINDS,
+    PLAIN,
+    USUAL,
+    WRITTEN,
+    Kinds,
+    common_kind,
+    element_kinds,
+    kind_of_argument,
+    typed,
+    unit_of,
+)
+from gbeam.mechanics import OF_COORDINATES
+from gbeam.results import Errors, LoadDifference
 
 from .test_arguments import PUBLIC, Samples, called
 

@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from gbeam import Hub, Structure
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-from gbeam.mechanics.tree.equations import Inputs, Tree
-from gbeam.mechanics.tree.one_body import hub_system
+from gbeam.arrays import namespace, record
+from gbeam.mechanics import Inputs, Tree, hub_system
 
 Array = Any
 

@@ -5,6 +5,6 @@ Without ``-P`` Python itself takes its first modules, and gbeam, from the curren
 
 import sys
 
-from gbeam.cli import main
+from gbeam.cli.entry import main
 
 sys.exit(main())

@@ -46,6 +46,6 @@ def view(result: Any) -> Any:
 
 def plot(result: Any, what: str, title: str) -> Panels:
     """Draw one of a result's figures with Matplotlib."""
-    from gbeam.plots import plot
+    from gbeam.plots.output import plot
 
     return plot(result, what, title)

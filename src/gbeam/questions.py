@@ -431,7 +431,7 @@ def campbell(
 
 def machine_of(case: Case, motion: str | None) -> tuple[str, Any]:
     """Return name and prepared motion of the centrifuge chosen by `motion`; InputError if that is none."""
-    from gbeam.motion import Centrifuge
+    from gbeam.motion.centrifuge.centrifuge import Centrifuge
 
     name = motion_of(case.motions, motion, CENTRIFUGE)
     current = prepared(case, name)

@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam import Beam, Material, Model, Response, Section, Structure, assemble
-from gbeam.results.body_response import BodyResponse
-from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Base, Peaks
+from gbeam.results import AxesResult, Base, BodyResponse, Peaks
 
 LENGTH = 0.3
 SECTION = Section.rectangle(0.02, 0.004)

@@ -10,13 +10,11 @@ import pytest
 from scipy.signal import find_peaks
 
 from gbeam import Comparison, InputError, Response, compare
-from gbeam.analysis.imitation.accounting import History, account
-from gbeam.arrays.tree import each_leaf
-from gbeam.report.machine import accounting_lines as lines
-from gbeam.report.machine import judged_lines
-from gbeam.results.facts import facts_of
-from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.parts import Base
+from gbeam.analysis import History, account
+from gbeam.arrays import each_leaf
+from gbeam.report import accounting_lines as lines
+from gbeam.report import judged_lines
+from gbeam.results import AxesResult, Base, LimitUse, facts_of
 
 from .helpers import LENGTH, of_tip, with_body
 

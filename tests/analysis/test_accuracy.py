@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.accuracy.correction import RESOLVED, Correction, Departures, Within
-from gbeam.analysis.system.solution import Solution
-from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.tree.frames import Frame
-from gbeam.mechanics.tree.one_body import moving_system
-from gbeam.results.parts import Base
+from gbeam.analysis import RESOLVED, Correction, Departures, Solution, Within
+from gbeam.integrate import Trajectory
+from gbeam.mechanics import Frame, moving_system
+from gbeam.results import Base
 
 from ..differences import jacobian
 from ..lagrange import quickly_compiled

@@ -16,13 +16,8 @@ from scipy.interpolate import BSpline
 from scipy.optimize import brentq
 
 import gbeam as gb
-from gbeam.analysis.accuracy.estimate import cure_of_theory
-from gbeam.analysis.steady.loss import _richer_loss
-from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.path import Path
-from gbeam.analysis.system.richer import with_beams
-from gbeam.mechanics.theory import theory_of
+from gbeam.analysis import Drive, Path, cure_of_theory, loss_of_model, subject_of, with_beams
+from gbeam.mechanics import theory_of
 
 from ..frame import Frame, cantilever
 
@@ -277,7 +272,7 @@ def test_a_strip_on_edge_buckles_sideways() -> None:
     true = 4.0126 * np.sqrt(rigidity) / LENGTH**2
     system = subject_of(loaded(1.0), None).system
     thick = with_beams(system, {"beam": theory_of(system.flexible["beam"]).thick})
-    lost = _richer_loss(thick, Path(Drive(), lambda drive, force: replace(drive, factor=force)), true, None)
+    lost = loss_of_model(thick, Path(Drive(), lambda drive, force: replace(drive, factor=force)), true, None)
     assert lost == pytest.approx(true, rel=2e-3)  # and its own deflection
     for force, stays in ((0.9 * true, True), (1.1 * true, False)):
         rest = gb.static(loaded(force))

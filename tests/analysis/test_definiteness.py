@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.response.loss import Drive, lowest_over_time, worst_loss
-from gbeam.results.parts import Base
+from gbeam.analysis import Excitation as Drive
+from gbeam.analysis import lowest_over_time, worst_loss
+from gbeam.results import Base
 
 from .helpers import EI, LENGTH, LINE, OMEGA, SECTION, strip
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.report.description import text
+from gbeam.report import description_text as text
 
 STRIP = gb.Beam(
     0.3,

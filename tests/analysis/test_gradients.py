@@ -12,8 +12,8 @@ import pytest
 
 import gbeam as gb
 import gbeam.arrays.jax_setup
-from gbeam.arrays.namespace import namespace
-from gbeam.motion import Base
+from gbeam.arrays import namespace
+from gbeam.results import Base
 
 from ..lagrange import quickly_compiled
 from ..specimens import ALUMINIUM, BOX, HUB_INERTIA, HUB_RADIUS, LENGTH, METAL, STRIP

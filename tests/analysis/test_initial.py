@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Hub, Initial, InputError, Response, Structure, System, modes, simulate, static
-from gbeam.analysis.system.start import started
+from gbeam.analysis import started
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST

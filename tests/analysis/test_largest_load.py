@@ -22,9 +22,8 @@ from gbeam import (
     simulate,
 )
 from gbeam import Flight as InFlight
-from gbeam.analysis.imitation.accounting import largest_load
-from gbeam.analysis.outline import ends_of
-from gbeam.results.parts import Base
+from gbeam.analysis import ends_of, largest_load
+from gbeam.results import Base
 
 from .helpers import ALUMINIUM, LENGTH, SECTION, of_tip
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import gbeam as gb
+from gbeam.analysis import Looks, highest, times_of_peaks
 from gbeam.analysis.accuracy import looks
-from gbeam.analysis.accuracy.looks import Looks, highest, times_of_peaks
-from gbeam.numerics.peaks import peak_difference
+from gbeam.numerics import peak_difference
 
 TIME = np.linspace(0.0, 10.0, 2001)
 

@@ -7,7 +7,7 @@ import pytest
 
 import gbeam as gb
 from gbeam import Flight, Hub
-from gbeam.analysis.outline import TIMES, outline_of
+from gbeam.analysis import TIMES, outline_of
 
 from ..specimens import BODY, LENGTH, laden, states
 from .helpers import strip

@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 import gbeam as gb
-from gbeam.numerics.peaks import extremes, peak_difference
+from gbeam.numerics import extremes, peak_difference
 
 LENGTH, WIDTH, DENSITY, MODULUS = 0.5, 0.004, 2700.0, 70e9
 MASS = DENSITY * WIDTH**2 * LENGTH

@@ -26,7 +26,7 @@ from gbeam import (
     static,
     trapezoid,
 )
-from gbeam.results.parts import VectorPeaks
+from gbeam.results import VectorPeaks
 
 from ..specimens import hub_beam
 from .helpers import LENGTH, strip

@@ -22,11 +22,8 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.analysis.steady.static import rest_of
-from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import settled
-from gbeam.motion import Base
+from gbeam.analysis import Drive, rest_of, settled, subject_of
+from gbeam.results import Base
 
 from .helpers import EA, EI, LENGTH, LINE, strip
 

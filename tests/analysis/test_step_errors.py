@@ -16,12 +16,9 @@ import pytest
 from numpy.polynomial import legendre
 
 import gbeam as gb
-from gbeam.analysis.response.peaks import peaks_of_coordinates
-from gbeam.analysis.response.posed import Posed, pose, prepared
-from gbeam.analysis.response.step_errors import observed_order
-from gbeam.analysis.response.stepping import answered, refine
-from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.section_forces import section_forces
+from gbeam.analysis import Posed, answered, observed_order, peaks_of_coordinates, pose, prepared, refine
+from gbeam.integrate import Trajectory
+from gbeam.mechanics import section_forces
 from tests.crossing import crossed
 from validation.accuracy import integrators
 

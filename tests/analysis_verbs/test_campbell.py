@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Hub, InputError, Model, assemble, campbell, constant, critical_speed_map, modes
-from gbeam.results.facts import json_of
+from gbeam.results import json_of
 
 from .beams import HUB, HUB_2009, beam_2009, slender
 

@@ -7,14 +7,9 @@ import pytest
 import scipy.io
 
 import gbeam as gb
-from gbeam.analysis.control.outputs import outputs_of
-from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import placed, settled
-from gbeam.motion import Base
+from gbeam.analysis import Drive, outputs_of, placed, settled, subject_of
 from gbeam.report import text
-from gbeam.results.facts import json_of
-from gbeam.results.state_space import Signal
+from gbeam.results import Base, Signal, json_of
 
 from .beams import ALUMINIUM, BOX, FREE_2009, HUB_2009, beam_2009, structure_2009
 

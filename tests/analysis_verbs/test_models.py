@@ -11,7 +11,7 @@ import pytest
 
 import gbeam as gb
 from gbeam import Hub, ResponseSettings, SmoothStep, simulate
-from gbeam.analysis.model_study import SHAPES_FINE, shape_tail
+from gbeam.analysis import SHAPES_FINE, shape_tail
 
 from ..calling import main
 from ..scenarios import APPENDAGE, SLEW, model, response

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.arrays.tree import each_leaf
-from gbeam.mechanics.section_forces import section_forces
+from gbeam.arrays import each_leaf
+from gbeam.mechanics import section_forces
 
 from ..specimens import COMPLETE
 

@@ -184,7 +184,7 @@ def test_a_force_moves_it_too_and_an_inertia_that_changes_is_said() -> None:
 
 def test_a_refinement_that_cannot_be_run_keeps_the_command_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A free body under a constant thrust had a refined command so large that its run broke off: an IndexError."""
-    from gbeam.analysis.control.plants import Plant
+    from gbeam.analysis import Plant
 
     about, rounds = Plant.perturbed_runs, []
 

@@ -10,11 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gbeam.figures import steady
-from gbeam.io.netcdf import read_stored
+from gbeam.figures import campbell
+from gbeam.io import read_stored
 from gbeam.plots import draw
-from gbeam.results.modal import Campbell
-from gbeam.results.result import each_once
+from gbeam.results import Campbell, each_once
 
 from ..scenarios import SLEWING, SLEWING_AND_FLYING
 
@@ -107,12 +106,12 @@ def test_campbells_plot_shows_the_modes_that_the_multiples_meet():
     diagram = Campbell(
         "slew", "FOAM", speed, frequency, 0 * frequency, 0 * frequency, ("y", "y", "x"), (1, 2), (), None
     )
-    panel = draw(steady.campbell(diagram, "title")).axes[0]
+    panel = draw(campbell(diagram, "title")).axes[0]
     assert panel.get_ylim()[1] < 1.0 and len(panel.lines) == 2 + 2
     assert [text.get_text() for text in panel.get_legend().get_texts()] == ["mode 1, y", "mode 2, y"]
 
     # In rpm: the same on another axis, each multiple with its name on its line and inside.
-    panel = draw(steady.campbell(replace(diagram, orders=(1, 2, 40)), "title", (30 / np.pi, "rpm"))).axes[0]
+    panel = draw(campbell(replace(diagram, orders=(1, 2, 40)), "title", (30 / np.pi, "rpm"))).axes[0]
     assert panel.get_xlabel() == "hub rate, rpm"
     np.testing.assert_allclose(panel.lines[0].get_xdata(), speed * 30 / np.pi)
     orders = {text.get_text(): text.get_position() for text in panel.texts}

@@ -34,8 +34,7 @@ def site(tmp_path: Path) -> Site:
     httpx = pytest.importorskip("httpx")
     import asyncio
 
-    from gbeam.app.access import Door
-    from gbeam.app.server import create_app
+    from gbeam.app import Door, create_app
 
     door = Door(create_app(tmp_path), PORT, "the-token")
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from gbeam.app.access import Door
+from gbeam.app import Door
 
 from ..scenarios import FAST
 from .conftest import HOST, PORT, Site

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.app.documents import suggested
+from gbeam.app import suggested
 
 NONE: dict[str, str] = {}
 

@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 import gbeam as gb
-from gbeam.app.verbs import arguments
-from gbeam.app.verbs import verbs as offered
-from gbeam.cli.program import parsed
-from gbeam.cli.program import verbs as program
+from gbeam.app import arguments
+from gbeam.app import verbs as offered
+from gbeam.cli import parsed
+from gbeam.cli import verbs as program
 from gbeam.questions import QUESTIONS
 
 from ..calling import Answer

@@ -17,10 +17,8 @@ from pathlib import Path
 import pytest
 
 import gbeam as gb
-from gbeam.app import files
+from gbeam.app import LIMITED, Jobs, changes, files
 from gbeam.app import jobs as module
-from gbeam.app.documents import changes
-from gbeam.app.jobs import LIMITED, Jobs
 
 from ..guards.test_importing import SCENARIO, sprung, trap
 from ..scenarios import FAST
@@ -362,7 +360,7 @@ def test_a_run_ends_after_its_time(tmp_path: Path, sleeping: None, monkeypatch: 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not limit a process's address space")
 def test_a_run_has_so_much_memory_only(tmp_path: Path) -> None:
-    hungry = f"from gbeam import cli\ncli.main = lambda: len(b'0' * (2 << 30))\n{LIMITED}"
+    hungry = f"from gbeam.cli import entry\nentry.main = lambda: len(b'0' * (2 << 30))\n{LIMITED}"
     command = [sys.executable, "-P", "-c", hungry, str(1 << 30), "60"]
     ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ended.returncode != 0 and "MemoryError" in ended.stderr

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.scenario.template import template
+from gbeam.scenario import template
 
 from ..scenarios import FAST
 from .conftest import Site

@@ -16,7 +16,7 @@ def test_no_request_is_a_defect(tmp_path: Path) -> None:
     pytest.importorskip("fastapi")
     schemathesis: Any = pytest.importorskip("schemathesis")  # here: every process of the tests imports the files
     hypothesis: Any = pytest.importorskip("hypothesis")
-    from gbeam.app.server import create_app
+    from gbeam.app import create_app
 
     schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(tmp_path))
     tried = 0

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 import gbeam as gb
-from gbeam.report.page.result import viewer_data
-from gbeam.results.parts import Outline
+from gbeam.report import viewer_data
+from gbeam.results import Outline
 
 from ..plots.conftest import study
 from ..responses import clamped

@@ -14,8 +14,8 @@ import pytest
 
 import gbeam as gb
 from gbeam import progress
+from gbeam.cli import Watch
 from gbeam.cli import process as console
-from gbeam.cli.process import Watch
 from tests.specimens import laden
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from gbeam.cli import program
+from gbeam.cli import function, verbs
 
 from ..calling import spent
 
@@ -73,11 +73,11 @@ def test_version(gbeam: Call) -> None:
     assert gbeam("--version").out.strip()
 
 
-@pytest.mark.parametrize("verb", program.verbs())
+@pytest.mark.parametrize("verb", verbs())
 def test_every_verb_has_help(verb: str, gbeam: Call) -> None:
     answer = gbeam(verb, "--help")
     assert answer.status == 0
-    docstring = program.function(verb).__doc__ or ""
+    docstring = function(verb).__doc__ or ""
     assert " ".join(docstring.partition("Parameters\n")[0].split()) in " ".join(answer.out.split())
 
 
@@ -101,7 +101,7 @@ def test_help_is_light() -> None:
         heavy, (out,) = imported(("jax", "numpy", "xarray", "matplotlib", "pint", "pydantic", "scipy"), ("--help",))
         seconds.append(spent() - start)
     assert heavy == []
-    assert all(verb in out for verb in program.verbs())
+    assert all(verb in out for verb in verbs())
     assert min(seconds) < 0.5
 
 
@@ -119,8 +119,8 @@ def test_reading_and_describing_is_light() -> None:
 
 
 def test_questions_about_a_linear_model_need_no_jax() -> None:
-    verbs = ("static", "modes", "campbell", "critical-speed", "linearize")
-    hub = [(verb, EXAMPLES / "hubbeam2009_slew_3.toml", "--json") for verb in verbs]
+    steady = ("static", "modes", "campbell", "critical-speed", "linearize")
+    hub = [(verb, EXAMPLES / "hubbeam2009_slew_3.toml", "--json") for verb in steady]
     flight = ("static", EXAMPLES / "f16_8g_turn.toml", "--json")
     heavy, outputs = imported(NOT_FOR_READING, *hub, flight)
     assert heavy == [] and [json.loads(out)["outcome"] for out in outputs] == 6 * ["done"]

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from gbeam.cli.outputs import write_json
-from gbeam.cli.publication import publish
+from gbeam.cli import publish, write_json
 from gbeam.plots import save
 
 from ..calling import main

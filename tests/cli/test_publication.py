@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 import gbeam as gb
-from gbeam.cli.publication import publish
+from gbeam.cli import publish
 
 Call = Callable[..., Any]
 
@@ -70,7 +70,7 @@ def test_a_full_disk_keeps_what_was_there_and_puts_the_files_elsewhere(
 @pytest.mark.skipif(os.name != "posix", reason="asks whether a process runs")
 def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
     def killed(hidden: Path) -> None:
-        code = "import os, sys; from pathlib import Path; from gbeam.cli.publication import publish;"
+        code = "import os, sys; from pathlib import Path; from gbeam.cli import publish;"
         code += "publish(Path(sys.argv[1]), lambda hidden: os.kill(os.getpid(), 9))"
         assert subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=False).returncode == -9
         assert len(list(tmp_path.glob(".gbeam-*"))) == 2

@@ -17,8 +17,7 @@ from ..scenarios import FAST
 RECORD = '''
 from __future__ import annotations
 from dataclasses import dataclass
-from gbeam.results.declared import fact
-from gbeam.results.result import Result
+from gbeam.results import Result, fact
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Droop(Result):
@@ -114,7 +113,7 @@ def test_it_is_swept_differentiated_and_minimised() -> None:
 def test_it_is_in_the_app_and_in_the_schema() -> None:
     code = """
 import json, question_of_droop
-from gbeam.app.verbs import verb_facts
+from gbeam.app import verb_facts
 from gbeam.scenario import json_schema
 print(json.dumps([verb_facts(), json.loads(json_schema())]))
 """

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.response import simulation
 
 from ..calling import main
 from ..files import opened
@@ -232,7 +231,7 @@ def test_what_one_motion_lacks_the_others_keep(fast: Path, gbeam: Call, monkeypa
     def fail(*args: Any, name: str, **how: Any) -> gb.Response:
         if name == "spin":
             raise gb.ComputationError("not converged", "no relative equilibrium; use exact")
-        return simulation.simulate(*args, name=name, **how)
+        return gb.simulate(*args, name=name, **how)
 
     monkeypatch.setattr("gbeam.analysis.environments.simulate", fail)
     answer = gbeam("run", fast, "--json", "--out", "half")

@@ -14,12 +14,11 @@ from typing import Any
 
 import pytest
 
-from gbeam.cli import program
-from gbeam.cli.process import shorten_warnings
-from gbeam.cli.program import report_defect
-from gbeam.guards.limits import SCENARIO_BYTES
+from gbeam.cli import arguments as arguments_of
+from gbeam.cli import report_defect, shorten_warnings, verbs
+from gbeam.guards import SCENARIO_BYTES
 from gbeam.progress import INTERVAL
-from gbeam.scenario.text.source import standard_input
+from gbeam.scenario import standard_input
 
 Call = Callable[..., Any]
 ESCAPE = "\x1b[31m"
@@ -79,7 +78,7 @@ def test_a_scenario_from_standard_input_is_the_files(
 
 # Arguments of every verb that takes a scenario, besides that.
 NEEDED = {"fit": ["--data", "data.csv"], "optimize": ["--minimise", "tip.z.max_abs"]}
-OF_SCENARIOS = [verb for verb in program.verbs() if any(each.name == "SCENARIO" for each in program.arguments(verb))]
+OF_SCENARIOS = [verb for verb in verbs() if any(each.name == "SCENARIO" for each in arguments_of(verb))]
 
 
 @pytest.mark.parametrize("verb", OF_SCENARIOS)

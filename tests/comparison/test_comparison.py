@@ -12,8 +12,8 @@ import scipy.signal
 from scipy.linalg import expm
 
 from gbeam import Comparison, Flight, InputError, Joint, SmoothStep, System, compare, simulate, tabulated
-from gbeam.numerics.samples import displacement, largest_oscillator_acceleration, low_pass, oscillator_acceleration
-from gbeam.report.study import comparison_lines as lines
+from gbeam.numerics import displacement, largest_oscillator_acceleration, low_pass, oscillator_acceleration
+from gbeam.report import comparison_lines as lines
 
 from ..analysis.helpers import with_body
 

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Response, Sine, compare, simulate
-from gbeam.analysis.imitation.fatigue import fatigue, stress_cycles
-from gbeam.analysis.imitation.quantities import Quantities
-from gbeam.results.measures import Fatigue
+from gbeam.analysis import Quantities, fatigue, stress_cycles
+from gbeam.results import Fatigue
 
 from ..analysis.helpers import strip, with_body
 

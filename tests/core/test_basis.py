@@ -10,14 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gbeam.mechanics.fields.basis import (
-    Shapes,
-    bar_shapes,
-    bending_roots,
-    bending_shapes,
-    legendre_shapes,
-    quadrature,
-)
+from gbeam.mechanics import Shapes, bar_shapes, bending_roots, bending_shapes, legendre_shapes, quadrature
 
 L = 0.3
 MODES = 30

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gbeam import Model, PointMass, assemble
-from gbeam.mechanics.fields.basis import bending_shapes
+from gbeam.mechanics import bending_shapes
 
 from ..differences import along
 from ..lagrange import Complete, energy_of, second_order

@@ -17,9 +17,9 @@ import pytest
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from gbeam import Structure
-from gbeam.integrate.newton import accelerations
-from gbeam.mechanics.equations.inertia import Bodies, Particles, inertia_of
-from gbeam.motion import Base
+from gbeam.integrate import compiled_accelerations as accelerations
+from gbeam.mechanics import Bodies, Particles, inertia_of
+from gbeam.results import Base
 from validation.residuals import Hinged, hinged
 
 from ..differences import along, jacobian, rate

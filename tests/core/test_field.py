@@ -14,11 +14,21 @@ from scipy.interpolate import BarycentricInterpolator
 from scipy.linalg import expm
 
 from gbeam import Line, Model, Structure, assemble
-from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes, closed_forms, legendre_shapes, quadrature
-from gbeam.mechanics.fields.projected import ProjectedField, RootedField, projected_field
-from gbeam.mechanics.fields.series import SeriesField
-from gbeam.mechanics.fields.strains import StrainField, strain_field
-from gbeam.mechanics.fields.vectors import rotation_matrix, split
+from gbeam.mechanics import (
+    ProjectedField,
+    RootedField,
+    SeriesField,
+    StrainField,
+    bar_shapes,
+    bending_shapes,
+    closed_forms,
+    legendre_shapes,
+    projected_field,
+    quadrature,
+    rotation_matrix,
+    split,
+    strain_field,
+)
 
 from ..differences import hessian, jacobian
 from ..lagrange import quickly_compiled

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.numerics.series import STEP
+from gbeam.numerics import STEP
 
 STRIP = gb.Section.rectangle(width=0.02, thickness=0.004)
 ALUMINIUM = gb.Material(2700.0, 70e9, poissons_ratio=0.33)

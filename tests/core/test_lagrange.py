@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from gbeam import Structure
-from gbeam.motion import Base
+from gbeam.results import Base
 
 from ..differences import jacobian, rate
 from ..lagrange import (

@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from gbeam import Beam, InputError, Model, PointMass, Section, Structure, assemble
-from gbeam.mechanics.fields.basis import bar_shapes, bending_shapes
-from gbeam.mechanics.models import KINDS
+from gbeam.mechanics import MODEL_KINDS as KINDS
+from gbeam.mechanics import bar_shapes, bending_shapes
 
 from ..specimens import ALUMINIUM, TIP, appendage
 from ..specimens import STRIP_DENSITY as DENSITY

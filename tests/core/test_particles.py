@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.mechanics.equations.linear import Geometric
-from gbeam.motion import Base
+from gbeam.mechanics import Geometric
+from gbeam.results import Base
 
 from ..specimens import HUB_RADIUS, hub_beam
 

@@ -13,7 +13,7 @@ import pytest
 
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam import Centrifuge, Flight, Hub, Model, Sine, SmoothStep, Sum, assemble, constant, modes, static, trapezoid
-from gbeam.motion import Base
+from gbeam.results import Base
 
 from ..specimens import strip_beam
 

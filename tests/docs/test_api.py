@@ -35,6 +35,6 @@ def test_every_module_of_results_with_records_is_on_the_page_of_results() -> Non
         "gbeam.results.declared",
         "gbeam.results.doors",
         "gbeam.results.facts",
-        "gbeam.results.part",
+        "gbeam.results.base",
     }
     assert listed | others == with_records

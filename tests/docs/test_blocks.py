@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from gbeam.cli.process import FIGURES
+from gbeam.cli import FIGURES
 from gbeam.plots import write_figures
 
 from .pages import NOT_CODE, PAGES, ROOT, RUN, Block, Reader, blocks, commands
@@ -41,7 +41,9 @@ def test_page_runs(page: Path, reader: Reader, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.chdir(reader.folder)
     monkeypatch.delenv(FIGURES)  # pages name them
     # The figures of a run take half its time, and are tested elsewhere.
-    monkeypatch.setattr("gbeam.plots.write_figures", lambda *of: [] if of[2] == "gbeam run" else write_figures(*of))
+    monkeypatch.setattr(
+        "gbeam.plots.output.write_figures", lambda *of: [] if of[2] == "gbeam run" else write_figures(*of)
+    )
     reader.read(page)
 
 

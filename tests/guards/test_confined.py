@@ -17,7 +17,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.guards import processes as module
-from gbeam.guards.processes import read_confined
+from gbeam.guards import read_confined
 
 from ..calling import Answer, gbeam, spent
 from ..scenarios import FLIGHT, SPECIMEN, model
@@ -98,15 +98,15 @@ def test_only_the_variables_that_are_needed_are_read(tmp_path: Path, monkeypatch
 @POSIX
 def test_the_app_shows_what_a_damaged_record_does_and_goes_on(tmp_path: Path, hurried: None) -> None:
     pytest.importorskip("fastapi")
-    from gbeam.app import documents
+    from gbeam.app import described, head
 
     crashing_mat(tmp_path / "r.mat")
     endless_hdf5(tmp_path / "r.nc")
     for name in ("r.mat", "r.nc"):
         with pytest.raises(gb.InputError):
-            documents.head(tmp_path / name)
+            head(tmp_path / name)
         text = _scenario(tmp_path, name).read_text(encoding="utf-8")
-        (problem,) = documents.described(text, tmp_path)["errors"]
+        (problem,) = described(text, tmp_path)["errors"]
         assert problem["path"] == "motion.flight.record.file" and problem["line"]
 
 
@@ -115,8 +115,8 @@ def test_the_server_of_the_app_opens_no_such_file_itself(tmp_path: Path, monkeyp
     import h5py
     import scipy.io
 
-    from gbeam.app import documents
-    from gbeam.io.netcdf import read_stored
+    from gbeam.app import SAMPLES, head, load_curves
+    from gbeam.io import read_stored
 
     acceleration = FLIGHT.splitlines()[-1]
     values = {"t": TIME, "az": np.ones(len(TIME))}
@@ -131,9 +131,9 @@ def test_the_server_of_the_app_opens_no_such_file_itself(tmp_path: Path, monkeyp
     for module_, name in ((h5py, "File"), (scipy.io, "loadmat"), (scipy.io, "whosmat"), (scipy.io, "netcdf_file")):
         monkeypatch.setattr(module_, name, opened)
     for name in ("r.mat", "r.h5"):
-        assert set(documents.head(tmp_path / name)["columns"]) == {"t", "az"}
+        assert set(head(tmp_path / name)["columns"]) == {"t", "az"}
         text = SPECIMEN + model("FOAM", 0, 0, 1) + FLIGHT.replace(acceleration, RECORD.replace("FILE", name))
-        assert len(documents.load_curves(text, tmp_path)["time"]) == documents.SAMPLES
+        assert len(load_curves(text, tmp_path)["time"]) == SAMPLES
     assert set(read_stored(tmp_path / "r.h5").variables) == {"t", "az"}  # as of a run's histories
 
 

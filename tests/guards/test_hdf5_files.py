@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.hdf5_files import open_hdf5
-from gbeam.io.hdf5 import contents
+from gbeam.guards import open_hdf5
+from gbeam.io import contents
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import scipy.io
 
-from gbeam.guards.importing import HOME, path_of_children, path_without
+from gbeam.guards import HOME, path_of_children, path_without
 
 from ..scenarios import FLIGHT, SPECIMEN, model
 from .damaged import RECORD, TIME
@@ -117,7 +117,7 @@ def test_the_path_has_no_folder_of_the_user_but_gbeams_own(tmp_path: Path, monke
 def test_workers_are_not_started_where_python_would_not_keep_the_folder_off(tmp_path: Path) -> None:
     trap(tmp_path, ["random", "queue"])
     (tmp_path / "elsewhere").mkdir()
-    code = "from gbeam.studies.workers import Workers\nWorkers(2, ())"
+    code = "from gbeam.studies import Workers\nWorkers(2, ())"
     (tmp_path / "elsewhere" / "s.py").write_text(code, encoding="utf-8")
     done = called(tmp_path, "-E", "elsewhere/s.py")
     assert "--workers would import from the current folder: Python runs with -E" in done.stderr

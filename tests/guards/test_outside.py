@@ -188,7 +188,7 @@ def test_too_little_memory_is_no_defect(megabytes: int, fast: Path) -> None:
     "words", ["can't start new thread", "libhdf5.so.320: failed to map segment from shared object"]
 )
 def test_what_libraries_say_of_too_little_memory_is_understood(words: str) -> None:
-    from gbeam.cli.failures import lacks_memory
+    from gbeam.cli import lacks_memory
 
     kind = RuntimeError if "thread" in words else ImportError
     assert (

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.packing import digest, read_packed, write_packed
+from gbeam.guards import digest, read_packed, write_packed
 
 METAL = gb.Material(density=2700, youngs_modulus=70e9, poissons_ratio=0.33)
 

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
+from gbeam.arrays import namespace, record
+from gbeam.integrate import LinearEquations, NonlinearEquations
 
 Equations = LinearEquations | NonlinearEquations
 

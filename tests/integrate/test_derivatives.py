@@ -7,9 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import derivatives
-from gbeam.integrate.derivatives import APART, FAR, NEAR, Derivatives, Stages, interpolated
-from gbeam.integrate.schemes import gauss, newmark
+from gbeam.integrate import Derivatives, Stages, derivatives, gauss, interpolated, newmark
 
 
 class Spring:
@@ -51,7 +49,7 @@ def test_one_state_serves_all_steps_until_corrections_shrink_slowly() -> None:
     slow = np.arange(30) == 20
     built.grow_old(np.full(30, 0.1), slow, fast=False)
     built.renew(stages(soft))
-    assert built.spacing == APART and len(built.slope) == 30 and spring.derived == [1, 3]
+    assert built.spacing == derivatives.APART and len(built.slope) == 30 and spring.derived == [1, 3]
     assert built.fresh.tolist() == [False] * 20 + [True] * 10 and not built.trusted.any()
     np.testing.assert_allclose(built.slope[:, 0, 0, 0, 0], np.where(np.arange(30) < 20, 1.0, soft), rtol=1e-12)
 
@@ -63,8 +61,9 @@ def test_derivatives_come_closer_where_corrections_shrink_slowly_and_go_apart_wh
     for slow in (True, True, True, False, False):
         built.grow_old(np.zeros(2), np.array([slow, False]), fast=True)
         spacings.append(built.spacing)
-    assert spacings == [APART, NEAR, NEAR, NEAR + 1, NEAR + 2]
-    for _ in range(FAR):
+    near = derivatives.NEAR
+    assert spacings == [derivatives.APART, near, near, near + 1, near + 2]
+    for _ in range(derivatives.FAR):
         built.grow_old(np.zeros(2), np.zeros(2, dtype=bool), fast=True)
     assert built.constant
 
@@ -72,7 +71,7 @@ def test_derivatives_come_closer_where_corrections_shrink_slowly_and_go_apart_wh
 def test_steps_leave_and_are_cut_with_their_derivatives() -> None:
     built = Derivatives(Spring(), None)
     built.extend(10)
-    built.spacing, built.age = NEAR, np.full(10, np.inf)
+    built.spacing, built.age = derivatives.NEAR, np.full(10, np.inf)
     held = stages(np.arange(10.0))
     built.renew(held)
     built.factor(held, newmark().tableau(np.array([0.1])), None)
@@ -116,7 +115,7 @@ def follows_a_swing() -> None:
 
 @pytest.mark.parametrize(
     ("name", "value", "holds"),
-    [("NEAREST", derivatives.NEAREST // 2, interpolates_quintics), ("NEAR", 2 * NEAR, follows_a_swing)],
+    [("NEAREST", derivatives.NEAREST // 2, interpolates_quintics), ("NEAR", 2 * derivatives.NEAR, follows_a_swing)],
 )
 def test_what_a_number_half_or_twice_as_large_breaks(
     name: str, value: int, holds: Any, monkeypatch: pytest.MonkeyPatch

@@ -7,13 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-from gbeam.integrate.driver import _LINEAR_CHUNK as LINEAR_CHUNK
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
-from gbeam.integrate.newton import CHUNK
-from gbeam.integrate.schemes import gauss, newmark
+from gbeam.arrays import namespace, record
+from gbeam.integrate import CHUNK, LINEAR_CHUNK, LinearEquations, NonlinearEquations, gauss, integrate, newmark
 
 from .systems import OSCILLATOR, VARYING, Bead, Pushed, driven, one, undriven
 

@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
-from gbeam.integrate.schemes import added, gauss, newmark
+from gbeam.integrate import LinearEquations, NonlinearEquations, added, gauss, integrate, newmark
 
 from .systems import PENDULUM, VARYING
 

@@ -7,10 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import linear, relaxed
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import gauss
+from gbeam.integrate import LinearEquations, chain, gauss, integrate, linear, matrix_powers, take_equal_steps
 
 COUNT, SIZE = 700, 14
 
@@ -45,11 +42,11 @@ def test_they_are_those_by_all_maps(change: float, settles: bool, monkeypatch: p
     asked: list[bool] = []
 
     def watched(*values: Any) -> Any:
-        answer = relaxed.relaxed(*values)
+        answer = take_equal_steps(*values)
         asked.append(answer is not None)
         return answer
 
-    monkeypatch.setattr(linear, "relaxed", watched)
+    monkeypatch.setattr(linear, "take_equal_steps", watched)
     settled = run(vibrating(change))
     assert asked and set(asked) == {settles}
     monkeypatch.setattr(linear, "FEWEST", SIZE + 1)
@@ -62,7 +59,7 @@ def test_they_are_those_by_all_maps(change: float, settles: bool, monkeypatch: p
 def test_a_chain_is_step_after_step(count: int) -> None:
     random = np.random.default_rng(count)
     step, added, state = 0.4 * random.normal(size=(3, 3)), random.normal(size=(count, 3)), random.normal(size=3)
-    chain = relaxed._chain(relaxed._powers(step, count), added, state)
-    assert len(chain) == count + 1
-    for before, after, more in zip(chain, chain[1:], added, strict=False):
+    states = chain(matrix_powers(step, count), added, state)
+    assert len(states) == count + 1
+    for before, after, more in zip(states, states[1:], added, strict=False):
         np.testing.assert_allclose(after, step @ before + more, atol=1e-12)

@@ -14,13 +14,20 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from gbeam import InputError
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-from gbeam.integrate import linear
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations
-from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
-from gbeam.integrate.steps import Corners, fitted
+from gbeam.arrays import namespace, record
+from gbeam.integrate import (
+    Corners,
+    LinearEquations,
+    NonlinearEquations,
+    Scheme,
+    chunk,
+    fitted,
+    gauss,
+    generalized_alpha,
+    hht,
+    integrate,
+    newmark,
+)
 from validation.published.tables import SCHEMES_THEORY
 
 from .systems import BEAD, OSCILLATOR, PENDULUM, VARYING, Pushed, driven, reference
@@ -37,7 +44,7 @@ DIGITS = 1e-3  # the theory's numbers have four or five
 def amplification(scheme: Scheme, h: float) -> np.ndarray:
     """Matrix of one step on what the scheme carries: q, q̇ and, where it damps, its own acceleration."""
     carried, steps = [np.reshape(z, (-1, 1)) for z in np.eye(len(scheme.unit.g))], fitted(0.0, h, 1)
-    columns = [linear.chunk(OSCILLATOR, scheme, z, steps)[0][:, 0] for z in carried]
+    columns = [chunk(OSCILLATOR, scheme, z, steps)[0][:, 0] for z in carried]
     return np.array(columns).T
 
 

@@ -9,11 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate.driver import integrate_steps
-from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import Scheme, gauss, generalized_alpha, hht, newmark
-from gbeam.integrate.steps import Corners, fitted
-from gbeam.integrate.tangent import tangent
+from gbeam.integrate import (
+    Corners,
+    LinearEquations,
+    Scheme,
+    fitted,
+    gauss,
+    generalized_alpha,
+    hht,
+    integrate_steps,
+    newmark,
+    tangent,
+)
 
 MASS = np.array([[2.0, 0.3], [0.3, 1.0]])
 JUMP = 0.137

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import verdict
-from gbeam.integrate.verdict import ALONE, CANCELLED, LATE, MOVED, Judgement, Verdict, balanced, reach, shrinkage
+from gbeam.integrate import Judgement, Verdict, balanced, reach, shrinkage, verdict
 
 
 def judged(*sizes: Any, x: Any = 1.0, fresh: bool = False, trusted: bool = True, even: bool = True) -> Judgement:
@@ -44,12 +43,12 @@ def test_slow_steps_have_not_halved_their_correction() -> None:
 
 
 def test_steps_are_lost_that_stay_far_or_diverge() -> None:
-    far, near = 2 * MOVED, MOVED / 2
-    assert judged(*[[near, far, near]] * (LATE - 1)).lost.tolist() == [False] * 3
-    assert judged(*[[near, far, near]] * LATE).lost.tolist() == [False, True, False]
+    far, near = 2 * verdict.MOVED, verdict.MOVED / 2
+    assert judged(*[[near, far, near]] * (verdict.LATE - 1)).lost.tolist() == [False] * 3
+    assert judged(*[[near, far, near]] * verdict.LATE).lost.tolist() == [False, True, False]
     assert judged([near, np.nan]).lost.tolist() == [False, True]
-    assert judged(*[[near, near]] * ALONE).lost.tolist() == [True, False]  # a first one has had its time
-    assert not judged(*[[far]] * (ALONE - 1)).lost.any() and judged(*[[far]] * ALONE).lost.all()
+    assert judged(*[[near, near]] * verdict.ALONE).lost.tolist() == [True, False]  # a first one has had its time
+    assert not judged(*[[far]] * (verdict.ALONE - 1)).lost.any() and judged(*[[far]] * verdict.ALONE).lost.all()
 
 
 def test_by_derivatives_that_are_not_trusted_forces_must_be_balanced() -> None:
@@ -70,7 +69,7 @@ def test_steps_that_leave_bound_the_rounding_of_those_that_follow() -> None:
     built.extend(3)
     built.set_rounding(np.array([1.0, 5.0, 1e12]))
     built.leave(2)
-    assert built.bound == pytest.approx(50 * CANCELLED) and built.corrections.shape == (5, 1)
+    assert built.bound == pytest.approx(50 * verdict.CANCELLED) and built.corrections.shape == (5, 1)
     built.record(np.array([1e-6]), np.ones((1, 1, 1)))
     built.record(np.array([1e-6]), np.ones((1, 1, 1)))
     no = np.zeros(1, dtype=bool)

@@ -7,11 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import window
-from gbeam.integrate.derivatives import Derivatives
-from gbeam.integrate.schemes import Scheme, gauss, newmark
-from gbeam.integrate.steps import fitted
-from gbeam.integrate.window import FEW, FIRST, LONGEST, MOST, Window
+from gbeam.integrate import Derivatives, Scheme, Window, fitted, gauss, newmark, window
 
 H, RATE = 0.05, 3.0
 
@@ -69,16 +65,16 @@ def test_steps_that_leave_are_put_out_once() -> None:
 
 def test_a_window_takes_as_many_steps_as_are_good() -> None:
     built = opened(oscillator, gauss(), 0)
-    assert built.room(10_000, single=False) == FIRST and built.room(30, single=False) == 30
+    assert built.room(10_000, single=False) == window.FIRST and built.room(30, single=False) == 30
     for _ in range(10):
         built.grow()
-    assert built.room(10_000, single=False) == MOST and built.room(10_000, single=True) == LONGEST
-    built.extend(FEW + 1)
+    assert built.room(10_000, single=False) == window.MOST and built.room(10_000, single=True) == window.LONGEST
+    built.extend(window.FEW + 1)
     assert built.room(10_000, single=False) == 0
 
 
 def test_a_window_that_fails_begins_anew_and_shorter() -> None:
-    built, sizes = opened(oscillator, gauss(), FIRST), []
+    built, sizes = opened(oscillator, gauss(), window.FIRST), []
     while built.shrink():
         sizes.append(built.room(10_000, single=False))
         built.extend(sizes[-1])
@@ -86,7 +82,7 @@ def test_a_window_that_fails_begins_anew_and_shorter() -> None:
     assert built.room(10_000, single=False) == 0  # beside a single step none follows
     corrected(built)
     built.leave(1)
-    assert built.limit == LONGEST
+    assert built.limit == window.LONGEST
 
 
 def holds_friction() -> None:

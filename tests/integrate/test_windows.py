@@ -10,13 +10,20 @@ import jax
 import numpy as np
 import pytest
 
-from gbeam.arrays.namespace import namespace
-from gbeam.arrays.tree import record
-from gbeam.integrate import derivatives, verdict
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations, NonlinearEquations, accelerations, slopes
-from gbeam.integrate.schemes import gauss, generalized_alpha, newmark
-from gbeam.integrate.steps import Corners
+from gbeam.arrays import namespace, record
+from gbeam.integrate import (
+    Corners,
+    LinearEquations,
+    NonlinearEquations,
+    accelerations,
+    derivatives,
+    gauss,
+    generalized_alpha,
+    integrate,
+    newmark,
+    slopes,
+    verdict,
+)
 
 from ..lagrange import quickly_compiled
 

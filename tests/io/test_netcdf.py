@@ -16,16 +16,28 @@ import xarray as xr
 from scipy.integrate import cumulative_trapezoid
 
 import gbeam as gb
-from gbeam.io.hdf5 import image
-from gbeam.io.layout import Group, Variable
-from gbeam.io.netcdf import csv_of, read_stored, stored
-from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.machine import AxesResult, LimitUse, Shortfall
-from gbeam.results.measures import Fatigue, RootHistory, RootLoads, Sizes, Statistics, StressCycles
-from gbeam.results.parts import Base, Loads, Peaks
-from gbeam.results.provenance import Provenance
-from gbeam.results.response import HubResult
-from gbeam.results.study import Failure
+from gbeam.io import Group, Variable, csv_of, image, read_stored, stored
+from gbeam.results import (
+    Accounting,
+    AxesResult,
+    Base,
+    Failure,
+    Fatigue,
+    HubResult,
+    LimitUse,
+    LoadPeak,
+    Loads,
+    NotFollowed,
+    PeakPair,
+    Peaks,
+    Provenance,
+    RootHistory,
+    RootLoads,
+    Shortfall,
+    Sizes,
+    StressCycles,
+)
+from gbeam.results import StationStatistics as Statistics
 
 from ..files import opened
 from ..responses import of_beam, with_body

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gbeam import Beam, Load, Material, Model, PointMass, Section, Structure, assemble, solve_equilibrium, static
-from gbeam.motion import Base
+from gbeam.results import Base
 from validation.published.specimens import PLANAR
 from validation.published.tables import ELASTICA
 

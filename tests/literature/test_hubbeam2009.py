@@ -26,8 +26,8 @@ from gbeam import (
     critical_speed,
     simulate,
 )
-from gbeam.arrays.jax_setup import with_slope
-from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.arrays import with_slope
+from gbeam.mechanics import Coefficients
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH, Paper
 from validation.published.specimens import pulse, slew
 from validation.published.tables import TABLE_2

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from gbeam import Hub, ResponseSettings, Sine, SmoothStep
-from gbeam.analysis.response.posed import pose, prepared
+from gbeam.analysis import pose, prepared
 from validation.published.hubbeam2009 import HUB_INERTIA, HUB_RADIUS, LENGTH
 from validation.published.tables import SLEWS, TORQUES
 

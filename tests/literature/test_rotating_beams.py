@@ -25,7 +25,7 @@ from gbeam import (
     simulate,
     solve_equilibrium,
 )
-from gbeam.mechanics.equations.linear import Coefficients
+from gbeam.mechanics import Coefficients
 from validation.published.references import swept
 from validation.published.specimens import (
     PLANAR,

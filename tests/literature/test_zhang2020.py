@@ -25,12 +25,10 @@ from gbeam import (
     tabulated,
     vector,
 )
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import gauss
-from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.motion import Base, Profile
-from gbeam.motion.rigid import shift_base
+from gbeam.integrate import LinearEquations, gauss, integrate
+from gbeam.mechanics import Coefficients
+from gbeam.motion import Profile, shift_base
+from gbeam.results import Base
 from validation.published.specimens import strip_beam
 from validation.published.zhang2020 import COUNTS, G0, LENGTH, LINE, THICKNESS, WIDTH, YOUNG, matrices
 

@@ -26,12 +26,10 @@ from gbeam import (
     solve_equilibrium,
     static,
 )
-from gbeam.analysis.response.record import influence
-from gbeam.arrays.tree import each_leaf
-from gbeam.mechanics.fields.basis import closed_forms
-from gbeam.mechanics.section_forces import section_forces
-from gbeam.motion import Base
-from gbeam.results.parts import Loads
+from gbeam.analysis import influence
+from gbeam.arrays import each_leaf
+from gbeam.mechanics import closed_forms, section_forces
+from gbeam.results import Base, Loads
 
 from ..differences import along, rate
 from ..lagrange import energy_of, hub_kinetic

@@ -10,8 +10,7 @@ from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
 import gbeam.arrays.jax_setup  # JAX knows the records, in whatever order modules were imported
-from gbeam.motion.centrifuge.histories import axis_angles
-from gbeam.motion.rigid import shift_base
+from gbeam.motion import axis_angles, shift_base
 
 G, R, XC = STANDARD_GRAVITY, 3.3, 0.15
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

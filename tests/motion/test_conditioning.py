@@ -11,10 +11,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, InputError
-from gbeam.motion.flight import body_rates
-from gbeam.motion.records.conditioning import dropout, flat_tops, spikes
-from gbeam.motion.records.parameters import Conditioning, Rates
-from gbeam.motion.records.record import FlightRecord, read_flight
+from gbeam.motion import Conditioning, FlightRecord, Rates, body_rates, dropout, flat_tops, read_flight, spikes
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 NAMES = ("time_s", "n_x_g", "-n_y_g", "-n_z_g")

@@ -8,8 +8,11 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion import Base, Profile
-from gbeam.motion.centrifuge.kinematics import Axes  # fmt: skip
+from gbeam.motion import (
+    Axes,  # fmt: skip
+    Profile,
+)
+from gbeam.results import Base
 
 G, R = STANDARD_GRAVITY, 3.3
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from gbeam.motion.profiles.profile import hann, soft_floor
+from gbeam.motion import hann, soft_floor
 
 X = np.array([-0.7, -0.5, -0.31, -0.1, 0.0, 0.2, 0.45, 0.5, 0.8])
 

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion import Base, Profile
-from gbeam.motion.centrifuge.course import INVERSES
-from gbeam.motion.centrifuge.kinematics import Axes
+from gbeam.motion import INVERSES, Axes, Profile
+from gbeam.results import Base
 
 G, R = STANDARD_GRAVITY, 3.3
 T = np.linspace(0.2, 1.8, 33)

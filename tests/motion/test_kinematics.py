@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
-from gbeam.motion.centrifuge.kinematics import Axes, forward_kinematics
-from gbeam.motion.rigid import shift_base
+from gbeam.motion import Axes, forward_kinematics, shift_base
 
 
 def turn(angle: jax.Array, axis: int) -> jax.Array:

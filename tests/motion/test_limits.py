@@ -7,10 +7,8 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion import Profile
-from gbeam.motion.centrifuge.limits import Limits, usage
-from gbeam.motion.centrifuge.target.reachability import TOO_SHARP
-from gbeam.results.machine import Shortfall
+from gbeam.motion import TOO_SHARP, Limits, Profile, usage
+from gbeam.results import Shortfall
 
 G, R = STANDARD_GRAVITY, 3.3
 

@@ -10,8 +10,7 @@ from scipy.integrate import quad
 
 import gbeam as gb
 import gbeam.arrays.jax_setup
-from gbeam.motion import Profile
-from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion import PiecewiseLinear, Profile
 
 TRAPEZOID = gb.trapezoid(level=10.0, jerk=4.0, start=1.0, hold=4.0)
 WIDTH = 0.06

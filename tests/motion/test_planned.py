@@ -11,12 +11,9 @@ from scipy.integrate import cumulative_simpson
 from scipy.signal import find_peaks
 
 import gbeam as gb
-from gbeam.arrays import tree
-from gbeam.motion.centrifuge.inverses.axis_splines import AxisSplines, KeptLimits, Tracking
-from gbeam.motion.centrifuge.inverses.instant import Geometry
-from gbeam.motion.centrifuge.limits import Limits
-from gbeam.motion.profiles.profile import Profile
-from gbeam.numerics.bspline import Grid
+from gbeam.arrays import record as record_class
+from gbeam.motion import AxisSplines, Geometry, KeptLimits, Limits, Profile, Tracking
+from gbeam.numerics import Grid
 
 G, R = STANDARD_GRAVITY, 3.3
 IDLE = 1.4 * G
@@ -268,7 +265,7 @@ def test_what_keeps_the_rows_keeps_the_limits_at_all_times_and_they_are_not_much
 
 def test_equal_machines_share_a_plan_and_a_load_of_another_kind_has_its_own() -> None:
     pulls = [gb.trapezoid(20.0, jerk=20.0, start=1.0, hold=1.0) for _ in range(3)]
-    own_profile = tree.record(type("UserProfile", (type(pulls[2]),), {}))  # of no module
+    own_profile = record_class(type("UserProfile", (type(pulls[2]),), {}))  # of no module
     object.__setattr__(pulls[2], "__class__", own_profile)
     first, second, other = (
         gb.Centrifuge(

@@ -13,8 +13,7 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion.records.parameters import Conditioning, Rates
-from gbeam.motion.records.record import FlightRecord, read_flight
+from gbeam.motion import Conditioning, FlightRecord, Rates, read_flight
 
 NAMES = ("t", "a_x", "a_y", "a_z")
 T = np.arange(240) / 100

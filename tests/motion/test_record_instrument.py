@@ -10,10 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gbeam import InputError, read_record
-from gbeam.arrays.types import Floats
-from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.parameters import Rates
-from gbeam.motion.records.record import FlightRecord, read_flight
+from gbeam.arrays import Floats
+from gbeam.motion import FlightRecord, Instrument, Rates, read_flight
 
 G = 9.80665
 TIME = np.arange(1201) / 100  # s

@@ -8,9 +8,7 @@ from pathlib import Path
 import pytest
 
 from gbeam import InputError
-from gbeam.motion.records.parameters import Conditioning, Rates
-from gbeam.motion.records.record import FlightRecord, read_flight
-from gbeam.motion.records.units import unit_in_name
+from gbeam.motion import Conditioning, FlightRecord, Rates, read_flight, unit_in_name
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 RIGHT = {"x": "n_x_g", "y": "-n_y_g", "z": "-n_z_g"}

@@ -10,12 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gbeam import Flight, InputError, read_record
-from gbeam.arrays.types import Floats
-from gbeam.motion.protocol import notes_on
-from gbeam.motion.records.instrument import Instrument
-from gbeam.motion.records.parameters import Conditioning, Rates
-from gbeam.motion.records.record import FlightRecord, read_flight
-from gbeam.motion.records.rest import Rest
+from gbeam.arrays import Floats
+from gbeam.motion import Conditioning, FlightRecord, Instrument, Rates, Rest, notes_on, read_flight
 
 G = 9.80665
 TIME = np.arange(1201) / 100  # s

@@ -11,7 +11,7 @@ import pytest
 import scipy.io
 
 from gbeam import InputError, read_record
-from gbeam.motion.records.record import Recording
+from gbeam.motion import Recording
 
 TIME = np.arange(600) / 50  # s
 LOAD = np.stack([0.1 * np.sin(TIME), 0.05 * np.cos(TIME), 1 + 0.5 * np.sin(0.7 * TIME)], axis=1)  # g

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion.records.parameters import Conditioning
-from gbeam.motion.records.record import FlightRecord, read_flight
+from gbeam.motion import Conditioning, FlightRecord, read_flight
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
 STEP = 0.02

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, InputError, read_record, smoothed, trapezoid
-from gbeam.io.table import read_clock
-from gbeam.motion.records.parameters import Conditioning, Rates
-from gbeam.motion.records.record import FlightRecord, read_flight
+from gbeam.io import read_clock
+from gbeam.motion import Conditioning, FlightRecord, Rates, read_flight
 
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
 NAMES = ("n_x_g", "-n_y_g", "-n_z_g", "g")

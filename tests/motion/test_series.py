@@ -4,8 +4,20 @@ import numpy as np
 import pytest
 import sympy
 
-from gbeam.numerics.samples import cumulative, joined, true_runs
-from gbeam.numerics.series import Series, arctan2, compose, power, sin_cos, sqrt, square, stack, where
+from gbeam.numerics import (
+    Series,
+    arctan2,
+    compose,
+    cumulative,
+    joined,
+    power,
+    sin_cos,
+    sqrt,
+    square,
+    stack,
+    true_runs,
+    where,
+)
 
 T = np.array([-0.7, 0.0, 0.31, 1.9])
 s = sympy.Symbol("s")

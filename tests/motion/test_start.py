@@ -7,9 +7,8 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion import Base, Profile
-from gbeam.motion.centrifuge.inverses.spin_up import LEAST_TURNED, USUAL_TURNED
-from gbeam.motion.centrifuge.kinematics import Axes, forward_kinematics
+from gbeam.motion import LEAST_TURNED, USUAL_TURNED, Axes, Profile, forward_kinematics
+from gbeam.results import Base
 
 G, R = STANDARD_GRAVITY, 3.3
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"

@@ -7,10 +7,7 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.motion import Profile
-from gbeam.motion.centrifuge.target.reachability import MIN_TRANSVERSE_LOAD, nearest_to_zero
-from gbeam.motion.centrifuge.target.target import Target, gentle
-from gbeam.motion.profiles.piecewise import PiecewiseLinear
+from gbeam.motion import MIN_TRANSVERSE_LOAD, PiecewiseLinear, Profile, Target, gentle, nearest_to_zero
 
 G, R, IDLE, W = STANDARD_GRAVITY, 3.3, 1.4 * STANDARD_GRAVITY, 0.06
 TRAPEZOID = gb.vector(z=gb.trapezoid(10 * G, jerk=4 * G, start=1.0, hold=4.0))

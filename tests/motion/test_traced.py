@@ -13,8 +13,7 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY  # fmt: skip
 
 import gbeam as gb
-from gbeam.motion import Profile
-from gbeam.motion.profiles.combine import clamped
+from gbeam.motion import Profile, clamped
 
 G = STANDARD_GRAVITY
 F16 = Path(__file__).parents[2] / "examples" / "data" / "f16_8g_turn.csv"
@@ -118,9 +117,8 @@ def test_numpy_in_numpy_out() -> None:
 def test_no_motion_imports_jax() -> None:
     program = f"""
 import sys
-from gbeam.motion import Centrifuge, Flight, Hub, SmoothStep, machines
-from gbeam.motion.centrifuge.course import INVERSES
-from gbeam.motion.records.record import read_record
+from gbeam import Centrifuge, Flight, Hub, SmoothStep, machines, read_record
+from gbeam.motion import INVERSES
 record = read_record({str(F16)!r}, "time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
 for inverse in INVERSES:
     machine = Centrifuge(Flight(acceleration=record), control_point=0.2, limits=machines["specimen-3.3m"], gravity=True,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.motion.rigid import shift_base
-from gbeam.results.parts import Base
+from gbeam.motion import shift_base
+from gbeam.results import Base
 
 LOAD = gb.Sum((gb.constant(20.0), gb.trapezoid(30.0, jerk=25.0, start=1.0, hold=2.0)))
 TURN = gb.Flight(x=gb.trapezoid(15.0, jerk=20.0, start=0.5, hold=1.5), y=gb.constant(12.0), z=LOAD)

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from gbeam.numerics.samples import attitude
+from gbeam.numerics import attitude
 
 
 def matrices(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:

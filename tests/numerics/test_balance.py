@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gbeam.numerics.balance import answered, unheld
+from gbeam.numerics import answered, unheld
 
 
 @pytest.mark.parametrize("apart", [1.0, 1e-7, 1e7])

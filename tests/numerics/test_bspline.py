@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gbeam.numerics.bspline import Grid
+from gbeam.numerics import Grid
 
 RANDOM = np.random.default_rng(1)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag, eigh
 
-from gbeam.numerics.sparse import lowest_modes
+from gbeam.numerics import lowest_modes
 
 
 def matrices(copies: int, massless: int = 0) -> tuple[np.ndarray, np.ndarray]:

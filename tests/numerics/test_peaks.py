@@ -7,15 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from gbeam.numerics.peaks import (
-    length_peaks,
-    maxima,
-    near_maxima,
-    quintic_hermite,
-    seven_point,
-    turning_points,
-    vector_peaks,
-)
+from gbeam.numerics import length_peaks, maxima, near_maxima, quintic_hermite, seven_point, turning_points, vector_peaks
 
 OMEGA, PHASE = np.array([1.0, 1.7]), np.array([-1.0, -2.0])
 

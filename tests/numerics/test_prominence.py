@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from gbeam.numerics.samples import separate_peaks
+from gbeam.numerics import separate_peaks
 
 
 def test_known_peaks() -> None:

@@ -7,7 +7,7 @@ import pytest
 import scipy.optimize
 import scipy.sparse
 
-from gbeam.numerics.minimise import minimise, nearest_point, solve_quadratic
+from gbeam.numerics import minimise, nearest_point, solve_quadratic
 
 RANDOM = np.random.default_rng(7)
 

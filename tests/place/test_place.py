@@ -15,10 +15,9 @@ import numpy as np
 import pytest
 
 from gbeam import AxisLimit, Choice, InputError, MachineLimits, place
-from gbeam.cli.centrifuge import parse
-from gbeam.numerics.minimise import coarse, refine
-from gbeam.results.machine import LimitUse
-from gbeam.results.placement import MEASURES, Candidate, Placement
+from gbeam.cli import parse
+from gbeam.numerics import coarse, refine
+from gbeam.results import MEASURES, Candidate, LimitUse, Placement
 
 from ..calling import main
 from ..scenarios import FLIGHT, SPECIMEN, SPIN, model, response

@@ -12,8 +12,7 @@ import pytest
 
 import gbeam as gb
 from gbeam import place
-from gbeam.analysis.imitation.accounting import gradients
-from gbeam.analysis.imitation.specimen import Specimen
+from gbeam.analysis import Specimen, gradients
 from gbeam.questions import QUESTIONS
 from gbeam.report import text as describe
 
@@ -92,8 +91,8 @@ def test_static_answers_are_those_of_equilibrium() -> None:
     )  # fmt: skip
     structure = gb.assemble(beam, "exact", axial=1, y=2, z=2, twist=2)
     specimen = Specimen.from_system(gb.System.of(structure), NOW)
-    from gbeam.analysis.imitation.accounting import gradients
-    from gbeam.results.parts import Base
+    from gbeam.analysis import gradients
+    from gbeam.results import Base
 
     rng = np.random.default_rng(26)
     for _ in range(3):

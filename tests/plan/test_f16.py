@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.comparison import MachinePlan
+from gbeam.results import MachinePlan
 from gbeam.scenario import build_machines, loads
 
 from ..calling import main

@@ -11,8 +11,8 @@ import xarray as xr
 from scipy.io import loadmat
 
 import gbeam as gb
-from gbeam.cli.process import FIGURES
-from gbeam.report.page.result import report_of
+from gbeam.cli import FIGURES
+from gbeam.report import report_of
 from gbeam.scenario import build_machines, load_environments
 
 from ..calling import main

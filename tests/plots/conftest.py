@@ -8,11 +8,19 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.accounting import Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.errors import ErrorEstimate, Errors
-from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.parts import Base, Peaks
-from gbeam.results.response import HubResult
+from gbeam.results import (
+    Accounting,
+    AxesResult,
+    Base,
+    ErrorEstimate,
+    Errors,
+    HubResult,
+    LimitUse,
+    LoadPeak,
+    NotFollowed,
+    PeakPair,
+    Peaks,
+)
 
 from ..responses import of_beam
 

@@ -12,11 +12,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from gbeam.figures.description import Figure as Described
-from gbeam.figures.description import Line, Panel, components, limit_levels, scale_of, stretches
-from gbeam.plots import DPI, save, signature
-from gbeam.plots.draw import BINS, COLUMNS, ENVELOPE, STYLE, draw, line
-from gbeam.results.machine import AxesResult
+from gbeam.figures import Figure as Described
+from gbeam.figures import Line, Panel, components, limit_levels, scale_of, stretches
+from gbeam.plots import BINS, COLUMNS, DPI, ENVELOPE, STYLE, draw, line, save, signature
+from gbeam.results import AxesResult
 
 
 def _panel() -> Axes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -16,39 +15,57 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gbeam import Comparison, InputError, Response, Rest, Study
-from gbeam.figures import bodies, figures_of, imitation, machine, response, steady
-from gbeam.figures.description import Figure as Described
-from gbeam.plots import draw, write_figures
-from gbeam.plots.draw import BROAD
-from gbeam.report.page.result import report_of, report_of_file
-from gbeam.results.comparison import MachinePlan
-from gbeam.results.declared import declarations
-from gbeam.results.equilibrium import BodyRest
-from gbeam.results.machine import LimitUse
-from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock
-from gbeam.results.parts import Base, Loads
+from gbeam.figures import figure_of, figures_of
+from gbeam.plots import BROAD, draw, write_figures
+from gbeam.report import report_of, report_of_file
+from gbeam.results import (
+    AxesResult,
+    Base,
+    BodyRest,
+    HubResult,
+    LimitUse,
+    LoadDifference,
+    Loads,
+    MachinePlan,
+    RootHistory,
+    RootLoads,
+    Shock,
+    declarations,
+)
 
 from ..responses import with_body
 
 
-def _drawing(describe: Callable[..., Described]) -> Callable[..., Figure]:
-    return lambda *args: draw(describe(*args))
+def _plot(result: object, what: str, title: str = "") -> Figure:
+    return draw(figure_of(result, what, title))
 
 
-plot_axes, plot_tracking, plot_hub = map(_drawing, (machine.axes_of, machine.tracking, response.hub))
-plot_loads, plot_shock, plot_static = map(_drawing, (bodies.loads, imitation.shock, steady.static))
+def plot_axes(of: Response, axes: AxesResult, quantity: str, title: str = "") -> Figure:
+    return _plot(replace(of, axes=axes), f"axes_{quantity}", title)
+
+
+def plot_tracking(of: Response, axes: AxesResult, title: str = "") -> Figure:
+    return _plot(replace(of, axes=axes), "tracking", title)
+
+
+def plot_hub(of: Response, hub: HubResult, title: str = "") -> Figure:
+    return _plot(replace(of, hub=hub), of.environment, title)
 
 
 def plot_tip(study: Study) -> Figure:
-    return draw(response.tip(study, "beam"))
+    return _plot(study, "tip")
 
 
 def plot_base(of: Response, title: str = "") -> Figure:
-    return draw(response.base(of, of.base, title))
+    return _plot(of, "base", title)
 
 
 def plot_comparison(compared: Comparison, title: str = "") -> Figure:
-    return draw(imitation.parts(compared, compared.main_axis, title))
+    return _plot(compared, "parts", title)
+
+
+def plot_shock(compared: Comparison, shock: Shock, title: str = "") -> Figure:
+    return _plot(replace(compared, shock=shock), "shock", title)
 
 
 def _assert_labelled(figure: Figure) -> None:
@@ -352,7 +369,7 @@ def test_loads_have_the_signs_of_the_comparison(study: Study) -> None:
     """Of the section, in both: positive where the fibre is stretched."""
     spin = study.responses["spin"]
     loads = _loads(spin.time, 2)
-    force, moment, stress = plot_loads(with_body(spin, loads=loads), "beam").axes
+    force, moment, stress = _plot(with_body(spin, loads=loads), "loads").axes
     assert [panel.get_ylabel() for panel in (force, moment, stress)] == ["force, N", "moment, N m", "stress, MPa"]
     for panel, names, values in (
         (force, ("axial N", "shear V_y", "shear V_z"), loads.section_force),
@@ -377,7 +394,7 @@ def at_rest(name: str, base: Base, x: np.ndarray, moved: np.ndarray, loads: Load
 def test_several_at_rest_are_all_seen(study: Study) -> None:
     base, x = study.responses["spin"].base, np.linspace(0, 40.0, 5)  # a long blade
     rest = [at_rest(name, base, x, np.outer(x, [0.0, 1e-4, 0.05])) for name in ("flight", "spin")]
-    (panel,) = plot_static(rest).axes
+    (panel,) = _plot(rest, "static").axes
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("position from the root, m", "z, m")
     wide, thin = panel.get_lines()
     assert wide.get_linewidth() > 3 * thin.get_linewidth() and wide.get_zorder() < thin.get_zorder()

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.figures import figures_of
-from gbeam.figures.description import Figure
+from gbeam.figures import Figure, figures_of
 from gbeam.plots import plot
-from gbeam.results.description import Description
+from gbeam.results import Description
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CAMPAIGN, F16 = EXAMPLES / "campaign.toml", EXAMPLES / "f16_8g_turn.toml"

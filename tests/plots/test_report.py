@@ -10,7 +10,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.report import as_json, text
-from gbeam.report.facts import facts as to_json
+from gbeam.report import facts as to_json
 
 from ..responses import with_body
 

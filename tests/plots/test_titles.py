@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from gbeam.figures.description import Figure as Described
-from gbeam.figures.description import Line, Panel
+from gbeam.figures import Figure as Described
+from gbeam.figures import Line, Panel
 from gbeam.plots import draw, save
-from gbeam.results.solids import NOT_KNOWN
+from gbeam.results import NOT_KNOWN
 
 
 def _titled(title: str) -> Figure:

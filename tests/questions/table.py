@@ -20,7 +20,7 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.questions import QUESTIONS
-from gbeam.report.page.result import report_of, viewer_data
+from gbeam.report import report_of, viewer_data
 from tests.questions.specimens import FLIGHT, KINDS, MACHINE, Kind, write
 
 HEAD = """\
@@ -175,8 +175,7 @@ def _sweep(scenario: Scenario) -> Any:
 
 
 def _value(template: Path, path: str) -> float:
-    from gbeam.studies.parameters import select_values
-    from gbeam.studies.template import template_of
+    from gbeam.studies import select_values, template_of
 
     (parameter,) = select_values(template_of(template), [path], "--with")
     return parameter.value

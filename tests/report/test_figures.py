@@ -11,15 +11,12 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.figures import description, figures_of
-from gbeam.numerics.samples import thinned
+from gbeam.figures import Figure, Panel, figures_of
+from gbeam.numerics import thinned
 from gbeam.plots import draw
-from gbeam.report.page.parts import COLUMNS, FITTING, Numbers, draw_figures
-from gbeam.report.page.result import report_of, report_of_file
-from gbeam.results.cases import Indices, Parameter, Statistics
-from gbeam.results.measures import LoadDifference, RootHistory, RootLoads, Shock, Sizes
-from gbeam.results.measures import Statistics as Apart
-from gbeam.results.result import Result
+from gbeam.report import COLUMNS, FITTING, Numbers, draw_figures, report_of, report_of_file
+from gbeam.results import Indices, LoadDifference, Parameter, Result, RootHistory, RootLoads, Shock, Sizes, Statistics
+from gbeam.results import StationStatistics as Apart
 
 from .test_page import BEAM, _fit, _optimum, _sensitivity, _shaped, header_of
 
@@ -151,7 +148,7 @@ def test_both_renderers_show_the_same(kind: str, results: dict[str, list[Result]
             _compare(describe())
 
 
-def _compare(figure: description.Figure) -> None:
+def _compare(figure: Figure) -> None:
     numbers, header = Numbers(), {"plots": [], "maps": []}
     page = html.unescape(draw_figures([figure], numbers, header))
     specs, maps = iter(header["plots"]), iter(header["maps"])
@@ -176,7 +173,7 @@ def _compare(figure: description.Figure) -> None:
     assert next(specs, None) is next(maps, None) is None
 
 
-def _compare_lines(axes: object, panel: description.Panel, spec: dict, numbers: np.ndarray) -> None:
+def _compare_lines(axes: object, panel: Panel, spec: dict, numbers: np.ndarray) -> None:
     label, (quantity, _, unit) = axes.get_ylabel().replace("\n", " "), panel.y.rpartition(", ")
     assert label == panel.y and axes.get_xlabel() in ("", spec["x"])
     # On a page a long quantity is in the caption alone.

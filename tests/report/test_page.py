@@ -21,16 +21,11 @@ from hypothesis import strategies as st
 from scipy.constants import g as STANDARD_GRAVITY
 
 import gbeam as gb
-from gbeam.figures.bodies import carried_at_root
-from gbeam.numerics.samples import thinned
-from gbeam.report.facts import facts
-from gbeam.report.page import parts as page_parts
-from gbeam.report.page.document import html as page_of
-from gbeam.report.page.result import report_of, report_of_file
-from gbeam.report.words import as_json
-from gbeam.results.parts import Outline
-from gbeam.results.result import Result
-from gbeam.results.searches import CommandRun, FittedColumn, Requirement
+from gbeam.figures import carried_at_root
+from gbeam.numerics import thinned
+from gbeam.report import COLUMNS, Numbers, as_json, facts, report_of, report_of_file
+from gbeam.report import html as page_of
+from gbeam.results import CommandRun, FittedColumn, Outline, Requirement, Result
 
 from ..responses import clamped, with_body
 
@@ -249,8 +244,8 @@ def test_shown_numbers_are_those_of_the_result(study: gb.Study) -> None:
 def test_thinned_keeps_the_least_and_the_largest(count: int, seed: int) -> None:
     time = np.linspace(-1, 2, count)
     values = np.random.default_rng(seed).normal(size=count)
-    t, kept = thinned(time, values, page_parts.COLUMNS)
-    assert len(t) == len(kept) <= 4 * page_parts.COLUMNS
+    t, kept = thinned(time, values, COLUMNS)
+    assert len(t) == len(kept) <= 4 * COLUMNS
     assert (kept.min(), kept.max()) == (values.min(), values.max())
     assert (np.diff(t) > 0).all() and (t[0], t[-1]) == (time[0], time[-1])
 
@@ -266,7 +261,7 @@ def test_values_beyond_all_bounds_are_drawn_as_gaps(study: gb.Study, tmp_path: P
 
 
 def test_numbers_come_back_and_stand_once() -> None:
-    numbers = page_parts.Numbers()
+    numbers = Numbers()
     first, second = np.arange(6.0).reshape(2, 3), np.array([7.0])
     assert numbers.add(first) == {"at": 0, "shape": [2, 3]} == numbers.add(first)
     assert numbers.add(second) == {"at": 6, "shape": [1]}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gbeam.report.words import columns, errors_in_words, number, percent, stress_words, tidy
-from gbeam.results.errors import ErrorEstimate
+from gbeam.report import columns, errors_in_words, number, percent, stress_words, tidy
+from gbeam.results import ErrorEstimate
 
 HEADS = ["value", "was", "is", "unit"]
 ROWS = [["beam.material.youngs_modulus", "7e+10", "6.9e+10", "Pa"], ["beam.length", "0.3", "0.31", "m"]]

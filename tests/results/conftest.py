@@ -9,13 +9,20 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.accounting import Accounting
-from gbeam.results.cases import Parameter
-from gbeam.results.comparison import MachinePlan
-from gbeam.results.machine import AxesResult, LimitUse
-from gbeam.results.placement import Candidate, Placement
-from gbeam.results.searches import CommandRun, FittedColumn, Requirement
-from gbeam.results.study import ModelRow, ModelStudy
+from gbeam.results import (
+    Accounting,
+    AxesResult,
+    Candidate,
+    CommandRun,
+    FittedColumn,
+    LimitUse,
+    MachinePlan,
+    ModelRow,
+    ModelStudy,
+    Parameter,
+    Placement,
+    Requirement,
+)
 
 from ..solids.bodies import STEEL, block, solid
 

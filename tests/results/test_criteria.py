@@ -10,9 +10,19 @@ import numpy as np
 import pytest
 
 from gbeam import InputError
-from gbeam.results.accounting import Accounting, LoadPeak, PeakPair
-from gbeam.results.criteria import RULES, Criterion, Judged, checked_limits, state_of
-from gbeam.results.measures import Fatigue, Shock, StressCycles
+from gbeam.results import (
+    RULES,
+    Accounting,
+    Criterion,
+    Fatigue,
+    Judged,
+    LoadPeak,
+    PeakPair,
+    Shock,
+    StressCycles,
+    checked_limits,
+    state_of,
+)
 
 DOCS = Path(__file__).parents[2] / "docs"
 FREQUENCY = np.array([1.0, 10.0, 100.0])

@@ -9,10 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gbeam.io.layout import in_files, whole_group
-from gbeam.results.declared import fact, part, quantity, rows
-from gbeam.results.facts import facts_of, json_of, units_of
-from gbeam.results.result import Part, Result
+from gbeam.io import in_files, whole_group
+from gbeam.results import Part, Result, fact, facts_of, json_of, part, quantity, rows, units_of
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]

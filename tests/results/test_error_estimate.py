@@ -7,7 +7,7 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gbeam.results.errors import ErrorEstimate
+from gbeam.results import ErrorEstimate
 
 share = st.floats(1e-9, 10.0)
 

@@ -14,13 +14,8 @@ import xarray as xr
 
 import gbeam as gb
 from gbeam.figures import figure_names, figures_of
-from gbeam.report.facts import facts, json_schema_of_results, reference_of_results
-from gbeam.report.page.document import VERBS
-from gbeam.report.page.result import report_of_file
-from gbeam.report.words import as_json
-from gbeam.results.facts import paths_of, tree_of
-from gbeam.results.result import Figured
-from gbeam.results.study import KINDS
+from gbeam.report import VERBS, as_json, facts, json_schema_of_results, reference_of_results, report_of_file
+from gbeam.results import KINDS, Figured, paths_of, tree_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "results.md"
 

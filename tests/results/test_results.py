@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.report.facts import facts as facts_of
+from gbeam.report import facts as facts_of
 
 from .conftest import BEAM
 

@@ -10,9 +10,7 @@ from typing import Any, cast
 
 import pytest
 
-from gbeam.results.accounting import UNITS, Accounting, LoadPeak, NotFollowed, PeakPair
-from gbeam.results.criteria import RULES, Limit
-from gbeam.results.verdict import Verdict, Worded
+from gbeam.results import RULES, UNITS, Accounting, Limit, LoadPeak, NotFollowed, PeakPair, Verdict, Worded
 
 G = 9.80665
 WORDS, SENTENCES = 25, 6

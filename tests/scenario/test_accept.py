@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from gbeam.results.criteria import RULES, SETTINGS
-from gbeam.scenario import ScenarioError, build, loads
-from gbeam.scenario.schema.motion import Accept
+from gbeam.results import RULES, SETTINGS
+from gbeam.scenario import Accept, ScenarioError, build, loads
 
 from ..scenarios import FAST
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.io import savemat
 
 import gbeam as gb
-from gbeam.mechanics.tree.control import gains, in_series, lead_lag, notch, pid
+from gbeam.mechanics import gains, in_series, lead_lag, notch, pid
 from gbeam.scenario import ScenarioError, build, loads
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")

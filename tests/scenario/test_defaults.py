@@ -6,7 +6,7 @@ import inspect
 from pathlib import Path
 
 import gbeam as gb
-from gbeam.scenario import schema
+from gbeam.scenario import Response as ResponseTable
 
 SCENARIO = """
 [beam]
@@ -33,7 +33,7 @@ duration = "6 s"
 
 def test_what_is_left_out_of_a_response_is_left_out_in_both_or_the_same() -> None:
     """Tables of signatures have their defaults; that of a response is written by hand."""
-    arguments, fields = inspect.signature(gb.ResponseSettings).parameters, schema.Response.model_fields
+    arguments, fields = inspect.signature(gb.ResponseSettings).parameters, ResponseTable.model_fields
     assert arguments.keys() & fields.keys()
     for name in arguments.keys() & fields.keys():
         field = fields[name]

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from gbeam import InputError
-from gbeam.scenario.text.revise import edited
-from gbeam.scenario.text.source import Source, parse
+from gbeam.scenario import Source, edited, parse
 
 from ..scenarios import EVERY_MOTION
 

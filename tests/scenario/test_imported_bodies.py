@@ -15,7 +15,7 @@ import xarray
 
 import gbeam as gb
 from gbeam.figures import figures_of
-from gbeam.results.facts import facts_of
+from gbeam.results import facts_of
 from gbeam.scenario import ScenarioError
 from tests.solids.test_imported import reduced, write_storage
 from tests.solids.test_modal_tests import beam, measured

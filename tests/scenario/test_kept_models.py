@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.packing import write_packed
+from gbeam.guards import write_packed
 from gbeam.io import kept
 from gbeam.solids import mesh as solids
 from gbeam.solids import reading

@@ -13,11 +13,9 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.guards.limits import NESTING, SCENARIO_BYTES, in_bytes, refuse_large_file
-from gbeam.guards.units import UnitError, quantity
-from gbeam.motion.records.conditioning import filtered
-from gbeam.scenario import ScenarioError, load, loads
-from gbeam.scenario.text.overrides import excess
+from gbeam.guards import NESTING, SCENARIO_BYTES, UnitError, in_bytes, quantity, refuse_large_file
+from gbeam.motion import filtered
+from gbeam.scenario import ScenarioError, excess, load, loads
 
 from ..scenarios import FAST
 

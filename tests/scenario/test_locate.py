@@ -8,9 +8,7 @@ from pathlib import Path as File
 
 import pytest
 
-from gbeam.scenario.template import template
-from gbeam.scenario.text.source import locate
-from gbeam.scenario.values import Path, Span, walk
+from gbeam.scenario import Path, Span, locate, template, walk
 
 EXAMPLES = sorted((File(__file__).parents[2] / "examples").glob("*.toml"))
 

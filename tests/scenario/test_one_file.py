@@ -41,7 +41,7 @@ BODY = BodyKind(table_of(dumbbell, name="Dumbbell", tag=("kind", "dumbbell")))
 WIDER = ('along y"]\n', 'along y"],\n    tilt: Annotated[Angle, "turn of the rod about x"] = 0.0,\n')
 PLANAR = """
 
-KINDS["planar"] = Kind(
+JOINT_KINDS["planar"] = Kind(
     "slides in a plane, and a turn about its normal",
     lambda axes: (Slide(np.linalg.svd(axes)[2][1:].T), *_turns(axes)),
     ("u", "v", "angle"),

@@ -6,7 +6,7 @@ from importlib.resources import files
 import pytest
 
 import gbeam as gb
-from gbeam.scenario.presets import PRESETS, preset_of, text_of
+from gbeam.scenario import PRESETS, preset_of, text_of
 
 from ..scenarios import BOX_ON_ARM
 

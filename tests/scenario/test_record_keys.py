@@ -89,7 +89,7 @@ def test_a_rest_that_is_none_is_refused_at_its_place(rest: str, path: str, words
 
 
 def test_a_level_factor_is_said_wherever_the_flight_is() -> None:
-    from gbeam.report.description import text
+    from gbeam.report import description_text as text
 
     case = build(load(F16, ["motion.flight.scale=1.25"]))
     assert case.title == "F-16 8 g turn on a 3.3 m arm; flight × 1.25"

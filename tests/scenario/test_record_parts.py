@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.report.description import text
-from gbeam.scenario import ScenarioError, build, load
-from gbeam.scenario.build import scenario_of
+from gbeam.report import description_text as text
+from gbeam.scenario import ScenarioError, build, load, scenario_of
 
 CAMPAIGN = Path(__file__).parents[2] / "examples" / "campaign.toml"
 SPANS = {"turn": (8.0, 18.0), "pull": (20.0, 27.5), "push": (28.0, 43.5)}  # of examples/campaign.py
@@ -61,7 +60,7 @@ def test_a_run_answers_for_every_manoeuvre_as_one_for_it_alone() -> None:
 
 
 def test_a_result_says_what_was_done_to_its_record_and_is_computed_again(tmp_path: Path) -> None:
-    from gbeam.scenario.rerun import rerun
+    from gbeam import rerun
 
     study = gb.study(gb.read_scenario(CAMPAIGN, QUICK))
     (note,) = study.notes  # one of all three

@@ -8,11 +8,8 @@ from pathlib import Path
 import pytest
 
 from gbeam.cli import main
-from gbeam.guards.kinds import KINDS
-from gbeam.scenario.reference import reference
-from gbeam.scenario.schema.fields import Table, fields_of
-from gbeam.scenario.schema.joints import Coordinates
-from gbeam.scenario.schema.scenario import Environments
+from gbeam.guards import KINDS
+from gbeam.scenario import Coordinates, Environments, Table, fields_of, reference
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenario.md"
 

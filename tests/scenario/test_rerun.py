@@ -18,9 +18,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.provenance import Environment, current_environment
-from gbeam.scenario import provenance
-from gbeam.scenario.rerun import reproduction
+from gbeam.results import Environment, current_environment
+from gbeam.scenario import provenance, reproduction
 
 from ..calling import Answer, gbeam, main
 from ..scenarios import EVERY_MOTION, FAST, FLIGHT, FREE_HUB, SPECIMEN, model, response

@@ -11,9 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gbeam import InputError
-from gbeam.scenario.template import template
-from gbeam.scenario.text.revise import with_entry, without_entry
-from gbeam.scenario.values import Path
+from gbeam.scenario import Path, template, with_entry, without_entry
 
 LAYOUT = """\
 # of the file

@@ -12,8 +12,7 @@ from scipy.io import mmwrite
 
 import gbeam as gb
 from gbeam.questions import QUESTIONS
-from gbeam.report.page.document import html_of
-from gbeam.report.page.result import viewer_data
+from gbeam.report import html_of, viewer_data
 from gbeam.scenario import ScenarioError
 from tests.solids.bodies import block
 from tests.solids.test_shells import sheet

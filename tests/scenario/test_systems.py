@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.mechanics.tree.joints import KINDS
+from gbeam.mechanics import JOINT_KINDS as KINDS
 from gbeam.questions import QUESTIONS, Needs
 from gbeam.report import text
 from gbeam.scenario import Diagnostic, ScenarioError, build, load, loads

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.guards.kinds import KINDS, USUAL
-from gbeam.guards.units import NUMBER, UnitError, argument, parsed_factor, quantity
+from gbeam.guards import KINDS, NUMBER, USUAL, UnitError, argument, parsed_factor, quantity
 
 G0 = 9.80665
 

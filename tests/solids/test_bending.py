@@ -12,7 +12,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.report import text
-from gbeam.results.facts import json_of
+from gbeam.results import json_of
 
 from ..calling import Answer, gbeam
 from .bodies import STEEL, block, solid

@@ -12,7 +12,7 @@ import pytest
 from scipy.linalg import eigh
 
 import gbeam as gb
-from gbeam.solids.links import coupling
+from gbeam.solids import coupling
 
 from .bodies import STEEL, block
 from .test_shells import sheet

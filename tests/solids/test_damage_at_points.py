@@ -11,10 +11,9 @@ import pytest
 from scipy.signal import lsim
 
 import gbeam as gb
-from gbeam.analysis.imitation.fatigue import cyclic_stress
-from gbeam.analysis.imitation.quantities import Quantities
-from gbeam.report.study import comparison_lines
-from gbeam.solids.stress import critical_plane_stress
+from gbeam.analysis import Quantities, cyclic_stress
+from gbeam.report import comparison_lines
+from gbeam.solids import critical_plane_stress
 
 from .bodies import STIFF, block, solid
 

@@ -16,7 +16,7 @@ import scipy.io
 import gbeam as gb
 from gbeam.guards import processes
 from gbeam.scenario import ScenarioError
-from gbeam.solids.files import parts_of, read_mesh
+from gbeam.solids import parts_of, read_mesh
 
 from ..guards.damaged import endless_exodus, large_med, large_vtu
 from .bodies import STEEL, block

@@ -13,7 +13,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.scenario import ScenarioError
-from gbeam.structure.beam import fibre_strain
+from gbeam.structure import fibre_strain
 
 from ..calling import main
 from .bodies import STEEL, STIFF, block, solid

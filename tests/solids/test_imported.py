@@ -17,7 +17,7 @@ import scipy.io
 from scipy import sparse
 
 import gbeam as gb
-from gbeam.io.models.registry import model_of
+from gbeam.io import model_of
 
 pytestmark = pytest.mark.usefixtures("reading_in_process")
 

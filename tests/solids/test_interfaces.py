@@ -11,12 +11,9 @@ from scipy import sparse
 from scipy.linalg import eigh
 
 import gbeam as gb
-from gbeam.mechanics.tree.bodies import momentum
-from gbeam.mechanics.tree.body_terms import body_of
-from gbeam.mechanics.tree.frames import Frame
-from gbeam.numerics.eigen import positive_definite
-from gbeam.solids.elements import mass_matrix, stiffness_matrix
-from gbeam.solids.links import attached
+from gbeam.mechanics import Frame, body_of, momentum
+from gbeam.numerics import positive_definite
+from gbeam.solids import attached, mass_matrix, stiffness_matrix
 
 from .bodies import STIFF, block, solid
 from .test_matrices import frame

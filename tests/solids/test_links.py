@@ -10,9 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.solids.elements import stiffness_matrix
-from gbeam.solids.linked import Linked
-from gbeam.solids.links import WAYS
+from gbeam.solids import WAYS, Linked, stiffness_matrix
 
 from .bodies import STIFF, block, solid
 

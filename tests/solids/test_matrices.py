@@ -13,7 +13,7 @@ import scipy.io
 from scipy import sparse
 
 import gbeam as gb
-from gbeam.solids.elements import mass_matrix, stiffness_matrix
+from gbeam.solids import mass_matrix, stiffness_matrix
 
 from .bodies import block, solid
 

@@ -14,12 +14,8 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.report import text
-from gbeam.report.study import response_lines
-from gbeam.report.words import number
-from gbeam.solids.elements import STRAIN, chunks, mass_matrix, stiffness_matrix
-from gbeam.solids.files import read_mesh
-from gbeam.solids.shape_functions import KINDS
+from gbeam.report import number, response_lines, text
+from gbeam.solids import KINDS, STRAIN, chunks, mass_matrix, read_mesh, stiffness_matrix
 
 from .bodies import PAIRS, STEEL, STIFF, Block, block, solid
 

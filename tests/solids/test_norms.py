@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from gbeam.results.solids import von_mises
-from gbeam.solids.norms import LargestNorms
-from gbeam.solids.stress import deviatoric
+from gbeam.results import von_mises
+from gbeam.solids import LargestNorms, deviatoric
 
 TIME = np.linspace(0.0, 3.0, 1500)[:, None]
 RATES = 1.0 + np.arange(12)

@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.solids.elements import chunks, stiffness_matrix
-from gbeam.solids.linked import Linked
-from gbeam.solids.shape_functions import KINDS as ELEMENTS
-from gbeam.solids.shape_functions import shape_functions
+from gbeam.solids import KINDS as ELEMENTS
+from gbeam.solids import Linked, chunks, shape_functions, stiffness_matrix
 from validation.codes.calculix_specimens import example as board
 
 from .bodies import STEEL, STIFF, block

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.response.posed import begun, prepared, tries
+from gbeam.analysis import begun, prepared, tries
 
 
 def box() -> gb.Structure:

@@ -13,15 +13,9 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 import gbeam as gb
-from gbeam.report import text
-from gbeam.report.page.document import viewer
-from gbeam.report.page.parts import Numbers
-from gbeam.report.study import comparison_lines
-from gbeam.results.facts import json_of
-from gbeam.results.solids import von_mises
-from gbeam.solids.elements import chunks, stiffness_matrix
-from gbeam.solids.shape_functions import KINDS
-from gbeam.solids.stress import VERTICES, NodalStress, principal, surface_of
+from gbeam.report import Numbers, comparison_lines, text, viewer
+from gbeam.results import json_of, von_mises
+from gbeam.solids import KINDS, VERTICES, NodalStress, chunks, principal, stiffness_matrix, surface_of
 
 from ..calling import main
 from .bodies import STEEL, STIFF, block, corner, solid

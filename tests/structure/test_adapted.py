@@ -7,8 +7,7 @@ import pytest
 from exact_beams import AREA, DENSITY, INERTIA, LENGTH, MODULUS, truncated_wedge, with_bodies
 
 from gbeam import Beam, InputError, Material, Model, PointMass, Root, Section, assemble
-from gbeam.mechanics.fields.adapted import adapted_shapes
-from gbeam.mechanics.fields.basis import quadrature
+from gbeam.mechanics import adapted_shapes, quadrature
 
 from ..specimens import appendage
 

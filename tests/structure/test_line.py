@@ -227,8 +227,7 @@ acceleration = { z = { profile = "constant", level = "2 g" } }
 [response]
 duration = "1 s"
 """
-    from gbeam.scenario.build import build
-    from gbeam.scenario.load import loads
+    from gbeam.scenario import build, loads
 
     def line(written: str, length: bool = False) -> gb.Line:
         arguments = text.replace("LINE", written)

@@ -10,7 +10,7 @@ import pytest
 import scipy.linalg
 
 import gbeam as gb
-from gbeam.motion import Base
+from gbeam.results import Base
 from validation.published.specimens import PLANAR
 from validation.published.tables import ELASTICA
 

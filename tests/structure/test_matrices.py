@@ -101,7 +101,7 @@ def test_tables_of_stations_are_taken_between_them() -> None:
 
 def test_a_gauge_reads_the_strain_of_the_whole_matrix() -> None:
     """At the place of the centre's upper face, seen from an axis beside it."""
-    from gbeam.structure.beam import fibre_strain
+    from gbeam.structure import fibre_strain
 
     beam = gb.Beam(LENGTH, gb.Section.of_matrices(*matrices((0.04, -0.03))), rotary_inertia=True)
     force, moment = np.array([100.0, 3.0, -20.0]), np.array([0.4, 5.0, -2.0])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.scenario.text.diagnostics import ScenarioError
+from gbeam.scenario import ScenarioError
 
 STRIP, ALUMINIUM = gb.Section.rectangle(0.02, 0.004), gb.Material(2700.0, 70e9)
 SENSOR = gb.PointMass(0.2, 0.01, name="sensor")
@@ -43,7 +43,7 @@ def test_points_are_stations_with_names(response: gb.Response) -> None:
 
 
 def test_figures_of_points_have_their_names(response: gb.Response) -> None:
-    from gbeam.results.facts import facts_of
+    from gbeam.results import facts_of
 
     known = facts_of(response)["bodies"]["beam"]
     assert [row["name"] for row in known["stations"]] == ["camera", "sensor", "tip"]

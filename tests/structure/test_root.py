@@ -8,7 +8,7 @@ from exact_beams import AREA, DENSITY, EI, INERTIA, LENGTH, MODULUS, with_bodies
 from scipy.optimize import brentq
 
 from gbeam import Beam, InputError, Load, Material, Model, PointMass, Root, Section, assemble, solve_equilibrium
-from gbeam.motion import Base
+from gbeam.results import Base
 
 from ..specimens import appendage
 

@@ -10,7 +10,7 @@ import pytest
 from scipy.constants import g as STANDARD_GRAVITY
 
 from gbeam import Flight, Section, assemble, compare, simulate, static
-from gbeam.structure.section import extreme_stresses, worst_fibres
+from gbeam.structure import extreme_stresses, worst_fibres
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST, response

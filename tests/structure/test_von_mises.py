@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.structure.shapes import rectangle_stresses, saint_venant, von_mises
+from gbeam.structure import rectangle_stresses, saint_venant, von_mises
 
 STEEL = gb.Material(7850.0, 210e9, poissons_ratio=0.3, yield_strength=400e6)
 # Timoshenko and Goodier, Theory of Elasticity, 109: largest stress T/(k a b²), by b/a.

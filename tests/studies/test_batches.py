@@ -12,9 +12,8 @@ import pytest
 import gbeam as gb
 from gbeam.analysis.response import record
 from gbeam.integrate import side_by_side
-from gbeam.scenario.load import load
-from gbeam.studies.evaluate import Inquiry, may_share, rows, settle
-from gbeam.studies.template import ScenarioTemplate
+from gbeam.scenario import load
+from gbeam.studies import Inquiry, ScenarioTemplate, may_share, rows, settle
 
 LEVEL = "motion.flight.acceleration.z.level"
 MEASURES = ["flight.tip.z.max_abs", "spin.tip.z.max_abs", "verdict.tip", "flight.loads.root_moment.y.max_abs"]

@@ -11,9 +11,8 @@ import pytest
 from scipy.linalg import eigh
 
 import gbeam as gb
-from gbeam.solids.elements import mass_matrix, stiffness_matrix
-from gbeam.studies.parameters import changed, physical_values
-from gbeam.studies.template import template_of
+from gbeam.solids import mass_matrix, stiffness_matrix
+from gbeam.studies import changed, physical_values, template_of
 
 from ..solids.bodies import block
 

@@ -21,7 +21,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import DataObject, binary, data, integers, just, one_of
 
 import gbeam as gb
-from gbeam.studies.journal import NAME, Journal
+from gbeam.studies import NAME, Journal
 
 from ..scenarios import UNJUDGED
 
@@ -116,7 +116,7 @@ def test_a_store_that_is_being_written_is_refused(fast: Path) -> None:
     """By the lock of the system, which ends with its process, and not by what stands in its file."""
     Path("there").mkdir()
     lock = Path("there/.lock")
-    holding = "import sys, time; from pathlib import Path; from gbeam.guards.processes import hold_lock\n"
+    holding = "import sys, time; from pathlib import Path; from gbeam.guards import hold_lock\n"
     holding += "with hold_lock(Path('there/.lock'), '', ''):\n    print('held', flush=True)\n    time.sleep(60)"
     process = subprocess.Popen([sys.executable, "-c", holding], stdout=subprocess.PIPE)
     assert process.stdout is not None and process.stdout.readline() == b"held\n"

@@ -13,10 +13,8 @@ import pytest
 
 import gbeam as gb
 from gbeam.report import text
-from gbeam.scenario.load import loads
-from gbeam.studies.derivatives import Neighbourhood
-from gbeam.studies.evaluate import Inquiry
-from gbeam.studies.template import ScenarioTemplate
+from gbeam.scenario import loads
+from gbeam.studies import Inquiry, Neighbourhood, ScenarioTemplate
 
 from ..scenarios import FLIGHT, FREE_HUB, SLEWING, SPECIMEN, model, response
 
@@ -273,9 +271,8 @@ def test_the_command_prints_a_table_and_writes_a_file_and_plots(fast: Path, gbea
 
 
 def test_values_may_be_others_than_the_scenarios(fast: Path) -> None:
-    from gbeam.scenario.load import load
-    from gbeam.studies.evaluate import Inquiry
-    from gbeam.studies.parameters import physical_values
+    from gbeam.scenario import load
+    from gbeam.studies import Inquiry, physical_values
 
     base = load(fast)
     about = Neighbourhood(

@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import gbeam as gb
-from gbeam.studies.shape import scenario_with
+from gbeam.studies import scenario_with
 
 from ..scenarios import APPENDAGE, FREE_HUB, SLEW, SPECIMEN, model, response
 

@@ -13,8 +13,7 @@ import pytest
 import xarray as xr
 
 import gbeam as gb
-from gbeam.studies.evaluate import Inquiry
-from gbeam.studies.figures import Facts, find, value_at
+from gbeam.studies import Facts, Inquiry, find, value_at
 
 Call = Callable[..., Any]
 ARM = ("--over", "motion.spin.arm=1:2:2")

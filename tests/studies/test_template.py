@@ -11,9 +11,9 @@ import pint
 import pytest
 
 import gbeam as gb
-from gbeam.arrays.tree import altered, arguments_of
-from gbeam.motion.profiles.piecewise import PiecewiseLinear
-from gbeam.studies.template import CaseTemplate, ScenarioTemplate, template_of
+from gbeam.arrays import altered, arguments_of
+from gbeam.motion import PiecewiseLinear
+from gbeam.studies import CaseTemplate, ScenarioTemplate, template_of
 
 from ..solids.bodies import block, solid
 

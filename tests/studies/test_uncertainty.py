@@ -12,8 +12,7 @@ import xarray as xr
 from scipy import stats
 
 import gbeam as gb
-from gbeam.studies.cases import read_cases
-from gbeam.studies.statistics import indices, statistics
+from gbeam.studies import indices, read_cases, statistics
 
 Call = Callable[..., Any]
 STIFFNESS, LEVEL = "beam.material.youngs_modulus", "motion.flight.acceleration.z.level"

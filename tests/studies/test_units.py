@@ -6,10 +6,8 @@ from functools import cache
 
 import pytest
 
-from gbeam.scenario.load import loads
-from gbeam.studies.evaluate import Inquiry
-from gbeam.studies.figures import Facts, _figures, declared_unit, find, own_keys, unit_at
-from gbeam.studies.template import ScenarioTemplate
+from gbeam.scenario import loads
+from gbeam.studies import Facts, Inquiry, ScenarioTemplate, declared_unit, figures_in, find, own_keys, unit_at
 
 from ..scenarios import FAST, FREE_HUB, RAMPS, SLEWING
 
@@ -50,7 +48,7 @@ def facts_of(text: str, verb: str, motion: str | None) -> Facts:
 @pytest.mark.parametrize(("text", "verb", "motion"), ASKED)
 def test_every_figure_has_a_unit_declared(text: str, verb: str, motion: str | None) -> None:
     facts = facts_of(text, verb, motion)
-    places = [keys for keys, _ in _figures(facts) if keys[-1] not in ("written", "reason")]  # null or words
+    places = [keys for keys, _ in figures_in(facts) if keys[-1] not in ("written", "reason")]  # null or words
     assert places and [keys for keys in places if declared_unit(facts, keys) is None] == []
 
 
@@ -59,8 +57,8 @@ def test_the_name_of_a_motion_decides_no_unit(name: str) -> None:
     plain = facts_of(LOADED, "run", None)
     named = facts_of(LOADED.replace("flight]", f"{name}]").replace('"flight"\narm', f'"{name}"\narm'), "run", None)
     assert name in named["motions"]
-    units = {own_keys(keys): unit_at(plain, keys) for keys, _ in _figures(plain) if keys[1] == "flight"}
-    assert units == {own_keys(keys): unit_at(named, keys) for keys, _ in _figures(named) if keys[1] == name}
+    units = {own_keys(keys): unit_at(plain, keys) for keys, _ in figures_in(plain) if keys[1] == "flight"}
+    assert units == {own_keys(keys): unit_at(named, keys) for keys, _ in figures_in(named) if keys[1] == name}
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 import gbeam as gb
-from gbeam.studies.cases import read_cases, read_variation
+from gbeam.studies import read_cases, read_variation
 
 
 @pytest.mark.parametrize(

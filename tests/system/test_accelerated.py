@@ -8,9 +8,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 import gbeam as gb
-from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import steady
-from gbeam.results.facts import json_of
+from gbeam.analysis import Drive, steady_state
+from gbeam.results import json_of
 from tests.crossing import crossed
 
 LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS = 2.0, 0.02, 0.004, 2700.0, 70e9
@@ -86,7 +85,7 @@ def test_frequencies_of_a_rod_under_thrust(kind: str, load: float) -> None:
 
 def test_modes_of_a_rod_under_thrust_solve_its_equations() -> None:
     """Its free motions too: (λ² M + λ C + K) φ = 0 of the whole system."""
-    state = steady(rocket("exact", 50.0), Drive())
+    state = steady_state(rocket("exact", 50.0), Drive())
     mass, velocity, stiffness, _ = state.linear
     for value, mode in zip(state.moving.value, state.moving.modes.T, strict=True):
         left = value**2 * mass @ mode + value * velocity @ mode + stiffness @ mode

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import gbeam as gb
-from gbeam.mechanics.tree.course import Course
-from gbeam.numerics.series import STEP
+from gbeam.mechanics import Course
+from gbeam.numerics import STEP
 
 INERTIA = (0.1, 0.2, 0.25)
 BODY = gb.RigidBody(2.0, INERTIA)

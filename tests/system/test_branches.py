@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.facts import json_of
+from gbeam.results import json_of
 
 GRAVITY = (0.0, 0.0, -9.81)
 ROD = gb.RigidBody(1.0, (0.0, 0.03, 0.03), centre=(0.3, 0, 0), points={"tip": (0.6, 0, 0)})

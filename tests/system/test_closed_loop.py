@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import expm
 
 import gbeam as gb
-from gbeam.mechanics.tree.control import gains
+from gbeam.mechanics import gains
 from tests.crossing import crossed
 from tests.system.test_feedback import NAMES, SAMPLE, lead, satellite
 

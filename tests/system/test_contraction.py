@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.mechanics.tree.equations import Tree
-from gbeam.mechanics.tree.linear import idle_inputs
-from gbeam.mechanics.tree.one_body import moving_system
+from gbeam.mechanics import Tree, idle_inputs, moving_system
 from tests.system.trees import BEAM, flexible, tree
 
 HUBS: dict[str, dict[str, Any]] = {

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.system.richer import Richer, judged_beams, richer
-from gbeam.results.parts import Base
+from gbeam.analysis import Richer, judged_beams, richer
+from gbeam.results import Base
 
 STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
 SOFT = replace(STRIP, section=gb.Section.rectangle(0.04, 0.001))

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import steady, transfer
+from gbeam.analysis import Drive, steady_state, transfer
 from gbeam.report import text
 
 ROD = gb.RigidBody(1.0, (0.0, 1 / 12, 1 / 12), centre=(0.5, 0, 0), points={"end": (1, 0, 0)})
@@ -77,7 +76,7 @@ def test_springs_one_behind_the_other_are_refused_and_leave_a_richer_system_no_a
     with pytest.raises(gb.InputError, match="one behind the other"):
         gb.modes(both)
     with pytest.raises(gb.ComputationError, match="with richer bodies"):
-        transfer(steady(one, Drive()), both)
+        transfer(steady_state(one, Drive()), both)
 
 
 def test_modes_about_a_place_that_is_not_stable_say_so() -> None:

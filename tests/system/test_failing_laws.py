@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.io.netcdf import read_stored
+from gbeam.io import read_stored
 from tests.crossing import crossed
 
 SAMPLE, INERTIA, ANGLE = 0.1, 2.0, 0.5

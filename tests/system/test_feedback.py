@@ -10,8 +10,8 @@ from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.mechanics.tree.control import gains
-from gbeam.report.study import response_lines
+from gbeam.mechanics import gains
+from gbeam.report import response_lines
 
 PANEL = gb.assemble(
     gb.Beam(3.0, gb.Section.rectangle(0.5, 0.02), gb.Material(2700.0, 70e9), damping_ratio=0.005), "FOAM", y=0, z=3

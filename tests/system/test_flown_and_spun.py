@@ -11,7 +11,7 @@ import pytest
 
 import gbeam as gb
 from gbeam.questions import QUESTIONS
-from gbeam.report.page.result import report_of
+from gbeam.report import report_of
 from gbeam.scenario import ScenarioError
 
 from ..calling import main

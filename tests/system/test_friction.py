@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.mechanics.tree.equations import SLIP, SLIPS
+from gbeam.mechanics import SLIP, SLIPS
 
 WEIGHT = 2.0 * 9.81 * 0.5  # N, along the incline
 BLOCK, MASS = gb.RigidBody(2.0, (1.0, 1.0, 1.0)), gb.RigidBody(1.0, (1.0, 1.0, 1.0))

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.mechanics.tree.linear import is_linear, linear_equations
+from gbeam.mechanics import is_linear, linear_equations
 from tests.system.trees import BEAM, flexible, rigid
 
 LOADED = gb.assemble(

@@ -10,9 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.report.page.result import report_of, viewer_data
-from gbeam.report.words import as_json
-from gbeam.results.facts import json_of
+from gbeam.report import as_json, report_of, viewer_data
+from gbeam.results import json_of
 from tests.system.trees import BEAM, flexible
 
 SLOW: dict[str, Any] = {"duration": 0.2, "step": 1e-3, "integrator": "gauss", "estimate": False}

@@ -13,9 +13,9 @@ from scipy.optimize import brentq
 
 import gbeam as gb
 from examples import closing_the_loop
+from gbeam.analysis import NOT_ALL
 from gbeam.analysis.accuracy import beam_theory
-from gbeam.analysis.system.richer import NOT_ALL
-from gbeam.mechanics.tree.control import gains
+from gbeam.mechanics import gains
 
 SAMPLE = 0.02  # s, by which the torque is late, too
 LENGTH, WIDTH, THICKNESS, DENSITY, MODULUS, RIM, HUB = 3.0, 0.5, 0.02, 2700.0, 70e9, 0.5, 50.0

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.report import text
-from gbeam.report.page.result import report_of, viewer_data
+from gbeam.report import report_of, text, viewer_data
 
 from ..calling import main
 from ..solids.test_damage_at_points import HALF, METAL, B, H, L, beam, block, runs, solid

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.mechanics.tree.one_body import moving_system
+from gbeam.mechanics import moving_system
 
 STRIP = gb.Section.rectangle(width=0.02, thickness=0.004)
 BEAM = gb.Beam(0.3, STRIP, gb.Material(2700, 70e9), [gb.PointMass(0.3, 0.05)], damping_ratio=0.01)

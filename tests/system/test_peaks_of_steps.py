@@ -48,7 +48,7 @@ def test_a_file_keeps_the_results_times_and_the_peaks_of_all_steps(tmp_path: Pat
     stored = response.to_xarray()
     assert len(stored.time) == len(response.time) < response.steps + 1
     response.save(tmp_path / "result.nc")
-    from gbeam.io.netcdf import read_stored
+    from gbeam.io import read_stored
 
     kept = read_stored(tmp_path / "result.nc").variables
     assert len(kept["time"]) == len(response.time)

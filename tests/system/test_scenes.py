@@ -9,8 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.report.facts import facts
-from gbeam.report.page.result import report_of, report_of_file, variables_of, viewer_data
+from gbeam.report import facts, report_of, report_of_file, variables_of, viewer_data
 
 STRIP = gb.Beam(1.0, gb.Section.rectangle(0.04, 0.004), gb.Material(2700.0, 70e9), damping_ratio=0.01)
 SIZE = 0.15  # of the length, of what a mode moves most

@@ -252,7 +252,7 @@ def test_what_is_displaced_states_the_error_that_one_body_states() -> None:
 def test_a_traced_start_is_that_of_numbers() -> None:
     import jax
 
-    from gbeam.analysis.system.start import started, started_traced
+    from gbeam.analysis import started, started_traced
 
     initial = gb.Initial(displacement={"panel.tip": {"z": 4e-3, "y": 1e-3}}, velocity={"panel.tip": {"z": 0.1}})
 

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis.steady.frequency_errors import Richer
-from gbeam.analysis.system.drive import Drive, turning_at
-from gbeam.analysis.system.path import Path
-from gbeam.analysis.system.point import Point
+from gbeam.analysis import Drive, Path, Point, turning_at
+from gbeam.analysis import RicherModels as Richer
 from gbeam.figures import figure_of
-from gbeam.results.facts import json_of
+from gbeam.results import json_of
 from tests.analysis_verbs.beams import slender
 from tests.crossing import crossed
 from validation.published.tables import UNIFORM_FLAP
@@ -279,7 +277,7 @@ def test_steady_states_found_at_once_are_those_found_alone(
     path(system, rates[0])
     for some in (rates[1:2], rates[2:4], rates[4:]):
         path.prepare(system, some)
-    monkeypatch.setattr("gbeam.analysis.system.path.steady", None)  # none is looked for alone
+    monkeypatch.setattr("gbeam.analysis.system.path.steady_state", None)  # none is looked for alone
     states = [path(system, rate) for rate in rates]
     monkeypatch.undo()
     for rate, state in zip(rates, states, strict=True):

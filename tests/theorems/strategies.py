@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
 from gbeam import Beam, Material, PointMass, Root, Section, Structure, modes
-from gbeam.motion.protocol import Motion
+from gbeam.motion import Motion
 
 # A counterexample is as random as any example: it is not made smaller, which takes minutes.
 theorem = settings(max_examples=12, phases=[Phase.generate], suppress_health_check=list(HealthCheck))

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 
 from gbeam import Beam, Hub, Model, PointMass, Root, assemble, constant
-from gbeam.motion import Base
+from gbeam.results import Base
 
 from .strategies import beams, first_frequency, frequencies, numbers, theorem, vectors
 

@@ -14,9 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gbeam import Beam, Hub, Model, Structure, assemble
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import gauss, newmark
+from gbeam.integrate import LinearEquations, gauss, integrate, newmark
 from validation.residuals import hinged
 
 from .strategies import beams, first_frequency, numbers, theorem, vectors

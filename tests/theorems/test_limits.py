@@ -19,7 +19,7 @@ from gbeam import (
     solve_equilibrium,
     trapezoid,
 )
-from gbeam.motion import Base
+from gbeam.results import Base
 
 from .strategies import EXACT, beams, few, first_frequency, frequencies, numbers, theorem, vectors
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 
 from gbeam import Beam, Hub, Load, Model, assemble, constant, linearize, solve_equilibrium
-from gbeam.motion import Base
+from gbeam.results import Base
 
 from .strategies import beams, few, first_frequency, numbers, theorem, vectors
 

@@ -47,7 +47,7 @@ def test_mass_properties_are_those_of_the_block(kind: str, seed: int, origin: tu
 
 
 def properties(mesh: gb.SolidMesh) -> tuple[float, np.ndarray, np.ndarray]:
-    from gbeam.solids.elements import mass_matrix
+    from gbeam.solids import mass_matrix
 
     matrix = mass_matrix(mesh.points, mesh.blocks)
     weight = np.asarray(matrix.sum(axis=0)).ravel()

@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.analysis.control.outputs import surface_gauge
-from gbeam.results.errors import FrequencyErrors
-from gbeam.studies.measurement import read_measurement
+from gbeam.analysis import surface_gauge
+from gbeam.results import FrequencyErrors
+from gbeam.studies import read_measurement
 
 from .strategies import EXACT, beams, few, first_frequency, numbers, theorem, vectors
 

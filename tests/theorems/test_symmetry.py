@@ -23,10 +23,8 @@ from gbeam import (
     solve_equilibrium,
     vector,
 )
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import gauss, newmark
-from gbeam.motion import Base
+from gbeam.integrate import LinearEquations, gauss, integrate, newmark
+from gbeam.results import Base
 
 from .strategies import EXACT, beams, few, first_frequency, frequencies, numbers, theorem, vectors
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.results.solids import von_mises
-from gbeam.solids.stress import NodalStress
+from gbeam.results import von_mises
+from gbeam.solids import NodalStress
 from validation.codes.calculix_fillet import COARSE, NODES, SLOW, bar, fitted
 from validation.record import RESULTS
 

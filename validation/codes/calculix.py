@@ -22,7 +22,7 @@ import numpy as np
 from scipy.integrate import simpson
 
 import gbeam as gb
-from gbeam.results.modal import Modes
+from gbeam import Modes
 from validation.codes.calculix_beam import Answer, Spin, Strip, solve
 from validation.table import Row
 

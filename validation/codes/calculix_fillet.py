@@ -21,10 +21,8 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY as G
-from gbeam.results.solids import von_mises
-from gbeam.solids.elements import chunks
-from gbeam.solids.shape_functions import KINDS, reference, shape_functions
-from gbeam.solids.stress import NodalStress
+from gbeam.results import von_mises
+from gbeam.solids import KINDS, NodalStress, chunks, reference, shape_functions
 from validation.codes.calculix_solid import SMALL, Specimen, run
 from validation.codes.calculix_specimens import STEEL, grid, held
 from validation.table import Row

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 
 import gbeam as gb
-from gbeam.analysis.imitation.accounting import gradients
-from gbeam.results.solids import von_mises
-from gbeam.solids.elements import chunks, mass_matrix
+from gbeam.analysis import gradients
+from gbeam.results import von_mises
+from gbeam.solids import chunks, mass_matrix
 from validation.codes.calculix_solid import DAMPING, SMALL, moved, solid
 from validation.table import Row
 

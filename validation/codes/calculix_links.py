@@ -16,7 +16,7 @@ import meshio
 import numpy as np
 
 import gbeam as gb
-from gbeam.solids.links import WAYS
+from gbeam.solids import WAYS
 from validation.codes.calculix_solid import Specimen, deck, printed_frequencies, run
 from validation.codes.calculix_specimens import STEEL, grid
 from validation.table import Row

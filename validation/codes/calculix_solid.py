@@ -23,9 +23,8 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY as G
-from gbeam.results.solids import von_mises
-from gbeam.solids.elements import chunks, mass_matrix
-from gbeam.solids.shape_functions import KINDS
+from gbeam.results import von_mises
+from gbeam.solids import KINDS, chunks, mass_matrix
 from validation.table import Row
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))

@@ -21,7 +21,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
-from gbeam.results.placement import Placement
+from gbeam.results import Placement
 from validation.codes.calculix_solid import model, solid
 from validation.table import Row
 

@@ -25,6 +25,7 @@ from gbeam import (
     Sine,
     Structure,
     assemble,
+    buckling_acceleration,
     constant,
     critical_load,
     linearize,
@@ -33,7 +34,6 @@ from gbeam import (
     static,
     trapezoid,
 )
-from gbeam.analysis.steady.stability import buckling_acceleration
 from validation.published import zhang2020
 from validation.published.specimens import strip, strip_beam, unit_beam
 from validation.table import Row

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
 from gbeam import Beam, Load, Material, Model, PointMass, Root, Section, Structure, assemble, solve_equilibrium
-from gbeam.motion import Base
+from gbeam.results import Base
 from validation.published.specimens import PLANAR, frequencies, spinning, unit_beam
 from validation.table import Row
 

@@ -31,11 +31,9 @@ from gbeam import (
     simulate,
     solve_equilibrium,
 )
-from gbeam.integrate.driver import integrate
-from gbeam.integrate.equations import LinearEquations
-from gbeam.integrate.schemes import Scheme, generalized_alpha, hht, newmark
-from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.motion import Base
+from gbeam.integrate import LinearEquations, Scheme, generalized_alpha, hht, integrate, newmark
+from gbeam.mechanics import Coefficients
+from gbeam.results import Base
 from validation.published.specimens import (
     EXACT_2009,
     FREE_HUB,

@@ -19,7 +19,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gbeam import Beam, Line, Load, Material, Model, Root, Section, assemble, solve_equilibrium
-from gbeam.motion import Base
+from gbeam.results import Base
 from validation.table import Row
 
 TITLE = "Beams bent far in space"

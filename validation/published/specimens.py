@@ -29,11 +29,9 @@ from gbeam import (
     assemble,
     simulate,
 )
-from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import settled
-from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.motion import Base
+from gbeam.analysis import Drive, settled, subject_of
+from gbeam.mechanics import Coefficients
+from gbeam.results import Base
 from validation.published import hubbeam2009, zhang2020
 
 PLANAR = (8, 9, 0)  # of the exact model in a plane: statics share a size

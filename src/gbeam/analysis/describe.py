@@ -16,8 +16,8 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND, Joint
 from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.mechanics.tree.system import System
-from gbeam.motion import Flight
 from gbeam.motion.arm import level_of
+from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import kind_of, notes_on
 from gbeam.results.description import (
     BodyDescription,

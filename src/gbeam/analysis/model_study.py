@@ -21,7 +21,7 @@ from gbeam.constants import ModelKind
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of, remade
-from gbeam.mechanics.models import KINDS, Model
+from gbeam.mechanics.models import MODEL_KINDS, Model
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
@@ -40,11 +40,11 @@ SHAPES_FINE = 1e-5
 def counterpart(model: Model, kind: ModelKind) -> Model:
     """The model of another kind with as many shapes; of a kind by strains with at least the numbers `CONVERGED`."""
     axial, y, z = model.counts[:3]
-    if KINDS[kind].strains:
+    if MODEL_KINDS[kind].strains:
         strains, rotations = CONVERGED
         y, z = max(y, rotations) if y else 0, max(z, rotations) if z else 0
         return replace(model, kind=kind, axial=max(axial, strains), y=y, z=z)
-    return replace(model, kind=kind, axial=axial if KINDS[kind].axial else 0, twist=0, shear_y=0, shear_z=0)
+    return replace(model, kind=kind, axial=axial if MODEL_KINDS[kind].axial else 0, twist=0, shear_y=0, shear_z=0)
 
 
 @typed
@@ -93,8 +93,8 @@ def compare_models(
     exact done
     """
     for kind in kinds:
-        if kind not in KINDS:
-            raise InputError("kinds", f"has {kind!r}", f"choose from {', '.join(KINDS)}")
+        if kind not in MODEL_KINDS:
+            raise InputError("kinds", f"has {kind!r}", f"choose from {', '.join(MODEL_KINDS)}")
     _refuse(case, point)
     case.system.require_damping("the response")
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
@@ -118,7 +118,7 @@ def compare_models(
         reference = answers[REFERENCE, name][0]
         axis = _largest_axis(answers, name) if isinstance(reference, Failure) else _axis(reference.peak)
         direction[name] = f"{point} {'xyz'[axis]}" if point else "xyz"[axis]
-        rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in KINDS if kind in chosen]
+        rows += [_row(kind, name, *answers[kind, name], reference, axis) for kind in MODEL_KINDS if kind in chosen]
     notes = notes_on(case.motions)
     return ModelStudy(case.title, REFERENCE, direction, tuple(rows), notes=notes, provenance=case.provenance)
 

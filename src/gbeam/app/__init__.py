@@ -4,3 +4,7 @@
 within one folder, `jobs` runs the command line in processes of limited time and memory, one after the other. The page
 is `assets`, built from `web/` by `make web`; a mesh on it is drawn by the viewer of the reports.
 """
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

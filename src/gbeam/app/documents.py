@@ -19,12 +19,13 @@ from gbeam.errors import GbeamError, InputError
 from gbeam.guards.processes import read_cached
 from gbeam.io.binary import is_binary
 from gbeam.io.models.registry import contents_of
-from gbeam.motion import Flight
+from gbeam.motion.flight import Flight
 from gbeam.motion.records.record import columns_of_text, read_table
 from gbeam.motion.records.units import UNITS, bracketed, spelled
-from gbeam.scenario import ScenarioError, build, loads
+from gbeam.scenario.build import build
+from gbeam.scenario.load import loads
 from gbeam.scenario.schema import kind_of_scenario
-from gbeam.scenario.text.diagnostics import Diagnostic
+from gbeam.scenario.text.diagnostics import Diagnostic, ScenarioError
 from gbeam.scenario.text.revise import toml, with_entry, without_entry
 from gbeam.scenario.text.source import parse
 from gbeam.scenario.values import Path as Place
@@ -61,9 +62,10 @@ def described(text: str, folder: Path, *, distributions: bool = True) -> dict[st
         document["form"] = form(data)
         records(data, folder)
         from gbeam.analysis.describe import describe
-        from gbeam.report.description import text as in_words
+        from gbeam.report.description import description_text
 
-        document["meaning"] = in_words(describe(build(loads(text, NAME, folder=folder, distributions=distributions))))
+        case = build(loads(text, NAME, folder=folder, distributions=distributions))
+        document["meaning"] = description_text(describe(case))
     except GbeamError as error:
         document["errors"] = problems(error)
     return document

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from gbeam.scenario import json_schema
 from gbeam.scenario.reference import tag_of
 from gbeam.scenario.schema import kind_of_scenario
+from gbeam.scenario.template import json_schema
 from gbeam.scenario.text.overrides import value_of
 from gbeam.scenario.text.revise import toml
 from gbeam.scenario.values import Path, path_text, written_at

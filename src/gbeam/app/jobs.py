@@ -29,7 +29,7 @@ from gbeam.guards.importing import variables
 from gbeam.results.criteria import GOOD
 
 ID = re.compile(r"\d{8}-\d{6}-[0-9a-f]{8}")
-LIMITED = "import sys; from gbeam.cli import limited; sys.exit(limited())"
+LIMITED = "import sys; from gbeam.cli.entry import limited; sys.exit(limited())"
 MEMORY = 16 * 2**30  # bytes of address space, of which compiled programs reserve far more than they use
 SECONDS = 3600  # of processor time, and of wall-clock time
 QUEUED = 100

@@ -20,10 +20,13 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from pydantic import AfterValidator, Field
 from starlette.requests import ClientDisconnect
 
-from gbeam.app import documents, files, verbs
+from gbeam.app import documents, files
 from gbeam.app.access import ASSETS, AT_ONCE, REPORT_POLICY, Connections, Door, listening
 from gbeam.app.documents import head, load_curves
 from gbeam.app.jobs import Jobs
+from gbeam.app.verbs import arguments as arguments_of
+from gbeam.app.verbs import records as records_of
+from gbeam.app.verbs import verb_facts
 from gbeam.cli.process import end_on_signals
 from gbeam.errors import GbeamError, InputError
 from gbeam.guards.limits import SCENARIO_BYTES
@@ -167,7 +170,7 @@ def create_app(folder: Path) -> FastAPI:
     @app.get("/api/verbs")
     def offered() -> dict[str, Any]:
         """Verbs for a scenario, with their options."""
-        return verbs.verb_facts()
+        return verb_facts()
 
     @app.post("/api/runs")
     def submit(
@@ -181,9 +184,9 @@ def create_app(folder: Path) -> FastAPI:
         if document["errors"]:
             raise documents.Unfit(document["errors"])
         data = parse(documents.NAME, text)
-        arguments = verbs.arguments(verb, options, data)
+        arguments = arguments_of(verb, options, data)
         title = str(data.get("title", ""))[:200]
-        files_named = [files.regular(records, files.check_kind(name)) for name in verbs.records(verb, options)]
+        files_named = [files.regular(records, files.check_kind(name)) for name in records_of(verb, options)]
         inputs = [*documents.records(data, records), *files_named]
         last_text = jobs.last_text(title)
         changes = documents.changes(last_text, text) if last_text else ""

@@ -50,7 +50,9 @@ def plan(
     """
     folder = output.folder(scenario)
 
-    from gbeam.scenario import build_machines, build_specimen, load_environments, provenance, schema
+    from gbeam.scenario import schema
+    from gbeam.scenario.build import build_machines, build_specimen
+    from gbeam.scenario.load import load_environments, provenance
 
     with Watch(f"planning the machines of {scenario}"):
         environments = load_environments(scenario, output.overrides)

@@ -33,7 +33,7 @@ def report(error: GbeamError, as_json: bool) -> int:
         if as_json:
             _print({"outcome": error.outcome, "message": str(error), "motions": {}})
         return FAILED
-    from gbeam.scenario import ScenarioError  # not needed, nor imported, for help
+    from gbeam.scenario.text.diagnostics import ScenarioError  # not needed, nor imported, for help
 
     # A scenario's diagnostics begin with file:line, which editors open: nothing may stand before it.
     placed = isinstance(error, ScenarioError)
@@ -142,7 +142,7 @@ def _refuse(text: str, diagnostics: list[dict[str, Any]], as_json: bool) -> int:
 
 def _diagnostics(error: GbeamError) -> list[dict[str, Any]]:
     """Diagnostics of an error for JSON: path, message and hint of each."""
-    from gbeam.scenario import ScenarioError
+    from gbeam.scenario.text.diagnostics import ScenarioError
 
     if isinstance(error, ScenarioError):
         return [dict(diagnostic) for diagnostic in error.as_json()]

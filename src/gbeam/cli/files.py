@@ -34,7 +34,7 @@ def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     loaded = read("check", scenario, output.overrides)
 
     from gbeam.analysis.describe import describe
-    from gbeam.report import description as report
+    from gbeam.report.description import description_text
     from gbeam.results.facts import facts_of
 
     with loaded.placing():
@@ -43,7 +43,7 @@ def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
     assert source is not None  # it was read from a file
     distributions = {path: str(distribution) for path, distribution in source.distributions.items()}
     description = replace(description, distributions=distributions)
-    facts, words = signed(facts_of(description), loaded.case.provenance), report.text(description)
+    facts, words = signed(facts_of(description), loaded.case.provenance), description_text(description)
     on_page = words if output.report else ""
     show(words, facts, output.json)
     if folder is not None:
@@ -56,7 +56,7 @@ def check(scenario: ScenarioFile, /, *, output: Output = Output()) -> int:
 
 def _write(folder: Path, description: Description, facts: dict[str, Any], words: str, watch: Watch) -> None:
     """Write a scenario's description as JSON, figures of its records, and a page of its `words` if there are any."""
-    from gbeam.figures import figures_of
+    from gbeam.figures.registry import figures_of
 
     write_json(folder / "check.json", facts)
     described = figures_of(description)
@@ -67,7 +67,7 @@ def _write(folder: Path, description: Description, facts: dict[str, Any], words:
         html = description_page(words, json_value(facts)["provenance"], described)
         (folder / "check.html").write_text(html, encoding="utf-8")
     if described and figures_wanted():
-        from gbeam.plots import write_figures
+        from gbeam.plots.output import write_figures
 
         write_figures(described, folder, "gbeam check", watch)
 
@@ -151,7 +151,7 @@ def schema(
 
         print(reference_of_results() if markdown and not json else json_schema_of_results(), end="")
         return 0
-    from gbeam.scenario import json_schema
+    from gbeam.scenario.template import json_schema
 
     if markdown and not json:
         from gbeam.scenario.reference import reference

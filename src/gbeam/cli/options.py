@@ -172,7 +172,7 @@ class Input:
         except InputError as error:
             if error.where in options:
                 raise error.at(options[error.where]) from None
-            from gbeam.scenario import placed
+            from gbeam.scenario.load import placed
 
             raise placed(self.scenario, [error]) from None
 
@@ -182,7 +182,7 @@ class Input:
         try:
             return chosen, prepared(self.case, chosen)
         except InputError as error:
-            from gbeam.scenario import placed
+            from gbeam.scenario.load import placed
 
             raise placed(self.scenario, [error.within(f"motion.{chosen}")]) from None
 
@@ -220,7 +220,8 @@ _MOVING = ("run", "place")  # verbs that need the plans of all machines
 
 def read(verb: str, file: Path, overrides: Sequence[str]) -> Input:
     """Load and build the scenario of a verb. InputError if the verb needs a body that deforms and there is none."""
-    from gbeam.scenario import build, load, provenance  # not needed, nor imported, for help
+    from gbeam.scenario.build import build  # not needed, nor imported, for help
+    from gbeam.scenario.load import load, provenance
 
     with Watch(f"reading {file}" + (" and planning its machines" if verb in _MOVING else "")):
         scenario = load(file, overrides, distributions=verb == "check")

@@ -16,7 +16,7 @@ from gbeam.errors import InputError, naming
 from gbeam.printable import printable
 
 if TYPE_CHECKING:
-    from gbeam.figures import Describe
+    from gbeam.figures.registry import Describe
     from gbeam.results.provenance import Provenance
     from gbeam.results.searches import Fit, Optimum
 
@@ -55,7 +55,7 @@ def deliver(
 
     def make(watch: Watch, hidden: Path) -> None:
         """Write all files into a folder."""
-        from gbeam.figures import figures_of
+        from gbeam.figures.registry import figures_of
 
         described = figures_of(answer, title) if figures is None else figures
         if suffix == ".nc":
@@ -68,14 +68,14 @@ def deliver(
             html = report_of(answer, signed_facts(), described)
             (hidden / f"{page or name}.html").write_text(html, encoding="utf-8")
         if described and figures_wanted():
-            from gbeam.plots import write_figures
+            from gbeam.plots.output import write_figures
 
             write_figures(described, hidden, f"gbeam {verb or name}", watch)
         if more is not None:
             more(hidden)
 
     if not output.json:
-        from gbeam.report import lines_of
+        from gbeam.report.lines import lines_of
         from gbeam.report.words import json_value
 
         show_lines(lines_of(type(answers[0]), json_value(signed_facts()), verbose=output.verbose, **options))
@@ -93,7 +93,7 @@ def deliver(
 
 def show(words: str, facts: Mapping[str, Any], json: bool) -> None:
     """Print a result as JSON, or in words."""
-    from gbeam.report import as_json
+    from gbeam.report.words import as_json
 
     if json:
         print(as_json(facts))
@@ -155,7 +155,7 @@ def list_files(folder: Path | None, files: Sequence[Path]) -> None:
 
 def write_json(file: Path, facts: Mapping[str, Any]) -> None:
     """Write one result as JSON."""
-    from gbeam.report import as_json
+    from gbeam.report.words import as_json
 
     file.write_text(as_json(facts) + "\n", encoding="utf-8")
 

@@ -154,7 +154,7 @@ def _remove_plots_before(folder: Path, names: set[str]) -> None:
     """Remove earlier plots from a folder: those with the signature of the new ones, `names`, under other names."""
     if not any(name.endswith(_PLOTS) for name in names):
         return
-    from gbeam.plots import signature
+    from gbeam.plots.output import signature
 
     commands = {signature(folder / name) for name in names if name.endswith(_PLOTS)} - {""}
     for file in folder.iterdir():

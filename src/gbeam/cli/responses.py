@@ -70,7 +70,7 @@ def run(
 def _import_leaves() -> None:
     with suppress(Exception):  # the import where it is needed raises it again
         if figures_wanted():
-            import gbeam.plots
+            import gbeam.plots.output
         import gbeam.io.netcdf  # noqa: F401
 
 
@@ -146,10 +146,10 @@ def rerun(
     what has changed since. Writes nothing. Exit
     status: 0 reproduced, 1 not, 2 the file cannot be read or holds no scenario.
     """
-    from gbeam.report import facts as report
+    from gbeam.report.facts import reproduction_json, reproduction_text
 
     reproduction = answer_again(result) if result.suffix == ".json" else _of_netcdf(result)
-    show(report.reproduction_text(reproduction), report.reproduction_json(reproduction), json)
+    show(reproduction_text(reproduction), reproduction_json(reproduction), json)
     if not reproduction.reproduced:
         complain(f"not reproduced: {reproduction.excess_count} of {reproduction.compared} differ")
         return FAILED

@@ -1,9 +1,9 @@
 """Figures of results, each described once: `plots` draws them with Matplotlib, and a report's page shows the same.
 
-`figures_of` knows which figures a result has. A figure reads results only, never a model, and draws nothing.
+`registry` knows which figures a result has. A figure reads results only, never a model, and draws nothing.
 """
 
-from __future__ import annotations
+import lazy_loader
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial

@@ -1,1 +1,5 @@
 """Guards of input: checks of single values, limits of size, plausible and possible values."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -17,7 +17,7 @@ from gbeam.integrate.schemes import Scheme, added
 from gbeam.integrate.steps import Corners, Steps, fitted
 from gbeam.integrate.windows import windows
 
-_LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
+LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
 Piece = tuple[Any, ...]  # q, q̇ and, unless they are computed later, q̈ (k, n), and flags of steps that were solved (k,)
 
 
@@ -88,7 +88,7 @@ def integrate_steps(
 def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     """Pieces of a run of linear equations: first the initial state, then the kept steps of each chunk."""
     z, state = linear.start(equations, scheme, steps, q, qd)
-    size = len(steps) if is_jax(state[-1]) else _LINEAR_CHUNK
+    size = len(steps) if is_jax(state[-1]) else LINEAR_CHUNK
     fit = added(equations, scheme, steps.longest)
     yield *(namespace(state[-1]).asarray(x)[None] for x in state), np.array([True])
     for done in range(0, len(steps), size):

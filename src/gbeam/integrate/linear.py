@@ -13,7 +13,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, leaves_of
 from gbeam.integrate.equations import LinearEquations, solved
-from gbeam.integrate.relaxed import FEWEST, relaxed
+from gbeam.integrate.relaxed import FEWEST, take_equal_steps
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 
@@ -63,7 +63,7 @@ def chunk(
     groups = [np.arange(n)] if xp is not np or anew else _uncoupled(mass, c, k)
     settled = None
     if xp is np and steps.equal and not scheme.ends and len(groups) == 1 and n >= FEWEST and len(c) == count:
-        settled = relaxed(t, mass, c, k, f, z)
+        settled = take_equal_steps(t, mass, c, k, f, z)
     if settled is not None:
         flat, x = settled
         states, last = flat[:-1].reshape(count, m, n), flat[-1].reshape(m, n)

@@ -189,7 +189,7 @@ def mass_and_acceleration(residual: Any, q: Array, qd: Array, inputs: Any) -> tu
 
 
 @jax.jit
-def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
+def compiled_accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ that the equations demand at states (k, n) and inputs (k, ...): (k, n)."""
     return jax.vmap(lambda *state: mass_and_acceleration(exact(residual), *state)[1])(q, qd, inputs)
 
@@ -246,7 +246,7 @@ def steps(
             guess = jnp.broadcast_to(qdd[end], (stages, n))
             from_last = Carry(jnp.stack([q[end], qd[end]]), guess, guess)
             after = jax.tree.map(lambda a, b: jnp.where(filled, a, b), from_last, after)
-        at_end = qdd if group_ends is None else accelerations(residual, q, qd, group_ends)
+        at_end = qdd if group_ends is None else compiled_accelerations(residual, q, qd, group_ends)
         return after, (q, qd, at_end, error)
 
     by_group = tableau, inputs, at_ends, last

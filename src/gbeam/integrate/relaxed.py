@@ -19,7 +19,9 @@ MOST = 16  # repetitions, after which the maps of all steps cost less
 SETTLED = 1e-14  # of the largest acceleration
 
 
-def relaxed(t: Tableau, mass: Floats, c: Floats, k: Floats, f: Floats, z: Floats) -> tuple[Floats, Floats] | None:
+def take_equal_steps(
+    t: Tableau, mass: Floats, c: Floats, k: Floats, f: Floats, z: Floats
+) -> tuple[Floats, Floats] | None:
     """Take equal steps with C and K (t, s, n, n) and F (t, s, n) from z (m, n) by iteration about their means.
 
     Returns the states before each step and after the last, (t + 1, m n), and the accelerations of stages, (t, s n);
@@ -55,7 +57,7 @@ class _Mean:
         self.per_state, unit = -self.per_force @ onto, np.eye(n)
         w_q, w_v, c_q, c_v, g, d = (np.kron(weights[0], unit).T for weights in (t.w_q, t.w_v, t.c_q, t.c_v, t.g, t.d))
         self.of_state, self.of_stages, self.next = (w_q, w_v), (c_q, c_v), d
-        self.powers = _powers(g.T + d.T @ self.per_state, TOGETHER)
+        self.powers = matrix_powers(g.T + d.T @ self.per_state, TOGETHER)
 
     def settle(self, change: Floats, driven: Floats, state: Floats) -> tuple[Floats, Floats] | None:
         """Return states (t + 1, m n) from the first, (m n,), and accelerations of stages, (t, s n).
@@ -67,7 +69,7 @@ class _Mean:
         forces, before = driven, np.inf
         for _ in range(MOST):
             by_force = forces @ self.per_force.T
-            states = _chain(self.powers, by_force @ self.next, state)
+            states = chain(self.powers, by_force @ self.next, state)
             x = by_force + states[:-1] @ self.per_state.T
             if np.abs(x - before).max() <= SETTLED * np.abs(x).max():
                 return states, x
@@ -78,7 +80,7 @@ class _Mean:
         return None
 
 
-def _powers(step: Floats, count: int) -> Floats:
+def matrix_powers(step: Floats, count: int) -> Floats:
     """Powers 0, 1, ... (p, n, n) of the map of a step, about as many as the square root of `count`: then a chain of so
     many steps takes the fewest passes.
     """
@@ -88,7 +90,7 @@ def _powers(step: Floats, count: int) -> Floats:
     return np.array(powers)
 
 
-def _chain(powers: Floats, added: Floats, first: Floats) -> Floats:
+def chain(powers: Floats, added: Floats, first: Floats) -> Floats:
     """States (t + 1, n) of z₊ = A z + added (t, n) from the first one, by powers of A.
 
     Blocks of steps are taken side by side from zero; then each is moved by what its first state adds.

@@ -289,7 +289,7 @@ def _compile_for_runs(solve: Callable[..., Any], *more_axes: int | None) -> Call
 
 
 _slopes = _compile_for_runs(newton.slopes, 0, 0, 0, 0)
-_accelerations = _compile_for_runs(newton.accelerations, 0, 0, 0)
+_accelerations = _compile_for_runs(newton.compiled_accelerations, 0, 0, 0)
 _steps = _compile_for_runs(newton.steps, 0, 0, 0, 0, 0, None)
 
 

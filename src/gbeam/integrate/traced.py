@@ -24,7 +24,7 @@ import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
-from gbeam.integrate.newton import accelerations
+from gbeam.integrate.newton import compiled_accelerations
 from gbeam.integrate.sampled import Sampling, Uncontrolled, sampling_of
 from gbeam.integrate.schemes import Scheme, stepped
 from gbeam.integrate.steps import Steps
@@ -163,7 +163,7 @@ class TracedLoop:
         def measured(residual: Any, driven: Any) -> Array:
             """Measurements (s, k) as a function of what JAX traces; the states of the run are constants."""
             inputs, controllers = self.controllers.driven(driven, before), self.controllers.rebuild(exact(residual))
-            qdd = accelerations(residual, q, qd, inputs) if controllers.accelerates(c) else 0 * q
+            qdd = compiled_accelerations(residual, q, qd, inputs) if controllers.accelerates(c) else 0 * q
             return controllers.measured(c, q, qd, qdd, inputs)
 
         values, direct = jax.jvp(measured, (residual, driven), (by_residual, by_driven))

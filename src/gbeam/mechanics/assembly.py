@@ -335,7 +335,7 @@ def families_of(beam: Beam, kind: str, counts: Counts, rule: Quadrature, shapes:
         """Functions of shapes without supports."""
         if shapes == "adapted":
             return adapted_shapes(beam, rule, counts)
-        return forms_of(beam, KINDS[kind], counts)
+        return forms_of(beam, MODEL_KINDS[kind], counts)
 
     return supported_shapes(beam, rule, counts, base)
 

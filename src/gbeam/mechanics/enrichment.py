@@ -16,7 +16,7 @@ from gbeam.mechanics.beam_terms import particles_of, stiffness_of
 from gbeam.mechanics.fields.adapted import GROUPS, Space, spaces_of
 from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes, joined_family, quadrature
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
-from gbeam.mechanics.models import KINDS
+from gbeam.mechanics.models import MODEL_KINDS
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.supports import counts_by_family, heat_load, plus, rigid_conditions, unit_load, yielding_conditions
 from gbeam.results.parts import Base
@@ -333,7 +333,7 @@ class Enrichment:
             count + new if is_wanted else count
             for count, new, is_wanted in zip(model_counts, self.new, wanted, strict=True)
         )
-        counts: Any = (axial if KINDS[kind].axial else 0, *other_counts)
+        counts: Any = (axial if MODEL_KINDS[kind].axial else 0, *other_counts)
         families: Any = tuple(_truncated(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)

@@ -42,7 +42,7 @@ _ROWS: dict[ModelKind, Kind] = {
     "fourth-order": Kind(order=4, truncated=False),
     "exact": Kind(order=None, truncated=False),
 }
-KINDS: dict[str, Kind] = {name: replace(row, strains=name in BY_STRAINS) for name, row in _ROWS.items()}
+MODEL_KINDS: dict[str, Kind] = {name: replace(row, strains=name in BY_STRAINS) for name, row in _ROWS.items()}
 
 
 @typed
@@ -99,7 +99,7 @@ class Model:
         shapes : str, optional
             Adapted ones unless given, of which fewer are needed; for exact and fourth-order, polynomials.
         """
-        row = KINDS.get(kind, Kind())
+        row = MODEL_KINDS.get(kind, Kind())
         axial, across = FIRST_STRAINS if row.strains else FIRST
         default: Shapes = "clamped-free" if row.strains else "adapted"
         return cls(kind, axial if row.axial else 0, across, across, shapes or default, automatic=True)
@@ -125,7 +125,8 @@ class Model:
 
     def __post_init__(self) -> None:
         """Refuse unknown kinds and shapes, and numbers of shapes that the kind cannot have."""
-        for name, value, choices in (("kind", self.kind, tuple(KINDS)), ("shapes", self.shapes, get_args(Shapes))):
+        words = (("kind", self.kind, tuple(MODEL_KINDS)), ("shapes", self.shapes, get_args(Shapes)))
+        for name, value, choices in words:
             if value not in choices:
                 raise InputError(name, f"is {value!r}", f"choose one of {', '.join(choices)}")
         for name, count in zip(FAMILIES, self.counts, strict=True):
@@ -133,7 +134,7 @@ class Model:
                 raise InputError(f"modes.{name}", f"is {count!r}", "give a whole number, 0 or more")
         if sum(self.counts) == 0:
             raise InputError("modes", "are all zero", "give at least one mode in one direction")
-        if self.axial and not KINDS[self.kind].axial:
+        if self.axial and not MODEL_KINDS[self.kind].axial:
             raise InputError(
                 "modes.axial",
                 f"is {self.axial} for SFOAM, which has no axial coordinates",
@@ -148,4 +149,4 @@ class Model:
     @property
     def row(self) -> Kind:
         """The model's row in the table."""
-        return KINDS[self.kind]
+        return MODEL_KINDS[self.kind]

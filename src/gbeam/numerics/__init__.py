@@ -1,1 +1,5 @@
 """Small numerics that several rooms share; nothing here knows a beam, a base or a result."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

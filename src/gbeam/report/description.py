@@ -15,7 +15,7 @@ from gbeam.results.machine import ArmLevel
 from gbeam.results.result import part_words
 
 
-def text(case: Description) -> str:
+def description_text(case: Description) -> str:
     """Description of a scenario for a terminal, on a few lines."""
     lines = [case.title or "(no title)", *_bodies(case)]
     motions = []

@@ -12,7 +12,7 @@ from gbeam.results.accounting import UNITS, Accounting, PeakPair, in_g
 from gbeam.results.criteria import Limit, state_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity, rows
 from gbeam.results.machine import AxesFigure, AxesResult, Driven
-from gbeam.results.measures import Fatigue, LoadDifference, RootLoads, Shock, Statistics
+from gbeam.results.measures import Fatigue, LoadDifference, RootLoads, Shock, StationStatistics
 from gbeam.results.parts import yield_margin
 from gbeam.results.result import Figured, Flags, Floats
 from gbeam.results.verdict import Verdict, Worded
@@ -73,7 +73,7 @@ class Comparison(Worded, Figured[ComparisonFigure]):
     accept: Mapping[str, Limit] = internal(
         "", "limits by name", note="docs/verdict.md, Pass or fail", default_factory=dict
     )
-    stations: Statistics | None = part(
+    stations: StationStatistics | None = part(
         "displacement of every station, with trend and elastic vibration apart", name=".", key=INSIDE, optional=True,
         note="None where the record is too short", default=None,
     )  # fmt: skip

@@ -90,7 +90,7 @@ _FILTER = "Butterworth 4th order, zero phase"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Statistics(Part):
+class StationStatistics(Part):
     """Displacements of all stations in both environments, and the tip's trend and elastic vibration apart.
 
     Trend: a Butterworth low-pass of fourth order, run forwards and backwards so that it shifts nothing in time, −6 dB

@@ -12,8 +12,8 @@ from datetime import UTC, datetime
 from functools import cache
 from types import MappingProxyType
 
+from gbeam.results.base import Part
 from gbeam.results.declared import INSIDE, fact, part, rows
-from gbeam.results.part import Part
 from gbeam.version import __version__
 
 

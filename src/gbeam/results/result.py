@@ -12,10 +12,10 @@ from gbeam.arrays.types import Complex as Complex
 from gbeam.arrays.types import Flags as Flags
 from gbeam.arrays.types import Floats as Floats
 from gbeam.guards.arguments import typed
+from gbeam.results.base import Part as Part
+from gbeam.results.base import brief as brief
 from gbeam.results.declared import document, fact
 from gbeam.results.doors import Panels, doors
-from gbeam.results.part import Part as Part
-from gbeam.results.part import brief as brief
 from gbeam.results.provenance import Provenance
 
 

@@ -4,17 +4,6 @@ text/ reads quantities, places and overrides; schema/ declares the tables; load 
 explain and placing put every error at its line; template is for those who write scenarios.
 """
 
-from gbeam.scenario.build import build as build
-from gbeam.scenario.build import build_machines as build_machines
-from gbeam.scenario.build import build_specimen as build_specimen
-from gbeam.scenario.build import read_scenario as read_scenario
-from gbeam.scenario.load import load as load
-from gbeam.scenario.load import load_environments as load_environments
-from gbeam.scenario.load import loads as loads
-from gbeam.scenario.load import placed as placed
-from gbeam.scenario.load import provenance as provenance
-from gbeam.scenario.schema import Scenario as Scenario
-from gbeam.scenario.template import json_schema as json_schema
-from gbeam.scenario.template import template as template
-from gbeam.scenario.text.diagnostics import Diagnostic as Diagnostic
-from gbeam.scenario.text.diagnostics import ScenarioError as ScenarioError
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from gbeam.analysis.case import Case
     from gbeam.analysis.response.settings import ResponseSettings
     from gbeam.mechanics.tree.system import System
-    from gbeam.motion import Centrifuge, Motion
+    from gbeam.motion.centrifuge.centrifuge import Centrifuge
+    from gbeam.motion.protocol import Motion
     from gbeam.results.description import RecordSummary
     from gbeam.scenario.load import AnyScenario
 
@@ -133,7 +134,7 @@ def scenario_of(
 
 def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
     """Make the centrifuges of a scenario, which need no beam."""
-    from gbeam.motion import Centrifuge
+    from gbeam.motion.centrifuge.centrifuge import Centrifuge
     from gbeam.scenario.build_motion import centrifuges, flights_and_hubs
 
     parts = Collector()
@@ -189,8 +190,8 @@ def _response(
     """
     from gbeam.analysis.response.settings import ResponseSettings
     from gbeam.integrate.schemes import SCHEMES
-    from gbeam.motion import Flight
     from gbeam.motion.arm import extent_of
+    from gbeam.motion.flight import Flight
 
     table = scenario.response
     if table.parameters:

@@ -6,11 +6,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from gbeam import motion
 from gbeam.errors import InputError
 from gbeam.guards.parameters import parameters_of
-from gbeam.motion.arm import direction, has_part_across
-from gbeam.motion.flight import body_rates
+from gbeam.motion.arm import direction, has_part_across, plain_arm
+from gbeam.motion.centrifuge.centrifuge import Centrifuge
+from gbeam.motion.centrifuge.limits import MachineLimits, machines
+from gbeam.motion.flight import Flight, body_rates
+from gbeam.motion.hub import Hub
+from gbeam.motion.protocol import Motion
 from gbeam.motion.records.instrument import Instrument
 from gbeam.motion.records.parameters import Conditioning, Rates
 from gbeam.motion.records.record import FlightRecord, Recording
@@ -24,9 +27,9 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
 
-def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, motion.Motion]:
+def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[str, Motion]:
     """Build the flights and hubs of a scenario by name, without refused ones, whose errors `parts` keeps."""
-    built: dict[str, motion.Motion | None] = {}
+    built: dict[str, Motion | None] = {}
     recordings, partly = _recordings(parts, scenario), dict[str, None]()
     for name, table in scenario.motion.items():
         where = f"motion.{name}"
@@ -49,34 +52,34 @@ def flights_and_hubs(parts: Collector, scenario: schema.Environments) -> dict[st
 def centrifuges(
     parts: Collector,
     scenario: schema.Environments,
-    others: dict[str, motion.Motion],
+    others: dict[str, Motion],
     span_of: Callable[[str], tuple[float, float]],
     *,
     ahead: bool,
-) -> dict[str, motion.Motion]:
+) -> dict[str, Motion]:
     """Build the centrifuges, which track one of the flights in `others`, by name, over their spans, s."""
-    built: dict[str, motion.Motion] = {}
+    built: dict[str, Motion] = {}
     for name, table in scenario.motion.items():
         if table.kind != "centrifuge":
             continue
         flight = others.get(table.tracks)
-        if isinstance(flight, motion.Flight):
+        if isinstance(flight, Flight):
             machine = _centrifuge(parts, f"motion.{name}", table, flight)
             prepared = machine and parts.attempt(f"motion.{name}", machine.over, *span_of(name), ahead=ahead)
             built |= {} if prepared is None else {name: prepared}
     return built
 
 
-def _centrifuge(parts: Collector, where: str, table: Any, flight: motion.Flight) -> motion.Centrifuge | None:
+def _centrifuge(parts: Collector, where: str, table: Any, flight: Flight) -> Centrifuge | None:
     """Build one centrifuge for the flight that it tracks, on an example machine if one is named."""
     before = len(parts.errors)
     options = arguments_of(parts, where, table, {"kind", "tracks", "machine", "commands", "accept"})
     if len(parts.errors) > before:
         return None
     if table.machine is not None:
-        machine, limits = motion.machines[table.machine], options.get("limits", motion.MachineLimits())
+        machine, limits = machines[table.machine], options.get("limits", MachineLimits())
         options["limits"] = replace(machine, limits=limits.completed(machine.limits))
-    return parts.attempt(where, motion.Centrifuge, flight, **options)
+    return parts.attempt(where, Centrifuge, flight, **options)
 
 
 def values_of(table: BaseModel, *excluded: str) -> dict[str, Any]:
@@ -84,16 +87,16 @@ def values_of(table: BaseModel, *excluded: str) -> dict[str, Any]:
     return {key: value for key, value in table if value is not None and key not in excluded}
 
 
-def _arms(parts: Collector, name: str, table: schema.Arm) -> dict[str, motion.Motion | None]:
+def _arms(parts: Collector, name: str, table: schema.Arm) -> dict[str, Motion | None]:
     """Build the arm's motion, or one for each of its directions, by name."""
-    built: dict[str, motion.Motion | None] = {}
+    built: dict[str, Motion | None] = {}
     for part, keys in table.motions.items():
         where = f"motion.{name}.directions.{part}" if part else f"motion.{name}"
         built["-".join(filter(None, (name, part)))] = parts.attempt(where, _arm, table, **keys)
     return built
 
 
-def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: Any) -> motion.Hub:
+def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: Any) -> Hub:
     """Build the motion of an arm in one direction; of several directions that may be up the first across the load."""
     place = control_point if isinstance(control_point, tuple) else (control_point, 0.0, 0.0)
     several = isinstance(up, tuple) and isinstance(up[0], str)
@@ -105,7 +108,7 @@ def _arm(table: schema.Arm, *, load: Any, up: Any, control_point: Any, **keys: A
         fix = 'give a direction across it, or several, such as up = ["+z", "+x"], of which one always is'
         raise InputError("up", f"is {words}, along load = {load}", fix)
     gravity, standard = table.gravity, table.standard
-    return motion.plain_arm(load=load, up=chosen, control_point=place, gravity=gravity, standard=standard, **keys)
+    return plain_arm(load=load, up=chosen, control_point=place, gravity=gravity, standard=standard, **keys)
 
 
 def _recordings(parts: Collector, scenario: schema.Environments) -> dict[str, Recording]:
@@ -135,7 +138,7 @@ def _recording(*, time: str | None = None, **columns: Any) -> Recording:
     )
 
 
-def _flight(record: FlightRecord, table: Any) -> motion.Flight:
+def _flight(record: FlightRecord, table: Any) -> Flight:
     """A flight as it was recorded, its corners rounded."""
     rates = record.rates and body_rates(record.rates, table.smoothing)
-    return motion.Flight(acceleration=rounded(record.acceleration, table.smoothing), rates=rates, scale=table.scale)
+    return Flight(acceleration=rounded(record.acceleration, table.smoothing), rates=rates, scale=table.scale)

@@ -1,1 +1,5 @@
 """Solids: a mesh, imported matrices or a rigid specimen in place of a beam."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,1 +1,5 @@
 """Studies of many runs of one scenario: sweeps, sensitivities, fits, optima and shaped commands."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

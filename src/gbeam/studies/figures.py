@@ -111,7 +111,7 @@ _MANY = 12  # figures that a message lists
 
 def find(facts: Facts, name: str) -> Keys:
     """Return the keys of the figure whose path in the facts of a case ends in `name`, such as ``tip.z.max_abs``."""
-    keys_of = {path_text(keys): keys for keys, _ in _figures(facts)}
+    keys_of = {path_text(keys): keys for keys, _ in figures_in(facts)}
     ending = f".{name}"
     fits = [path for path in keys_of if f".{path}".endswith(ending)]
     # Of the only body that deforms, its name may be left out.
@@ -244,14 +244,14 @@ def own_keys(keys: Keys) -> Keys:
     return keys[:1] + keys[2:] if keys[0] in ("motions", "comparisons") else keys
 
 
-def _figures(node: Any, keys: Keys = ()) -> Iterator[tuple[Keys, float]]:
+def figures_in(node: Any, keys: Keys = ()) -> Iterator[tuple[Keys, float]]:
     """Keys and value of every number, truth value and missing value (None) in the facts."""
     if isinstance(node, Mapping):
         for key, value in node.items():
-            yield from _figures(value, (*keys, str(key)))
+            yield from figures_in(value, (*keys, str(key)))
     elif isinstance(node, (list, tuple)):
         for index, value in enumerate(node):
-            yield from _figures(value, (*keys, index))
+            yield from figures_in(value, (*keys, index))
     elif _is_figure(node) or node is None:
         yield keys, node
 

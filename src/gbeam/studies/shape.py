@@ -20,7 +20,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.guards.kinds import kinds
-from gbeam.mechanics.models import KINDS
+from gbeam.mechanics.models import MODEL_KINDS
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
@@ -116,8 +116,8 @@ def shape_hub_command(
     command = driven_of(template_of(scenario, overrides).built(), motion, joint)
     case, name, hub, where = command.case, command.name, command.hub, command.where
     case.refuse_automatic("is left out, and a command knows the modes of given shapes", "give it")
-    if check and check not in KINDS:
-        raise InputError("--check", f"is {check!r}", advise(check, KINDS))
+    if check and check not in MODEL_KINDS:
+        raise InputError("--check", f"is {check!r}", advise(check, MODEL_KINDS))
     if check and not any(body.source for body in case.system.flexible.values()):
         raise InputError(
             "--check", f"is {check!r}, and no body is a beam, whose model could be another", "leave it out"

@@ -33,7 +33,7 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
 from gbeam.mechanics.tree.one_body import moving_system
 from gbeam.mechanics.tree.system import System
-from gbeam.motion import Flight
+from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion, notes_on
 from gbeam.progress import Progress, tell
 from gbeam.results.errors import direction_words

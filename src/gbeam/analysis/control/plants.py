@@ -16,7 +16,7 @@ from gbeam.analysis.response.simulation import simulate
 from gbeam.analysis.response.stepping import scheme_of
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.histories import deflection
-from gbeam.analysis.system.rest import steady
+from gbeam.analysis.system.rest import steady_state
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
@@ -177,7 +177,7 @@ class Plant:
         efforts = {key: effort for key, effort in joint.efforts.items() if key != coordinate}
         moves: dict[str, Any] = {"initial": initial, "rate": {**joint.rates, coordinate: 0.0}, "effort": efforts}
         held = replace(joint, **moves)
-        return steady(replace(self.system, joints={**self.system.joints, name: held}), Drive())
+        return steady_state(replace(self.system, joints={**self.system.joints, name: held}), Drive())
 
     def _deflection(self, q: Floats) -> Floats | None:
         """Displacement (t, 3) m of the point relative to its body's root, by all coordinates (t, n); None if rigid."""
@@ -187,7 +187,7 @@ class Plant:
     @cached_property
     def _rest(self) -> tuple[SteadySystem, Linear]:
         """The system at rest, and the linear equations of its small motions under a unit drive."""
-        state = steady(self.commanded(None), Drive())
+        state = steady_state(self.commanded(None), Drive())
         local, inputs = state.local, state.local.inputs
         if self.free:
             return state, state.linear._replace(inputs=np.equal(state.names, self.coordinate)[:, None].astype(float))

@@ -26,7 +26,7 @@ from gbeam.results.measures import (
     RootLoads,
     Shock,
     Sizes,
-    Statistics,
+    StationStatistics,
 )
 from gbeam.results.parts import Base, Influence
 from gbeam.results.response import Response
@@ -250,7 +250,7 @@ def _rms(values: Floats, covered: Flags) -> Floats:
 
 def _statistics(
     time: Floats, covered: Flags, reference: Floats, actual: Floats, machine: Quantities, tip: int
-) -> Statistics | None:
+) -> StationStatistics | None:
     """Sizes at each station of the only body, and trend and vibration of the tip, whose number is `tip`.
 
     None if the samples are too few, too far apart or over too short a time to separate trend and vibration.
@@ -270,7 +270,7 @@ def _statistics(
         return Sizes(_largest(values, covered), _rms(values, covered), np.ptp(vibration, axis=0) / 2)
 
     slow, slow_spun = np.moveaxis(low_pass(np.stack([reference, actual], axis=1), step, cutoff), 1, 0)
-    return Statistics(
+    return StationStatistics(
         stations=body.stations,
         cutoff=cutoff,
         flight=sizes(reference, slow),

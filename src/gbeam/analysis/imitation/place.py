@@ -29,14 +29,16 @@ from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion import Base, Centrifuge, Flight
+from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.histories import times_between
 from gbeam.motion.centrifuge.limits import exceeded
+from gbeam.motion.flight import Flight
 from gbeam.numerics.minimise import minimise_convex, refine
 from gbeam.numerics.samples import interpolated, low_pass
 from gbeam.printable import advise
 from gbeam.progress import Progress, tell
 from gbeam.results.criteria import BROKEN
+from gbeam.results.parts import Base
 from gbeam.results.placement import MEASURES, Candidate, Placement, Verification, degrees
 from gbeam.results.response import Response
 

@@ -20,9 +20,9 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.mechanics.tree.system import System
-from gbeam.motion import Flight
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.course import INVERSES
+from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import SAMPLES
 from gbeam.motion.rigid import rotation_of
 from gbeam.numerics.minimise import coarse

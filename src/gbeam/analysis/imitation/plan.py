@@ -13,7 +13,7 @@ from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
-from gbeam.motion import Centrifuge
+from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.histories import axes_result, axis_angles, times_between
 from gbeam.motion.protocol import implausible_motion
 from gbeam.progress import Progress, tell

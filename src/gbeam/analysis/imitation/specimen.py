@@ -15,7 +15,7 @@ import numpy as np
 from gbeam.analysis.outline import ends_of
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.rest import steady
+from gbeam.analysis.system.rest import steady_state
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
@@ -98,7 +98,7 @@ class Specimen:
     def from_system(cls, system: System, times: Floats) -> Specimen:
         """Find the answers of a system about its rest on a ground at rest; InputError if it moves at times (t,), s."""
         _refuse_drives(system, times)
-        state = steady(system, Drive(time=float(times[0])))
+        state = steady_state(system, Drive(time=float(times[0])))
         local, stiffness = state.local, state.linear.stiffness
         forces, force, moment = _answers(local)
         displacement, modes, free = dict[str, Answer](), None, len(local.y)

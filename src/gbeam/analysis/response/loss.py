@@ -34,7 +34,7 @@ class Loss(NamedTuple):
     causes: tuple[str, ...]
 
 
-class Drive(NamedTuple):
+class Excitation(NamedTuple):
     """Motion of the base (t, 3) and components of the loads (t, loads, 6), or those of one time."""
 
     a_WO_B: Array
@@ -42,14 +42,14 @@ class Drive(NamedTuple):
     alpha_WB_B: Array
     loads: Array | None = None
 
-    def select(self, times: Any) -> Drive:
+    def select(self, times: Any) -> Excitation:
         """Base and loads at an index, slice or array of the times."""
-        return Drive(*(None if values is None else values[times] for values in self))
+        return Excitation(*(None if values is None else values[times] for values in self))
 
-    def interpolate(self, before: int, after: int, share: float) -> Drive:
+    def interpolate(self, before: int, after: int, share: float) -> Excitation:
         """Base and loads interpolated a share of the way between two times, given by their indices."""
         ends = zip(self.select(before), self.select(after), strict=True)
-        return Drive(*(None if a is None else a + share * (b - a) for a, b in ends))
+        return Excitation(*(None if a is None else a + share * (b - a) for a, b in ends))
 
 
 def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss | None:
@@ -59,12 +59,12 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
     """
     c = structure.coefficients
     loads = None if c.loads is None or structure.history is None else structure.history(time)
-    drive = Drive(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
+    excitation = Excitation(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)
 
     def matrices(i: int) -> tuple[Array, Array, Array]:
         """M, C and K that decide on growth at a time's index."""
         departures = c if structure.linear else expanded(structure, q[i])[0]
-        return departures.mass, *departures.frozen(*drive.select(i))
+        return departures.mass, *departures.frozen(*excitation.select(i))
 
     def loss(part: Array) -> Loss | None:
         """Loss over a stretch of indices, by growth rates at some of them."""
@@ -87,12 +87,12 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
             end=float(time[until[worst[-1]]]),
             growth=float(growth.max()),
             flutter=unsymmetric(matrices(first)[2]),
-            causes=_causes(structure, drive.interpolate(before, first, share), matrices(first)),
+            causes=_causes(structure, excitation.interpolate(before, first, share), matrices(first)),
         )
 
     if not c.size:
         return None
-    doubtful, most = _doubtful(c, drive)
+    doubtful, most = _doubtful(c, excitation)
     stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
     stretches.sort(key=lambda part: -most[part].sum())
     losses = [loss(part) for part in stretches[:_STRETCHES]]
@@ -108,18 +108,18 @@ def holds(structure: Structure, time: float, base: Base, q: Array) -> bool:
     return positive_definite(stiffness) if values is None else stability_margin(c.mass, damping, stiffness) > 0
 
 
-def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
+def _doubtful(c: Coefficients, excitation: Excitation) -> tuple[Array, Array]:
     """Indices of times at which the straight beam may be unstable, and bounds (t,) 1/s of the growth.
 
     Eigenvalues are computed only where the sum of the terms' bounds reaches the elastic stiffness. Loads that follow
     the beam, which these bounds do not cover, make the growth infinite.
     """
     scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # by which the elastic stiffness is one
-    w, most = drive.w_WB_B, np.zeros(len(drive.w_WB_B))
+    w, most = excitation.w_WB_B, np.zeros(len(excitation.w_WB_B))
     terms = [c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]]
-    sizes = [drive.a_WO_B, drive.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN], w**2]
-    if drive.loads is not None and c.loads is not None:
-        slope, values = c.loads.slope[:, :, 6:].reshape(-1, c.size, c.size), drive.loads.reshape(len(w), -1)
+    sizes = [excitation.a_WO_B, excitation.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN], w**2]
+    if excitation.loads is not None and c.loads is not None:
+        slope, values = c.loads.slope[:, :, 6:].reshape(-1, c.size, c.size), excitation.loads.reshape(len(w), -1)
         terms.append(-slope)
         sizes.append(values)
         most[np.any(values[:, [unsymmetric(matrix) for matrix in slope]], axis=1)] = np.inf
@@ -130,19 +130,19 @@ def _doubtful(c: Coefficients, drive: Drive) -> tuple[Array, Array]:
     taken = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
     large = np.flatnonzero((taken >= 1.0) & (most == 0))
     for block in (large[i : i + _BLOCK] for i in range(0, len(large), _BLOCK)):
-        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, drive.select(block)), 0))
+        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, excitation.select(block)), 0))
     return np.flatnonzero(most), most
 
 
-def lowest_over_time(c: Coefficients, drive: Drive) -> Array:
+def lowest_over_time(c: Coefficients, excitation: Excitation) -> Array:
     """Lowest eigenvalue of K, M-normalised, over time: negative where K is not positive definite, rad²/s²."""
     scale = np.linalg.inv(np.linalg.cholesky(c.mass))
-    return np.linalg.eigvalsh(scale @ symmetric(c.frozen(*drive)[1]) @ scale.T)[..., 0]
+    return np.linalg.eigvalsh(scale @ symmetric(c.frozen(*excitation)[1]) @ scale.T)[..., 0]
 
 
-def _causes(structure: Structure, drive: Drive, matrices: tuple[Array, Array, Array]) -> tuple[str, ...]:
+def _causes(structure: Structure, excitation: Excitation, matrices: tuple[Array, Array, Array]) -> tuple[str, ...]:
     """Name the terms of base and loads that take stiffness from the fastest growing mode, or feed it."""
-    c, (a, w, alpha, loads) = structure.coefficients, drive
+    c, (a, w, alpha, loads) = structure.coefficients, excitation
     value, modes = eigenvalues(*matrices)
     mode = modes[:, value.real.argmax()]
 

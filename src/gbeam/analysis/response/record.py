@@ -26,8 +26,8 @@ from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.section_forces import accelerations, add_hub_torques
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signals import units_of
-from gbeam.motion import Centrifuge
 from gbeam.motion.arm import imbalance_of, level_of
+from gbeam.motion.centrifuge.centrifuge import Centrifuge
 from gbeam.motion.centrifuge.histories import axes_result
 from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import kind_of, level_factor, notes_on

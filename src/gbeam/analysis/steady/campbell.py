@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import LIMIT, error_warning, percent, reference_model, relative_difference
-from gbeam.analysis.steady.frequency_errors import Richer, doubtful, unknown_errors
+from gbeam.analysis.steady.frequency_errors import RicherModels, doubtful, unknown_errors
 from gbeam.analysis.steady.stability import first_lost_speed, turned
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.richer import judged_bodies
@@ -243,7 +243,7 @@ def campbell(
     crossings, errors = [crossing for crossing, _, _ in met], unknown_errors(system, kept)
     if judged_bodies(system):
         sound = np.flatnonzero(np.abs(rates / critical - 1) > 1 - SURE).tolist() or [0]
-        richer = Richer(followed[sound[-1]].state)
+        richer = RicherModels(followed[sound[-1]].state)
         chosen = sorted({sound[0], sound[(len(sound) - 1) // 2], sound[-1]})
         judged = [_errors(richer, followed[i].state, followed[i], index[i]) for i in chosen]
         parts: dict[str, Any] = {part: np.fmax.reduce([e.parts[part] for e in judged]) for part in PARTS}
@@ -323,7 +323,7 @@ def _framed(speeds: Sequence[_Speed], index: Sequence[np.ndarray]) -> dict[str, 
     return {"frame": "turning", "ground_frequency": in_ground if known else np.zeros((0, 0))}
 
 
-def _errors(richer: Richer, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
+def _errors(richer: RicherModels, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
     """Errors of the followed modes at one speed, by their indices `track`; NaN if they no longer oscillate."""
     oscillating = track >= 0
     chosen = track[oscillating]
@@ -373,7 +373,7 @@ def _crossings(
 
 
 def crossing_errors(
-    crossing: Crossing, mode: Complex, slope: float, richer: Richer, point_at: Callable[[float], Any]
+    crossing: Crossing, mode: Complex, slope: float, richer: RicherModels, point_at: Callable[[float], Any]
 ) -> ErrorEstimate:
     """Errors of a crossing's speed, from the speeds at which richer models' modes most like `mode` (n,) meet the same
     order.

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import steady
+from gbeam.analysis.system.rest import steady_state
 from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.equations.linear import Coefficients
@@ -63,7 +63,7 @@ def solve_equilibrium(structure: Structure, base: Base, time: float | None = Non
     structure = structure if time is None else structure.at_time(time)
     loads = structure.load_values
     if not (structure.traced or holds_jax(base, loads)):
-        state = steady(System.of(structure, "beam"), Drive(base=base))
+        state = steady_state(System.of(structure, "beam"), Drive(base=base))
         # Loads that follow the beam may shake it, which inertia decides.
         stable = positive_definite(state.point.slopes()[1]) if loads is None else state.stable
         return Equilibrium(state.point.y, stable)

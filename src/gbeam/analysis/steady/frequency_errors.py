@@ -76,7 +76,7 @@ class More(NamedTuple):
     renamed: Mapping[str, str]
 
 
-class Richer:
+class RicherModels:
     """Richer models that judge a steady state's: with more shapes, the exact one, thick beams, and coarser meshes."""
 
     def __init__(self, state: SteadySystem) -> None:
@@ -233,7 +233,7 @@ def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Comple
 def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
     """Frequencies (k,) Hz of the oscillating poles about a steady state, in ascending order, and their errors."""
     moving = state.moving
-    errors = Richer(state).errors(state, moving.value, moving.modes[state.first :].T)
+    errors = RicherModels(state).errors(state, moving.value, moving.modes[state.first :].T)
     return moving.frequency / (2 * np.pi), errors
 
 

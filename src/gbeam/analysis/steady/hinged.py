@@ -9,7 +9,7 @@ import numpy as np
 
 from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.rest import steady, undeformed
+from gbeam.analysis.system.rest import steady_state, undeformed
 from gbeam.errors import ComputationError
 from gbeam.mechanics.tree.system import System
 
@@ -28,7 +28,7 @@ def turned_by_effort(system: System, joint: str, time: float) -> Drive:
     k = system.tree.unknowns.tolist().index(system.coordinates.index(drive.coordinate))
     momentum = _momentum(system, joint, inertia_along(undeformed(system).point, k), time)
     for _ in range(MOST):
-        point, rate = steady(system, drive).point, drive.rate or 0.0
+        point, rate = steady_state(system, drive).point, drive.rate or 0.0
         residual, inertia = point.tree(point.y, point.yd, point.ydd, point.inputs)[k], inertia_along(point, k)
         step = momentum / inertia - rate, -float(residual) / inertia
         drive = replace(drive, rate=rate + step[0], faster=drive.faster + step[1])

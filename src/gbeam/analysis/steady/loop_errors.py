@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import MORE_SHAPES, ROUGH_MESH
-from gbeam.analysis.steady.frequency_errors import NO_REST, More, Richer
+from gbeam.analysis.steady.frequency_errors import NO_REST, More, RicherModels
 from gbeam.analysis.system.closed_loop import ROUNDING, Loops
 from gbeam.analysis.system.linear import frozen
 from gbeam.analysis.system.rest import transfer
@@ -52,7 +52,7 @@ class JudgedLoops:
         self.known = bool(judged_bodies(state.system)) or not self.note
         if not judged_bodies(state.system):
             return
-        richer = Richer(state)
+        richer = RicherModels(state)
         models = {MORE: richer.exact}
         if richer.theories:
             theories = richer.systems_by_theory(state.system, state)[0]

@@ -18,7 +18,7 @@ from gbeam.analysis.accuracy.estimate import (
     reference_model,
     relative_difference,
 )
-from gbeam.analysis.steady.frequency_errors import Richer, among
+from gbeam.analysis.steady.frequency_errors import RicherModels, among
 from gbeam.analysis.steady.subject import Subject
 from gbeam.analysis.system.linear import instabilities
 from gbeam.analysis.system.path import Path
@@ -153,22 +153,22 @@ def judged(critical: Critical, path: Path, subject: Subject, progress: Progress 
         return replace(critical, warnings=critical.warnings + doubts)
     at = critical.value
     point = path(system, (1 - CLOSE) * at)
-    richer = Richer(point)
+    richer = RicherModels(point)
     count = 5 if richer.theories else 2
-    exact = _richer_loss(richer.exact.model, path, at, progress, part=(0, count))
+    exact = loss_of_model(richer.exact.model, path, at, progress, part=(0, count))
     same = (
-        exact if richer.same is richer.exact else _richer_loss(richer.same.model, path, at, progress, part=(1, count))
+        exact if richer.same is richer.exact else loss_of_model(richer.same.model, path, at, progress, part=(1, count))
     )
     errors = _errors(at, same, exact)
     if richer.rough is not None:
-        errors = errors.adding(mesh=relative_difference(_richer_loss(richer.rough.model, path, at, progress), at))
+        errors = errors.adding(mesh=relative_difference(loss_of_model(richer.rough.model, path, at, progress), at))
     if not richer.theories:
         errors = replace(errors, model=richer.model_share(errors.model))
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.systems_by_theory(system)
     slender, *thick = (
-        _richer_loss(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2)
+        loss_of_model(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2)
     )
     beam_theory = max(relative_difference(at if math.isinf(slender) else slender, value) for value in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
@@ -187,7 +187,7 @@ def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
     return ErrorEstimate(0.0, abs(at / same - 1), model, total=total)
 
 
-def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
+def _in_words(richer: RicherModels, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
     """Causes of the beam theory's error in words, by the mode with the least stiffness; "" without equilibrium."""
     try:
         slender, thick = (transfer(point, model) for model in models[:2])
@@ -202,18 +202,18 @@ def _in_words(richer: Richer, point: Any, models: Sequence[Any], plates: Mapping
 def _unseen(critical: Critical, path: Path, system: System, progress: Progress) -> tuple[str, ...]:
     """Warn if a richer model, with twist or more modes, loses its equilibrium before the end of the search."""
     shares = tuple(2.0**-k for k in range(HALVINGS, -1, -1))
-    richer, lacked = Richer(path(system, 0.0)), "more modes"
+    richer, lacked = RicherModels(path(system, 0.0)), "more modes"
     rich = richer.exact.model
     if richer.theories:
         (_, rich, *_), lacked = richer.systems_by_theory(system)[0], "shear and twist"
-    lost = _richer_loss(rich, path, critical.searched_to, progress, shares)
+    lost = loss_of_model(rich, path, critical.searched_to, progress, shares)
     if math.isinf(lost):
         return ()
     value = f"{lost:.4g} {critical.unit}"
     return (f"with {lacked}, which this model has not, the equilibrium is lost at an estimated {value}",)
 
 
-def _richer_loss(
+def loss_of_model(
     rich: System,
     path: Path,
     near: float,

@@ -10,7 +10,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.estimate import not_known
 from gbeam.analysis.outline import assembly_of, outline_in_modes
-from gbeam.analysis.steady.frequency_errors import BY_RICHER, Richer, doubtful, unknown_errors
+from gbeam.analysis.steady.frequency_errors import BY_RICHER, RicherModels, doubtful, unknown_errors
 from gbeam.analysis.steady.subject import Subject, directions_of, edges_of, subject_of
 from gbeam.analysis.system.linear import framed, instabilities, largest_component
 from gbeam.analysis.system.rest import settled
@@ -188,7 +188,7 @@ def modes(
     if judged_bodies(subject.system):
         tell(progress, BY_RICHER, 0.5)
         moving = moving.oscillating(slice(len(computed.eigenvalue)))
-        stated = Richer(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
+        stated = RicherModels(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
         # Modes above those that are known have their own warning.
         known = stated[~(computed.frequency > computed.reached)]
         computed = replace(computed, warnings=computed.warnings + doubtful(known))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gbeam.analysis.system.drive import Drive
-from gbeam.analysis.system.rest import held_tree, steady
+from gbeam.analysis.system.rest import held_tree, steady_state
 from gbeam.analysis.system.search import solve_rests
 from gbeam.analysis.system.steady import SteadySystem, release
 from gbeam.arrays.types import Floats
@@ -40,7 +40,7 @@ class Equilibria:
         states = self._states(system)
         if value not in states:
             start = None if is_linear(held_tree(system, drive)) else _continued(states, value)
-            states[value] = steady(system, drive, held=True, start=start)
+            states[value] = steady_state(system, drive, held=True, start=start)
         return release(states[value], held=held)
 
     def prepare(self, system: System, drives: Mapping[float, Drive]) -> None:

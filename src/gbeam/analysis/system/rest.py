@@ -29,7 +29,7 @@ PREDICTED = 1e-3  # of the coordinates: a state so near to where those of lower 
 CORRECTIONS, CLOSE = 50, 1e-12  # of joints beside bodies that are held: their number, and m or rad
 
 
-def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
+def steady_state(system: System, drive: Drive, *, held: bool = False, start: Floats | None = None) -> SteadySystem:
     """System in equilibrium relative to what turns. The coordinate that turns is free under the effort that it needs,
     unless it is `held`.
 
@@ -45,19 +45,19 @@ def steady(system: System, drive: Drive, *, held: bool = False, start: Floats | 
 
 
 def settled(system: System, drive: Drive) -> SteadySystem:
-    """System in equilibrium, as of :func:`steady`, without friction.
+    """System in equilibrium, as of :func:`steady_state`, without friction.
 
     Where there is none, or the system would not stay there, joints without a spring are held where they begin, if their
     friction suffices. The joint whose friction suffices least is freed first.
     """
     state, lost, stuck = None, ComputationError("no equilibrium", ""), _rubbing(system)
     try:
-        state = steady(system, drive)
+        state = steady_state(system, drive)
     except ComputationError as error:
         lost = error
     while stuck and (state is None or state.grows):
         try:
-            held = steady(_holding(system, stuck), drive)
+            held = steady_state(_holding(system, stuck), drive)
         except ComputationError:
             break
         point, efforts = held.point, drive.inputs(system).efforts
@@ -114,7 +114,7 @@ def beginning(system: System, drive: Drive) -> SteadySystem:
 
 
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:
-    """The equilibrium of :func:`steady`, while what turns is held.
+    """The equilibrium of :func:`steady_state`, while what turns is held.
 
     Three searches follow one another: Newton's method from the start; where only bodies give way, along the path of
     growing drives; and, where joints move, down the forces.
@@ -167,13 +167,14 @@ def undeformed(system: System) -> SteadySystem:
 
 
 def placed(system: System, drive: Drive, q: Floats | None, qd: Floats | None) -> SteadySystem:
-    """System whose bodies are held at coordinates and rates (n,), by default those of :func:`steady`, and accelerate as
-    their equations say. Joints are where the drive and their springs hold them.
+    """System whose bodies are held at coordinates and rates (n,), by default those of :func:`steady_state`.
+
+    They accelerate as their equations say. Joints are where the drive and their springs hold them.
     """
     if q is None and qd is None:
-        return steady(system, drive)
+        return steady_state(system, drive)
     if q is None:
-        state = steady(system, drive)
+        state = steady_state(system, drive)
     else:
         tree, inputs = held_tree(system, drive), drive.inputs(system)
         still = np.zeros(len(tree.unknowns))
@@ -210,7 +211,7 @@ def transfer(state: SteadySystem, system: System) -> SteadySystem:
         resting = zip(state.system.coordinates, state.coordinates, strict=True)
         joints = {name: value for name, value in resting if ".q" not in name}
         pairs = zip(system.coordinates, system.start[0], strict=True)
-        return steady(system, state.drive, start=np.array([joints.get(*pair) for pair in pairs]))
+        return steady_state(system, state.drive, start=np.array([joints.get(*pair) for pair in pairs]))
     except InputError as error:
         raise ComputationError("no equilibrium", f"with richer bodies, {error}") from error
 

@@ -1,4 +1,4 @@
-"""Joints: how a body hangs on a point of another, or on the ground. A new kind is one entry of :data:`KINDS`."""
+"""Joints: how a body hangs on a point of another, or on the ground. A new kind is one entry of :data:`JOINT_KINDS`."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def kind_of_value(key: str, coordinate: str) -> str:
 def _kinds_of(key: str, arguments: Mapping[str, Any]) -> Kinds:
     """Kinds of what a key says of a joint, by its arguments."""
     name: Any = str(arguments.get("kind"))
-    kind = KINDS.get(name)
+    kind = JOINT_KINDS.get(name)
     return {} if kind is None else {name: kind_of_value(key, name) for name in kind.names_in(key)}
 
 
@@ -117,7 +117,7 @@ def _turns(axes: Floats) -> tuple[Step, ...]:
 
 _BALL, _PLACE = ("e0", "e1", "e2", "e3"), ("x", "y", "z")
 _TURN, SPIN = ("rx", "ry", "rz"), ("wx", "wy", "wz")
-KINDS: dict[JointKind, Kind] = {
+JOINT_KINDS: dict[JointKind, Kind] = {
     "fixed": Kind("a clamp, or springs and dampers", lambda axes: (), (), sprung=DIRECTIONS),
     "revolute": Kind("a hinge: one angle", _turns, ("angle",), 1),
     "prismatic": Kind("a slide: one displacement", lambda axes: (Slide(axes.T),), ("displacement",), 1),
@@ -232,8 +232,8 @@ class Joint(Value):
 
     def __post_init__(self) -> None:
         """Check the axes and values, and derive from them the steps, the holder, the start and the profiles."""
-        choice("kind", self.kind, KINDS)
-        axis_count = KINDS[self.kind].axes
+        choice("kind", self.kind, JOINT_KINDS)
+        axis_count = JOINT_KINDS[self.kind].axes
         axes = np.asarray(array("axes", () if self.axes is None else self.axes), dtype=float)
         axes = axes if axes.size else np.zeros((0, 3))
         if axes.shape != (axis_count, 3):
@@ -252,7 +252,7 @@ class Joint(Value):
                     raise InputError(name, f"is {getattr(self, name)!r}", 'say of which directions: {"rx": 5000.0}')
             for direction in self._sprung:
                 choice("stiffness", direction, DIRECTIONS)
-        kind = KINDS[self.kind]
+        kind = JOINT_KINDS[self.kind]
         names, values = kind.names, kind.value_names
         if self.kind == "fixed":  # its springs' directions are its coordinates
             names = values = tuple(direction for direction in DIRECTIONS if direction in self._sprung)
@@ -293,7 +293,7 @@ class Joint(Value):
         """Chain of elementary motions from the point that holds the joint to the root of the body."""
         placed = Placed(as_array(self.at), rotation_matrix(self.turn))
         axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
-        steps = KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
+        steps = JOINT_KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
         if self.kind == "fixed" and self.coordinates:
             slide_axes = [k for k in range(3) if DIRECTIONS[k] in self.coordinates]
             turn_axes = [k for k in range(3) if DIRECTIONS[3 + k] in self.coordinates]
@@ -303,7 +303,7 @@ class Joint(Value):
         moves, turns = (is_jax(vector) or bool(vector.any()) for vector in map(as_array, (self.at, self.turn)))
         before = (Placed(placed.r, None),) if moves else ()
         after = (Placed(np.zeros(3), placed.R),) if turns else ()
-        ball = len(steps) - KINDS[self.kind].turns  # its index, or behind the last
+        ball = len(steps) - JOINT_KINDS[self.kind].turns  # its index, or behind the last
         return before + steps[:ball] + after + steps[ball:]
 
     @property
@@ -325,7 +325,7 @@ class Joint(Value):
     @property
     def holds_turns(self) -> bool:
         """True if springs or stops hold the rotation vector of a ball."""
-        if not KINDS[self.kind].turns:
+        if not JOINT_KINDS[self.kind].turns:
             return False
         return any(name in _TURN for key in ("stiffness", "stops") for name in self._named(key, getattr(self, key)))
 
@@ -397,14 +397,14 @@ class Joint(Value):
     def _started(self) -> Array:
         """Coordinates at the start."""
         values = self._numbers("initial", self.initial)
-        if not KINDS[self.kind].turns:
+        if not JOINT_KINDS[self.kind].turns:
             return values
         return concatenated([values[:-3], parameters_of_vector(values[-3:])])
 
     def _moving(self) -> Array:
         """Rates of the coordinates at the start."""
         values = self._numbers("initial_rate", self.initial_rate)
-        if not KINDS[self.kind].turns:
+        if not JOINT_KINDS[self.kind].turns:
             return values
         return concatenated([values[:-3], parameter_rates(self.start[-4:], values[-3:])])
 

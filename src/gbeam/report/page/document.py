@@ -12,12 +12,12 @@ from importlib.resources import files
 from typing import Any
 
 from gbeam.errors import InputError
-from gbeam.figures import Describe
+from gbeam.figures.registry import Describe
 from gbeam.guards.limits import parse_json
 from gbeam.printable import json_printable
-from gbeam.report import blocks_of, remarks_of
 from gbeam.report.blocks import FIGURES, Block, Blocks, Section, Sentence, Verbatim, pairs
 from gbeam.report.facts import facts_text
+from gbeam.report.lines import blocks_of, remarks_of
 from gbeam.report.page.parts import Numbers, badge, draw_blocks, draw_figures, escaped, heading
 from gbeam.report.page.records import figures_in
 from gbeam.report.page.scene import scene, shapes

@@ -9,7 +9,7 @@ from typing import Any, TypeVar, get_origin
 
 import numpy as np
 
-from gbeam.figures import Describe, figures_of
+from gbeam.figures.registry import Describe, figures_of
 from gbeam.io.layout import SHARED, name_of, pattern_of
 from gbeam.report.page.parts import variables_under
 from gbeam.results.cases import BOUNDS, ORDERS, Indices, Parameter, Sensitivity, Statistics, Sweep

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.errors import InputError
-from gbeam.figures import Describe, figures_of
+from gbeam.figures.registry import Describe, figures_of
 from gbeam.guards.limits import parse_json, read_json
 from gbeam.io.netcdf import FACTS, groups_of, read_stored
 from gbeam.report.facts import facts, json_form, origin_json

@@ -23,7 +23,7 @@ from pydantic import BaseModel, Discriminator, Field, StrictBool, StrictInt, Tag
 from gbeam.guards.limits import ENTRIES
 from gbeam.guards.parameters import Parameter, parameters_of
 from gbeam.guards.quantities import Components, Count, OfProfile, OneOrSome, Quantity, Rows, Shape
-from gbeam.motion import vector
+from gbeam.motion.profiles.combine import vector
 from gbeam.motion.profiles.profile import Profile
 from gbeam.scenario.collector import Collector
 from gbeam.scenario.schema.fields import ONE_OR_LIST, Table, Vector, fields_of

@@ -15,7 +15,7 @@ from pydantic import ConfigDict, Field, create_model
 
 from gbeam.guards.quantities import Quantity, Sign
 from gbeam.mechanics.tree.equations import SLIP, SLIPS
-from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, KINDS, SLIDES, Joint, Kind, kind_of_value
+from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, JOINT_KINDS, SLIDES, Joint, Kind, kind_of_value
 from gbeam.scenario.schema.declared import OVER_TIME, chosen, makes
 from gbeam.scenario.schema.fields import Direction, Place3, Table, Turn3, fields_of, optional
 
@@ -128,5 +128,5 @@ def _title(joint: str, key: str) -> str:
     return f"{joint}_{key}".title().replace("_", "")
 
 
-_JOINTS = [_joint(name, kind) for name, kind in KINDS.items()]
-JointTable = chosen("kind", dict(zip(KINDS, _JOINTS, strict=True)))
+_JOINTS = [_joint(name, kind) for name, kind in JOINT_KINDS.items()]
+JointTable = chosen("kind", dict(zip(JOINT_KINDS, _JOINTS, strict=True)))

@@ -6,10 +6,12 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, Tag, create_model, model_validator
 
-from gbeam import motion
 from gbeam.constants import MachineName, ToleranceOf
 from gbeam.errors import InputError
 from gbeam.guards.quantities import Duration, Factor, Quantity, Time
+from gbeam.motion import flight, hub
+from gbeam.motion.centrifuge import centrifuge, limits
+from gbeam.motion.profiles.profile import Profile
 from gbeam.results.criteria import RULES
 from gbeam.results.sensors import Sensor as _Sensor
 from gbeam.scenario.schema.arm import Arm
@@ -89,9 +91,9 @@ class _Source(Table):
         return self
 
 
-def _flight(*, acceleration: motion.Profile, smoothing: float = 0.0, **others: Any) -> motion.Flight:
+def _flight(*, acceleration: Profile, smoothing: float = 0.0, **others: Any) -> flight.Flight:
     """The root accelerates as recorded or prescribed; the axes turn only as a record with body rates says."""
-    return motion.Flight(acceleration=rounded(acceleration, smoothing), **others)
+    return flight.Flight(acceleration=rounded(acceleration, smoothing), **others)
 
 
 class Commands(Table):
@@ -122,23 +124,23 @@ class _Imitation(Table):
         return {} if self.accept is None else self.accept.limits
 
 
-def _hub(**arguments: Any) -> motion.Hub:
+def _hub(**arguments: Any) -> hub.Hub:
     """A rigid hub that turns about z, the specimen on its rim: with a prescribed rate, or free under a torque."""
     if not {"rate", "torque"} & arguments.keys():
         raise InputError("", "rate or torque is missing", "add one of them: rate = ... or torque = ...")
-    return motion.Hub(**arguments)
+    return hub.Hub(**arguments)
 
 
-AxisLimit = read_as(motion.AxisLimit, table_of(motion.AxisLimit))
-Limits = read_as(motion.MachineLimits, table_of(motion.MachineLimits, name="Limits"))
+AxisLimit = read_as(limits.AxisLimit, table_of(limits.AxisLimit))
+Limits = read_as(limits.MachineLimits, table_of(limits.MachineLimits, name="Limits"))
 Sensor = table_of(_Sensor)
 Flight = table_of(
-    _flight, motion.Flight, name="Flight", tag=("kind", "flight"), base=_Source, without={"x", "y", "z", "rates"}
+    _flight, flight.Flight, name="Flight", tag=("kind", "flight"), base=_Source, without={"x", "y", "z", "rates"}
 )
-Hub = table_of(_hub, motion.Hub, name="Hub", tag=("kind", "hub"), without={"turn", "control_point", "standard"})
+Hub = table_of(_hub, hub.Hub, name="Hub", tag=("kind", "hub"), without={"turn", "control_point", "standard"})
 _POINT = "point of the specimen that feels the flight's load, from the root: along x, or [x, y, z]"
 Centrifuge = table_of(
-    motion.Centrifuge,
+    centrifuge.Centrifuge,
     tag=("kind", "centrifuge"),
     base=_Imitation,
     without={"flight", "span"},

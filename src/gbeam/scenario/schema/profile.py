@@ -8,18 +8,21 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from gbeam import motion
 from gbeam.guards.kinds import KINDS
 from gbeam.guards.quantities import Quantity, Time
+from gbeam.motion.profiles.combine import Sum
+from gbeam.motion.profiles.piecewise import constant, tabulated, trapezoid
+from gbeam.motion.profiles.profile import Profile, smoothed
+from gbeam.motion.profiles.pulse import Sine, SmoothStep
 from gbeam.scenario.schema.declared import OVER_TIME, chosen, table_of
 from gbeam.scenario.schema.fields import Table
 
-_BY_WORD: dict[str, tuple[str, Callable[..., motion.Profile]]] = {
-    "constant": ("Constant", motion.constant),
-    "trapezoid": ("Trapezoid", motion.trapezoid),
-    "smooth-step": ("SmoothStep", motion.SmoothStep),
-    "sine": ("Sine", motion.Sine),
-    "table": ("Listed", motion.tabulated),
+_BY_WORD: dict[str, tuple[str, Callable[..., Profile]]] = {
+    "constant": ("Constant", constant),
+    "trapezoid": ("Trapezoid", trapezoid),
+    "smooth-step": ("SmoothStep", SmoothStep),
+    "sine": ("Sine", Sine),
+    "table": ("Listed", tabulated),
 }
 
 
@@ -31,24 +34,24 @@ class Smoothed(Table):
     )
 
 
-def rounded(profile: motion.Profile, width: float) -> motion.Profile:
+def rounded(profile: Profile, width: float) -> Profile:
     """Return a profile whose corners are rounded over a width, s; itself where that is zero."""
-    return motion.smoothed(profile, width) if width else profile
+    return smoothed(profile, width) if width else profile
 
 
-def _rounded(make: Callable[..., motion.Profile]) -> Callable[..., motion.Profile]:
+def _rounded(make: Callable[..., Profile]) -> Callable[..., Profile]:
     """Return a function that makes a profile, whose parameters are the same, and rounds its corners."""
 
     @wraps(make)
-    def smoothed(*, smoothing: float = 0.0, **arguments: Any) -> motion.Profile:
+    def smoothed(*, smoothing: float = 0.0, **arguments: Any) -> Profile:
         return rounded(make(**arguments), smoothing)
 
     return smoothed
 
 
-def _summed(terms: tuple[motion.Profile, ...]) -> motion.Profile:
+def _summed(terms: tuple[Profile, ...]) -> Profile:
     """The sum of other profiles."""
-    return motion.Sum(terms)
+    return Sum(terms)
 
 
 def _tag(value: Any) -> Any:

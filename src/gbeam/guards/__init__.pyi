@@ -1,0 +1,33 @@
+"""The door of this room: names that tests, validation, benchmarks and fuzz read, imported when first used."""
+
+from .arguments import typed as typed
+from .checks import RANGES as RANGES
+from .checks import implausible as implausible
+from .checks import positive as positive
+from .hdf5_files import open_hdf5 as open_hdf5
+from .importing import HOME as HOME
+from .importing import path_of_children as path_of_children
+from .importing import path_without as path_without
+from .kinds import KINDS as KINDS
+from .kinds import PLAIN as PLAIN
+from .kinds import USUAL as USUAL
+from .kinds import WRITTEN as WRITTEN
+from .kinds import Kinds as Kinds
+from .kinds import common_kind as common_kind
+from .kinds import element_kinds as element_kinds
+from .kinds import kind_of_argument as kind_of_argument
+from .limits import NESTING as NESTING
+from .limits import SCENARIO_BYTES as SCENARIO_BYTES
+from .limits import in_bytes as in_bytes
+from .limits import refuse_large_file as refuse_large_file
+from .packing import digest as digest
+from .packing import read_packed as read_packed
+from .packing import write_packed as write_packed
+from .processes import hold_lock as hold_lock
+from .processes import read_confined as read_confined
+from .units import NUMBER as NUMBER
+from .units import UnitError as UnitError
+from .units import argument as argument
+from .units import parsed_factor as parsed_factor
+from .units import quantity as quantity
+from .units import unit_of as unit_of

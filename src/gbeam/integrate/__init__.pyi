@@ -1,0 +1,35 @@
+"""The door of this room: names that tests, validation, benchmarks and fuzz read, imported when first used."""
+
+from .derivatives import Derivatives as Derivatives
+from .derivatives import Stages as Stages
+from .derivatives import interpolated as interpolated
+from .driver import LINEAR_CHUNK as LINEAR_CHUNK
+from .driver import integrate as integrate
+from .driver import integrate_steps as integrate_steps
+from .equations import LinearEquations as LinearEquations
+from .equations import NonlinearEquations as NonlinearEquations
+from .equations import Trajectory as Trajectory
+from .equations import accelerations as accelerations
+from .equations import slopes as slopes
+from .linear import chunk as chunk
+from .newton import CHUNK as CHUNK
+from .newton import compiled_accelerations as compiled_accelerations
+from .relaxed import chain as chain
+from .relaxed import matrix_powers as matrix_powers
+from .relaxed import take_equal_steps as take_equal_steps
+from .schemes import SCHEMES as SCHEMES
+from .schemes import Scheme as Scheme
+from .schemes import added as added
+from .schemes import gauss as gauss
+from .schemes import generalized_alpha as generalized_alpha
+from .schemes import hht as hht
+from .schemes import newmark as newmark
+from .steps import Corners as Corners
+from .steps import fitted as fitted
+from .tangent import tangent as tangent
+from .verdict import Judgement as Judgement
+from .verdict import Verdict as Verdict
+from .verdict import balanced as balanced
+from .verdict import reach as reach
+from .verdict import shrinkage as shrinkage
+from .window import Window as Window

@@ -1,0 +1,30 @@
+"""The door of this room: names that tests, validation, benchmarks and fuzz read, imported when first used."""
+
+from .description import description_text as description_text
+from .facts import facts as facts
+from .facts import json_schema_of_results as json_schema_of_results
+from .facts import reference_of_results as reference_of_results
+from .lines import text as text
+from .machine import accounting_lines as accounting_lines
+from .machine import judged_lines as judged_lines
+from .page.document import VERBS as VERBS
+from .page.document import html as html
+from .page.document import html_of as html_of
+from .page.document import viewer as viewer
+from .page.parts import COLUMNS as COLUMNS
+from .page.parts import FITTING as FITTING
+from .page.parts import Numbers as Numbers
+from .page.parts import draw_figures as draw_figures
+from .page.result import report_of as report_of
+from .page.result import report_of_file as report_of_file
+from .page.result import variables_of as variables_of
+from .page.result import viewer_data as viewer_data
+from .study import comparison_lines as comparison_lines
+from .study import response_lines as response_lines
+from .words import as_json as as_json
+from .words import columns as columns
+from .words import errors_in_words as errors_in_words
+from .words import number as number
+from .words import percent as percent
+from .words import stress_words as stress_words
+from .words import tidy as tidy

@@ -1,0 +1,29 @@
+"""The door of this room: names that tests, validation, benchmarks and fuzz read, imported when first used."""
+
+from .cases import read_cases as read_cases
+from .cases import read_variation as read_variation
+from .derivatives import Neighbourhood as Neighbourhood
+from .evaluate import Inquiry as Inquiry
+from .evaluate import may_share as may_share
+from .evaluate import rows as rows
+from .evaluate import settle as settle
+from .figures import Facts as Facts
+from .figures import declared_unit as declared_unit
+from .figures import figures_in as figures_in
+from .figures import find as find
+from .figures import own_keys as own_keys
+from .figures import unit_at as unit_at
+from .figures import value_at as value_at
+from .journal import NAME as NAME
+from .journal import Journal as Journal
+from .measurement import read_measurement as read_measurement
+from .parameters import changed as changed
+from .parameters import physical_values as physical_values
+from .parameters import select_values as select_values
+from .shape import scenario_with as scenario_with
+from .statistics import indices as indices
+from .statistics import statistics as statistics
+from .template import CaseTemplate as CaseTemplate
+from .template import ScenarioTemplate as ScenarioTemplate
+from .template import template_of as template_of
+from .workers import Workers as Workers
