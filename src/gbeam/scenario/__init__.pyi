@@ -1,12 +1,12 @@
 """The door of this room: names that tests, validation, benchmarks and fuzz read, imported when first used."""
 
-from .bodies.common import placed as placed
 from .build import build as build
 from .build import build_machines as build_machines
 from .build import scenario_of as scenario_of
 from .load import load as load
 from .load import load_environments as load_environments
 from .load import loads as loads
+from .load import placed as placed
 from .load import provenance as provenance
 from .presets import PRESETS as PRESETS
 from .presets import preset_of as preset_of
