@@ -16,7 +16,7 @@ import pytest
 from numpy.polynomial import legendre
 
 import gbeam as gb
-from gbeam.analysis import Posed, answered, observed_order, peaks_of_coordinates, pose, prepared, refine
+from gbeam.analysis import Posed, observed_order, peaks_of_coordinates, plan_refinement, pose, prepared, run_plan
 from gbeam.integrate import Trajectory
 from gbeam.mechanics import section_forces
 from tests.crossing import crossed
@@ -226,15 +226,15 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
     class Wave:
         flight: Trajectory
         step: float
-        whole, bends, missed = True, False, ()
+        reached_end, bends, event_warnings = True, False, ()
 
         @property
-        def moved(self) -> list[np.ndarray]:
+        def displacements(self) -> list[np.ndarray]:
             return [vector(self.flight.q)]
 
         @property
         def peaks(self) -> list[np.ndarray]:
-            return [peaks_of_coordinates(self.flight, self.moved[0], vector)] * 2
+            return [peaks_of_coordinates(self.flight, self.displacements[0], vector)] * 2
 
         def aims(self, aim: float, enough: float) -> list[float]:
             return [aim]
@@ -248,7 +248,7 @@ def test_a_step_found_by_a_large_jump_is_checked() -> None:
         return Wave(Trajectory(time, q, qd, -q), step)
 
     assert error(0.0025) > 1.5 * settings.aim  # the step that the order promises to be enough
-    answer, errors = answered(refine(0.02, 2, settings), run)
+    answer, errors = run_plan(plan_refinement(0.02, 2, settings), run)
     assert error(answer.step) <= min(settings.aim, BOUND * errors.displacement)
 
 

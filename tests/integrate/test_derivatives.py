@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import Derivatives, Stages, derivatives, gauss, interpolated, newmark
+from gbeam.integrate import Derivatives, Stages, derivatives, gauss, interpolate, newmark
 
 
 class Spring:
@@ -45,12 +45,12 @@ def test_one_state_serves_all_steps_until_corrections_shrink_slowly() -> None:
     built.renew(stages(soft))
     built.grow_old(np.full(30, 0.5), np.zeros(30, dtype=bool), fast=False)
     built.renew(stages(soft))
-    assert spring.derived == [1] and built.single and built.constant and built.trusted.all()
+    assert spring.derived == [1] and built.has_one_set and built.constant and built.trusted_steps.all()
     slow = np.arange(30) == 20
     built.grow_old(np.full(30, 0.1), slow, fast=False)
     built.renew(stages(soft))
     assert built.spacing == derivatives.APART and len(built.slope) == 30 and spring.derived == [1, 3]
-    assert built.fresh.tolist() == [False] * 20 + [True] * 10 and not built.trusted.any()
+    assert built.fresh_steps.tolist() == [False] * 20 + [True] * 10 and not built.trusted_steps.any()
     np.testing.assert_allclose(built.slope[:, 0, 0, 0, 0], np.where(np.arange(30) < 20, 1.0, soft), rtol=1e-12)
 
 
@@ -82,7 +82,7 @@ def test_steps_leave_and_are_cut_with_their_derivatives() -> None:
     built.extend(2)
     np.testing.assert_allclose(built.slope[5:, 0, 0, 0, 0], 6.0, rtol=1e-12)
     built.leave(7)
-    assert built.single and built.maps is None  # the last ones serve the steps that follow
+    assert built.has_one_set and built.maps is None  # the last ones serve the steps that follow
 
 
 def test_maps_are_those_of_the_steps_of_a_linear_spring() -> None:
@@ -104,7 +104,7 @@ def test_maps_are_those_of_the_steps_of_a_linear_spring() -> None:
 def interpolates_quintics() -> None:
     at, points = np.array([0.0, 0.7, 1.1, 2.0, 3.1, 3.8, 5.0, 5.5]), np.linspace(0.0, 5.5, 40)
     quintic = np.polynomial.Polynomial([1.0, -2.0, 0.5, 0.3, -0.2, 0.04])
-    np.testing.assert_allclose(interpolated(at, quintic(at), points), quintic(points), atol=1e-12)
+    np.testing.assert_allclose(interpolate(at, quintic(at), points), quintic(points), atol=1e-12)
 
 
 def follows_a_swing() -> None:

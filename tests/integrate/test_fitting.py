@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from gbeam.integrate import LinearEquations, NonlinearEquations, added, gauss, integrate, newmark
+from gbeam.integrate import LinearEquations, NonlinearEquations, fitting_terms, gauss, integrate, newmark
 
 from .systems import PENDULUM, VARYING
 
@@ -86,12 +86,12 @@ def test_nonlinear_equations_are_fitted_as_linear_ones_are(ratio: float) -> None
     def residual(q: Any, qd: Any, qdd: Any, t: Any) -> Any:
         return qdd @ linear.mass + qd @ damping + q @ stiffness
 
-    equations = NonlinearEquations(residual, lambda t: t, idle=np.zeros(1))
+    equations = NonlinearEquations(residual, lambda t: t, idle_inputs=np.zeros(1))
 
     def run(of: Any) -> Any:
         return integrate(of, gauss(), np.array([1.0, -0.5]), np.array([0.3, 0.2]), step=STEP, count=50)
 
-    expected, fitted, plain = map(run, (linear, equations, replace(equations, idle=None)))
+    expected, fitted, plain = map(run, (linear, equations, replace(equations, idle_inputs=None)))
     for name in ("q", "qd", "qdd"):
         want, size = getattr(expected, name), np.abs(getattr(expected, name)).max()
         np.testing.assert_allclose(getattr(fitted, name), want, atol=1e-9 * size)
@@ -99,7 +99,7 @@ def test_nonlinear_equations_are_fitted_as_linear_ones_are(ratio: float) -> None
 
 
 def test_fitted_steps_of_nonlinear_equations_have_the_order_of_the_scheme() -> None:
-    fitted, start = replace(PENDULUM, idle=np.zeros(1)), (np.array([0.8]), np.array([0.3]))
+    fitted, start = replace(PENDULUM, idle_inputs=np.zeros(1)), (np.array([0.8]), np.array([0.3]))
     truth = integrate(PENDULUM, gauss(), *start, step=4 / 2560, count=2560).q[-1]
     errors = [
         np.abs(integrate(fitted, gauss(), *start, step=4 / count, count=count).q[-1] - truth).max()
@@ -112,10 +112,10 @@ def test_a_scheme_that_does_not_fit_and_a_mode_without_vibration_add_nothing() -
     equations = vibrating(0.01)
     none = np.zeros((2, 2))
     for each, scheme in ((equations, newmark()), (replace(equations, rest=None), gauss())):
-        np.testing.assert_array_equal(added(each, scheme, STEP), (none, none))
+        np.testing.assert_array_equal(fitting_terms(each, scheme, STEP), (none, none))
     creeping = vibrating(1.2)
-    np.testing.assert_array_equal(added(creeping, gauss(), STEP), (none, none))
-    small = added(equations, gauss(), STEP / 100), added(equations, gauss(), STEP / 50)
+    np.testing.assert_array_equal(fitting_terms(creeping, gauss(), STEP), (none, none))
+    small = fitting_terms(equations, gauss(), STEP / 100), fitting_terms(equations, gauss(), STEP / 50)
     for few, twice in zip(*small, strict=True):
         assert np.abs(twice).max() == pytest.approx(16 * np.abs(few).max(), rel=1e-2)
 
@@ -125,7 +125,7 @@ def test_a_mode_that_grows_without_turning_is_left_as_it_is() -> None:
     equations = LinearEquations(
         np.eye(2), lambda _: (), lambda t: t, rest=(np.diag([-2e-5, 0.1]), np.diag([4e-12, 5.0]))
     )
-    mass, damping = added(equations, gauss(), 0.04)
+    mass, damping = fitting_terms(equations, gauss(), 0.04)
     assert np.isfinite(mass).all() and np.isfinite(damping).all()
     assert mass[0, 0] == damping[0, 0] == 0.0 != mass[1, 1]
 
@@ -135,6 +135,6 @@ def test_a_mode_that_hardly_vibrates_is_left_as_it_is(rate: float) -> None:
     """A free hub's rigid mode: of a frequency that is rounding, and a decay, or a growth, that is many times that."""
     damping, stiffness = np.diag([rate, 0.1]), np.diag([1e-12, 9.0])
     equations = replace(vibrating(0.0), mass=np.eye(2), rest=(damping, stiffness))
-    mass, decay = added(equations, gauss(), STEP)
+    mass, decay = fitting_terms(equations, gauss(), STEP)
     assert np.isfinite(mass).all() and np.isfinite(decay).all()
     assert not mass[0].any() and not decay[0].any() and mass[1, 1] != 0

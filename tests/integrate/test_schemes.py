@@ -21,11 +21,11 @@ from gbeam.integrate import (
     NonlinearEquations,
     Scheme,
     chunk,
-    fitted,
     gauss,
     generalized_alpha,
     hht,
     integrate,
+    make_steps,
     newmark,
 )
 from validation.published.tables import SCHEMES_THEORY
@@ -43,7 +43,7 @@ DIGITS = 1e-3  # the theory's numbers have four or five
 
 def amplification(scheme: Scheme, h: float) -> np.ndarray:
     """Matrix of one step on what the scheme carries: q, q̇ and, where it damps, its own acceleration."""
-    carried, steps = [np.reshape(z, (-1, 1)) for z in np.eye(len(scheme.unit.g))], fitted(0.0, h, 1)
+    carried, steps = [np.reshape(z, (-1, 1)) for z in np.eye(len(scheme.unit.g))], make_steps(0.0, h, 1)
     columns = [chunk(OSCILLATOR, scheme, z, steps)[0][:, 0] for z in carried]
     return np.array(columns).T
 
@@ -123,7 +123,7 @@ def test_known_members_of_the_family() -> None:
 def parameters(scheme: Scheme) -> tuple[float, float, float, float]:
     """α_m, α_f, γ and β from the tableau at a step of 1 s."""
     t = scheme.unit
-    known, carried = t.first[2, 2], t.d[2, 0]  # (α_f − α_m)/(1 − α_m), and that over 1 − α_m
+    known, carried = t.initial[2, 2], t.d[2, 0]  # (α_f − α_m)/(1 − α_m), and that over 1 − α_m
     alpha_m = 1 - known / carried
     return alpha_m, alpha_m + known * (1 - alpha_m), t.c_v[0, 0] / (1 - known), t.c_q[0, 0] / (1 - known)
 
@@ -193,7 +193,7 @@ def test_corners_and_jumps_between_steps_leave_the_order(kind: str, name: str) -
 
     def error(count: int, known: Corners | None) -> float:
         run = integrate(system, scheme, np.array([0.3]), np.zeros(1), step=3 / count, count=count, corners=known)
-        assert run.whole and len(run.time) == len(run.qdd) == count + 1
+        assert run.reached_end and len(run.time) == len(run.qdd) == count + 1
         return float(np.abs([run.q[-1, 0], run.qd[-1, 0]] - exact).max())
 
     counts = (50, 100) if scheme.order > 2 else (400, 800)

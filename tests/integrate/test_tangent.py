@@ -13,11 +13,11 @@ from gbeam.integrate import (
     Corners,
     LinearEquations,
     Scheme,
-    fitted,
     gauss,
     generalized_alpha,
     hht,
     integrate_steps,
+    make_steps,
     newmark,
     tangent,
 )
@@ -45,7 +45,7 @@ def forced(stiffness: float, damping: float, level: float) -> LinearEquations:
 def test_tangent_is_the_derivative_of_the_discrete_solution(make: Callable[[], Scheme]) -> None:
     scheme, p = make(), np.array([50.0, 0.4, 5.0])
     start = np.array([0.1, -0.2]), np.array([0.3, 0.0])
-    steps = fitted(0.0, 0.02, 30, Corners(np.array([JUMP]), np.array([True])))
+    steps = make_steps(0.0, 0.02, 30, Corners(np.array([JUMP]), np.array([True])))
     steps = replace(steps, kept=np.ones(len(steps), dtype=bool))
     assert len(steps) == 31  # one is split
 

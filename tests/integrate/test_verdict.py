@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import Judgement, Verdict, balanced, reach, shrinkage, verdict
+from gbeam.integrate import Judgement, Verdict, balanced_steps, reach, shrinkage, verdict
 
 
 def judged(*sizes: Any, x: Any = 1.0, fresh: bool = False, trusted: bool = True, even: bool = True) -> Judgement:
@@ -25,10 +25,17 @@ def judged(*sizes: Any, x: Any = 1.0, fresh: bool = False, trusted: bool = True,
 def test_the_error_left_is_a_correction_times_its_factor() -> None:
     """The last corrections shrink by 0.2, 0.01 and, as no more is believed, 0.01."""
     good = judged([1e-10, 2e-9, 1e-3], [2e-11, 2e-11, 1e-8])
-    assert good.converged.tolist() == [False, True, False] and not good.slow.any() and not good.lost.any()
-    assert judged([1e-10, 2e-9, 1e-3], [9e-12, 2e-11, 9e-11]).converged.all()
-    assert not judged([1e-14]).converged.any()  # any error may be left after the first
-    assert not judged([1e-3], [1e-11], fresh=True).converged.any() and judged([1e-3], [1e-13], fresh=True).converged
+    assert (
+        good.converged_steps.tolist() == [False, True, False]
+        and not good.slow_steps.any()
+        and not good.lost_steps.any()
+    )
+    assert judged([1e-10, 2e-9, 1e-3], [9e-12, 2e-11, 9e-11]).converged_steps.all()
+    assert not judged([1e-14]).converged_steps.any()  # any error may be left after the first
+    assert (
+        not judged([1e-3], [1e-11], fresh=True).converged_steps.any()
+        and judged([1e-3], [1e-13], fresh=True).converged_steps
+    )
 
 
 def test_corrections_shrink_by_one_factor() -> None:
@@ -38,26 +45,29 @@ def test_corrections_shrink_by_one_factor() -> None:
 
 
 def test_slow_steps_have_not_halved_their_correction() -> None:
-    assert judged([1e-3, 1e-3], [4e-4, 6e-4]).slow.tolist() == [False, True]
-    assert not judged([1e-3, 1e-3]).slow.any()
+    assert judged([1e-3, 1e-3], [4e-4, 6e-4]).slow_steps.tolist() == [False, True]
+    assert not judged([1e-3, 1e-3]).slow_steps.any()
 
 
 def test_steps_are_lost_that_stay_far_or_diverge() -> None:
     far, near = 2 * verdict.MOVED, verdict.MOVED / 2
-    assert judged(*[[near, far, near]] * (verdict.LATE - 1)).lost.tolist() == [False] * 3
-    assert judged(*[[near, far, near]] * verdict.LATE).lost.tolist() == [False, True, False]
-    assert judged([near, np.nan]).lost.tolist() == [False, True]
-    assert judged(*[[near, near]] * verdict.ALONE).lost.tolist() == [True, False]  # a first one has had its time
-    assert not judged(*[[far]] * (verdict.ALONE - 1)).lost.any() and judged(*[[far]] * verdict.ALONE).lost.all()
+    assert judged(*[[near, far, near]] * (verdict.LATE - 1)).lost_steps.tolist() == [False] * 3
+    assert judged(*[[near, far, near]] * verdict.LATE).lost_steps.tolist() == [False, True, False]
+    assert judged([near, np.nan]).lost_steps.tolist() == [False, True]
+    assert judged(*[[near, near]] * verdict.ALONE).lost_steps.tolist() == [True, False]  # a first one has had its time
+    assert (
+        not judged(*[[far]] * (verdict.ALONE - 1)).lost_steps.any()
+        and judged(*[[far]] * verdict.ALONE).lost_steps.all()
+    )
 
 
 def test_by_derivatives_that_are_not_trusted_forces_must_be_balanced() -> None:
     sizes = [1e-5, 1e-5], [1e-13, 1e-13]
-    assert judged(*sizes, trusted=False).converged.all() and judged(*sizes, even=False).converged.all()
-    assert not judged(*sizes, trusted=False, even=False).converged.any()
+    assert judged(*sizes, trusted=False).converged_steps.all() and judged(*sizes, even=False).converged_steps.all()
+    assert not judged(*sizes, trusted=False, even=False).converged_steps.any()
     small = np.array([[1e-10, 0.0], [1e-8, 0.0]])
-    assert balanced(small, np.ones((2, 2)), np.zeros((2, 2))).tolist() == [True, False]
-    assert balanced(small, np.ones((2, 2)), np.full((2, 2), 1e7)).all()  # beside their rounding
+    assert balanced_steps(small, np.ones((2, 2)), np.zeros((2, 2))).tolist() == [True, False]
+    assert balanced_steps(small, np.ones((2, 2)), np.full((2, 2), 1e7)).all()  # beside their rounding
 
 
 def test_accelerations_are_related_to_those_before() -> None:
@@ -73,16 +83,19 @@ def test_steps_that_leave_bound_the_rounding_of_those_that_follow() -> None:
     built.record(np.array([1e-6]), np.ones((1, 1, 1)))
     built.record(np.array([1e-6]), np.ones((1, 1, 1)))
     no = np.zeros(1, dtype=bool)
-    assert not built.judge(0.0, ~no, fresh=no, trusted=~no).converged.any()
+    assert not built.judge(0.0, ~no, fresh=no, trusted=~no).converged_steps.any()
     built.bound = np.inf
-    assert built.judge(0.0, ~no, fresh=no, trusted=~no).converged.all()
+    assert built.judge(0.0, ~no, fresh=no, trusted=~no).converged_steps.all()
 
 
 def rounding_passes() -> None:
     """Corrections by new derivatives that no longer shrink are rounding; larger ones are not."""
-    assert judged([1e-7], [1e-7], fresh=True).converged.all() and judged([1e-7], [0.95e-7], fresh=True).converged.all()
-    assert not judged([1e-7], [0.5e-7], fresh=True).converged.any()
-    assert not judged([1e-5], [1e-5], fresh=True).converged.any()
+    assert (
+        judged([1e-7], [1e-7], fresh=True).converged_steps.all()
+        and judged([1e-7], [0.95e-7], fresh=True).converged_steps.all()
+    )
+    assert not judged([1e-7], [0.5e-7], fresh=True).converged_steps.any()
+    assert not judged([1e-5], [1e-5], fresh=True).converged_steps.any()
 
 
 @pytest.mark.parametrize(
@@ -100,6 +113,6 @@ def test_what_a_number_half_or_twice_as_large_breaks(
 def test_rest_after_a_motion_is_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a step's own accelerations vanish, its corrections are beside those before."""
     sizes, x = ([1e-5, 1e-16], [1e-13, 0.9e-16]), np.array([1.0, 0.0])
-    assert judged(*sizes, x=x).converged.all()
+    assert judged(*sizes, x=x).converged_steps.all()
     monkeypatch.setattr(verdict, "EARLIER", 0.0)
-    assert judged(*sizes, x=x).converged.tolist() == [True, False]
+    assert judged(*sizes, x=x).converged_steps.tolist() == [True, False]

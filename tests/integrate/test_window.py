@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gbeam.integrate import Derivatives, Scheme, Window, fitted, gauss, newmark, window
+from gbeam.integrate import Derivatives, Scheme, Window, gauss, make_steps, newmark, window
 
 H, RATE = 0.05, 3.0
 
@@ -18,8 +18,8 @@ def oscillator(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
 
 def opened(residual: Any, scheme: Scheme, count: int, start: Any = (1.0, 0.0, 0.0)) -> Window:
     """A window of so many steps from q, q̇, q̈."""
-    built = Window(residual, lambda t: 0 * t[:, None], scheme, fitted(0.0, H, 10_000), None)
-    built.begin(scheme.tableau(H).first @ np.array(start)[:, None], np.array([start[2]]))
+    built = Window(residual, lambda t: 0 * t[:, None], scheme, make_steps(0.0, H, 10_000), None)
+    built.begin(scheme.tableau(H).initial @ np.array(start)[:, None], np.array([start[2]]))
     if count:
         built.extend(count)
     return built
@@ -42,7 +42,7 @@ def test_one_correction_solves_linear_equations(scheme: Scheme, count: int) -> N
     built = opened(oscillator, scheme, count, (1.0, 0.0, -(RATE**2)))
     assert corrected(built).min() > 0 and corrected(built).max() < 1e-12
     built.leave(count)
-    q, qd, *qdd = built.ended()
+    q, qd, *qdd = built.take_ends()
     energy = qd[:, 0] ** 2 + RATE**2 * q[:, 0] ** 2
     assert len(q) == count and len(built) == 0 and built.first == count
     np.testing.assert_allclose(energy, RATE**2, rtol=1e-12)  # which both keep
@@ -57,7 +57,7 @@ def test_steps_that_leave_are_put_out_once() -> None:
     built.leave(3)
     built.leave(2)
     assert len(built) == 5 and built.first == 5 and len(built.z) == 6 and len(built.times) == 10
-    assert [len(each) for each in built.ended()] == [5, 5]
+    assert [len(each) for each in built.take_ends()] == [5, 5]
     built.cut(2)
     assert len(built) == 2 and len(built.z) == 3 and len(built.times) == 4
     np.testing.assert_allclose(built.times.reshape(2, 2).mean(axis=1), H * np.array([5.5, 6.5]))

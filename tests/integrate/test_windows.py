@@ -130,7 +130,7 @@ def test_no_digit_that_counts_depends_on_the_units(make: Any, radian: float, sec
         drive = NonlinearEquations(residual, lambda t: np.stack([8 * np.sin(2 * t / time), 0 * t], axis=-1))
         start = (each * angle / time**k for k, each in enumerate(START))
         run = integrate(drive, make(), *start, step=0.01 * time, count=300)
-        assert run.whole
+        assert run.reached_end
         return [each * (time**k / angle) for k, each in enumerate((run.q, run.qd, run.qdd))]
 
     for each, expected in zip(run(converted, radian, second), run(Swing(), 1.0, 1.0), strict=True):
@@ -148,7 +148,7 @@ def test_derivatives_at_one_state_serve_windows_of_small_motions() -> None:
             return Swing()(q, qd, qdd, force) + rounding * np.sin(1e15 * qdd.real)
 
         equations = NonlinearEquations(counted, lambda t: size * np.stack([np.sin(5 * t), 0 * t], axis=-1))
-        assert integrate(equations, gauss(), *np.zeros((2, 2)), step=0.01, count=300).whole
+        assert integrate(equations, gauss(), *np.zeros((2, 2)), step=0.01, count=300).reached_end
         return sum(calls)
 
     assert derivatives(1e-3) <= 6  # windows
@@ -161,7 +161,7 @@ def test_a_correction_by_new_derivatives_does_not_tell_how_it_shrinks() -> None:
 
     def passes(size: float, fresh: bool) -> bool:
         one, no = np.ones(1), np.zeros(1, dtype=bool)
-        return bool(verdict.converged(size * one, 1e-3 * one, one, 0 * one, fresh=no | fresh, quick=no)[0])
+        return bool(verdict.converged_steps(size * one, 1e-3 * one, one, 0 * one, fresh=no | fresh, quick=no)[0])
 
     assert passes(1e-11, False) and not passes(1e-11, True) and passes(1e-13, True)
 
@@ -194,16 +194,18 @@ def test_no_step_passes_that_leaves_forces(
 def test_a_step_is_factored_again_only_where_its_derivatives_are_new(monkeypatch: pytest.MonkeyPatch) -> None:
     factored: list[int] = []
     states: list[int] = []
-    solved = derivatives.solved
+    solve = derivatives.solve_systems
 
     def counted(q: Any, qd: Any, qdd: Any, force: Any) -> Any:
         if not np.iscomplexobj(q):
             states.append(len(q))
         return Swing()(q, qd, qdd, force)
 
-    monkeypatch.setattr(derivatives, "solved", lambda left, right: factored.append(len(left)) or solved(left, right))
+    monkeypatch.setattr(
+        derivatives, "solve_systems", lambda left, right: factored.append(len(left)) or solve(left, right)
+    )
     run = integrate(NonlinearEquations(counted, load), gauss(), *START, **KNOWN)
-    assert run.whole
+    assert run.reached_end
     assert sum(factored) < 0.4 * sum(states) / 2  # two stages a step
 
 
@@ -242,7 +244,7 @@ def test_a_window_too_long_for_newton_is_cut() -> None:
         count=1000,
         progress=solved.append,
     )
-    assert run.whole and len(solved) > 8 and solved[-1] == 1.0
+    assert run.reached_end and len(solved) > 8 and solved[-1] == 1.0
     energy = run.qd[:, 0] ** 2 / 2 - np.cos(run.q[:, 0])
     np.testing.assert_allclose(energy, energy[0], atol=1e-5)
 

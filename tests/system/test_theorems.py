@@ -181,7 +181,7 @@ def test_rotations() -> None:
     np.testing.assert_allclose(w.imag / STEP, alpha.real, rtol=1e-10, atol=1e-14)
     np.testing.assert_allclose(rotation_by_parameters(parameters_of_matrices(R.real)), R.real, atol=1e-14)
     short = np.linalg.norm(phi, axis=1) < 3.0
-    back = vector_of(parameters_of_matrices(R[short]))
+    back = rotation_vector(parameters_of_matrices(R[short]))
     np.testing.assert_allclose(back.real, phi[short], rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(back.imag / STEP, rate[short], rtol=1e-10, atol=1e-13)
 

@@ -38,8 +38,8 @@ from .response.posed import tries as tries
 from .response.record import influence as influence
 from .response.settings import Settings as Settings
 from .response.step_errors import observed_order as observed_order
-from .response.stepping import answered as answered
-from .response.stepping import refine as refine
+from .response.stepping import plan_refinement as plan_refinement
+from .response.stepping import run_plan as run_plan
 from .steady.frequency_errors import RicherModels as RicherModels
 from .steady.loss import loss_of_model as loss_of_model
 from .steady.static import rest_of as rest_of

@@ -2,7 +2,7 @@
 
 from .derivatives import Derivatives as Derivatives
 from .derivatives import Stages as Stages
-from .derivatives import interpolated as interpolated
+from .derivatives import interpolate as interpolate
 from .driver import LINEAR_CHUNK as LINEAR_CHUNK
 from .driver import integrate as integrate
 from .driver import integrate_steps as integrate_steps
@@ -19,17 +19,17 @@ from .relaxed import matrix_powers as matrix_powers
 from .relaxed import take_equal_steps as take_equal_steps
 from .schemes import SCHEMES as SCHEMES
 from .schemes import Scheme as Scheme
-from .schemes import added as added
+from .schemes import fitting_terms as fitting_terms
 from .schemes import gauss as gauss
 from .schemes import generalized_alpha as generalized_alpha
 from .schemes import hht as hht
 from .schemes import newmark as newmark
 from .steps import Corners as Corners
-from .steps import fitted as fitted
+from .steps import make_steps as make_steps
 from .tangent import tangent as tangent
 from .verdict import Judgement as Judgement
 from .verdict import Verdict as Verdict
-from .verdict import balanced as balanced
+from .verdict import balanced_steps as balanced_steps
 from .verdict import reach as reach
 from .verdict import shrinkage as shrinkage
 from .window import Window as Window

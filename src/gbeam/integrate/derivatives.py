@@ -14,8 +14,8 @@ import numpy as np
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags
-from gbeam.integrate.equations import slopes, solved
-from gbeam.integrate.sampled import Held, Sampling
+from gbeam.integrate.equations import slopes, solve_systems
+from gbeam.integrate.sampled import HeldCommands, Sampling
 from gbeam.integrate.schemes import Tableau
 
 # Speed: factors by which corrections of 14 runs become more if a number is half or twice as large (mean, and most).
@@ -37,10 +37,12 @@ class Stages(NamedTuple):
 
 
 class Derivatives:
-    """Derivatives at the stages of a window's steps: `slope` holds K, C and M (1 or t, s, 3, n, n), found at stages
-    `spacing` from one another, `reached` (3, n, n) those where the window began; `age` (t,) is the sum of corrections,
-    as shares of the accelerations, since a step's were found. `maps` of steps are J⁻¹ (t, s n, s n), J⁻¹ L
-    (t, s n, m n) and S = g − d J⁻¹ L, from δz to δz₊ (t, m n, m n); one of each where all steps are alike.
+    """Derivatives of the residual at the stages of a window's steps, and the maps of steps that follow from them.
+
+    `slope` holds K, C and M (1 or t, s, 3, n, n), which are computed at stages `spacing` from one another; `reached`
+    (3, n, n) are those where the window began. `age` (t,) is the sum of the corrections, as shares of the
+    accelerations, since a step's derivatives were computed. `maps` are J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n) and
+    S = g − d J⁻¹ L (t, m n, m n), from δz to δz₊; one of each where all steps are alike.
     """
 
     slope: Any
@@ -62,21 +64,24 @@ class Derivatives:
         return self.spacing > FAR
 
     @property
-    def single(self) -> bool:
+    def has_one_set(self) -> bool:
         """True if all stages have the same derivatives."""
         return self.slope is not None and len(self.slope) == 1
 
     @property
-    def fresh(self) -> Flags:
-        """Flags (t,) of steps that have not been corrected by their derivatives yet."""
+    def fresh_steps(self) -> Flags:
+        """Flags (t,) of the steps that have not been corrected by their derivatives yet."""
         flags: Flags = self.age == 0
         return flags
 
     @property
-    def trusted(self) -> Flags:
-        """Flags (t,) of steps whose derivatives are not interpolated: their own, or those where the window began."""
+    def trusted_steps(self) -> Flags:
+        """Flags (t,) of the steps whose derivatives are not interpolated.
+
+        They are a step's own, or those where the window began.
+        """
         alone = len(self.age) == 1
-        return (alone & self.fresh) | (self.single and (self.slope == self.reached).all())
+        return (alone & self.fresh_steps) | (self.has_one_set and (self.slope == self.reached).all())
 
     def extend(self, added: int) -> None:
         """Append steps with the derivatives of the last one, or of the stage whose derivatives serve all."""
@@ -119,8 +124,10 @@ class Derivatives:
             self.spacing += 1
 
     def renew(self, stages: Stages) -> None:
-        """Compute K, C and M again from the first step whose derivatives are old to the last: at some of the stages,
-        and interpolated between these. Without any yet, compute them at the first stage alone.
+        """Compute K, C and M again from the first step whose derivatives are old to the last.
+
+        They are computed at some of the stages, and interpolated between these. If there are none yet, they are
+        computed at the first stage alone.
         """
         count = len(self.age)
         per_step, n = len(stages.times) // count, stages.states.shape[-1]
@@ -144,21 +151,22 @@ class Derivatives:
         self.slope = np.concatenate([np.broadcast_to(self.slope, (count, *renewed.shape[1:]))[:first], renewed])
         self.age[first:], self.maps = 0.0, self._maps_of(slice(first))
 
-    def factor(self, stages: Stages, tableau: Tableau, held: Held | None) -> None:
-        """Compute the maps of steps that have none, or whose derivatives are new. The commands `held` by controllers
-        receive what they change.
+    def factor(self, stages: Stages, tableau: Tableau, held: HeldCommands | None) -> None:
+        """Compute the maps of steps that have none, or whose derivatives are new.
+
+        The commands `held` by controllers receive their effect on the steps.
         """
         (*_, per_step, m), count, n = tableau.w_q.shape, len(self.age), stages.states.shape[-1]
         done = 0 if self.maps is None else len(self.maps[0])
         if done in (1, count):
             return
         t = tableau if len(tableau.d) == 1 else each_leaf(lambda leaf: leaf[done:], tableau)
-        slope = self.slope if self.single else self.slope[done:]
+        slope = self.slope if self.has_one_set else self.slope[done:]
         jacobian, by_state = t.jacobians(*np.moveaxis(slope, 2, 0))
         # One solution of the linear systems gives J⁻¹ and J⁻¹ L.
         size = per_step * n
         unit = np.broadcast_to(np.eye(size), jacobian.shape)
-        inverse, answer = np.split(solved(jacobian, np.concatenate([unit, by_state], axis=-1)), [size], axis=-1)
+        inverse, answer = np.split(solve_systems(jacobian, np.concatenate([unit, by_state], axis=-1)), [size], axis=-1)
         if held is not None:
             held.push(inverse, t, self._interpolate(held.sampling.residual_slopes, stages, 0))
         # S = g − d J⁻¹ L
@@ -168,8 +176,9 @@ class Derivatives:
         self.maps = maps if not done else tuple(map(np.concatenate, zip(self.maps, maps, strict=True)))
 
     def forces(self, states: Array) -> Array:
-        """Sizes (t, s n) of forces that cancel at the stages, |K| |q| + |C| |q̇| + |M| |q̈|, by the window's first K,
-        C, M.
+        """Sizes (t, s n) of the forces that cancel at the stages: |K| |q| + |C| |q̇| + |M| |q̈|.
+
+        K, C and M are the window's first ones.
         """
         sizes: Array = np.abs(self.reached) @ np.abs(states).swapaxes(1, 2)
         return sizes.sum(axis=0).T.reshape(len(self.age), -1)
@@ -194,7 +203,7 @@ class Derivatives:
         values = function(*stages.states[:, chosen], each_leaf(lambda leaf: leaf[chosen], stages.inputs))
         if len(chosen) == 1:
             return values
-        return interpolated(stages.times[chosen], values, stages.times[begin : begin + count])
+        return interpolate(stages.times[chosen], values, stages.times[begin : begin + count])
 
     def _maps_of(self, kept: slice) -> Any:
         """Maps of a slice of the steps; None if one serves all, or with controllers: these are computed again."""
@@ -209,7 +218,7 @@ def products(matrices: Array, vectors: Array) -> Array:
     return vectors @ matrices[0].T if len(matrices) == 1 else (matrices @ vectors[..., None])[..., 0]
 
 
-def interpolated(times: Array, values: Array, points: Array) -> Array:
+def interpolate(times: Array, values: Array, points: Array) -> Array:
     """Interpolate values (k, ...) at ascending `times` (k,) at the times `points` (p,).
 
     The result (p, ...) is that of Lagrange's polynomials through the `NEAREST` values about each point.

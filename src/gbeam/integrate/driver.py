@@ -13,8 +13,8 @@ from gbeam.arrays.types import Floats
 from gbeam.integrate import linear
 from gbeam.integrate.equations import Demanded, LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.sampled import sampling_of
-from gbeam.integrate.schemes import Scheme, added
-from gbeam.integrate.steps import Corners, Steps, fitted
+from gbeam.integrate.schemes import Scheme, fitting_terms
+from gbeam.integrate.steps import Corners, Steps, make_steps
 from gbeam.integrate.windows import windows
 
 LINEAR_CHUNK = 500  # steps whose maps are found at once: as many as stay in a cache
@@ -39,7 +39,7 @@ def integrate(
     `stop` maps q (k, n) of a chunk of steps to the number of steps after which to end, or None. A failed step ends the
     trajectory; where JAX traces the equations, it leaves NaN.
     """
-    steps = fitted(start, step, count, None if corners is None else corners.felt_by(scheme))
+    steps = make_steps(start, step, count, None if corners is None else corners.felt_by(scheme))
     return integrate_steps(equations, scheme, q, qd, steps, stop=stop, progress=progress)
 
 
@@ -89,7 +89,7 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
     """Pieces of a run of linear equations: first the initial state, then the kept steps of each chunk."""
     z, state = linear.start(equations, scheme, steps, q, qd)
     size = len(steps) if is_jax(state[-1]) else LINEAR_CHUNK
-    fit = added(equations, scheme, steps.longest)
+    fit = fitting_terms(equations, scheme, steps.longest)
     yield *(namespace(state[-1]).asarray(x)[None] for x in state), np.array([True])
     for done in range(0, len(steps), size):
         z, piece = linear.chunk(equations, scheme, z, steps[done : done + size], fit)
@@ -101,7 +101,7 @@ def _nonlinear(
 ) -> tuple[Iterator[Piece], Any]:
     """Pieces of a run of nonlinear equations, and the samples of its controllers or None, which are taken meanwhile."""
     controlled = equations.controllers is not None and equations.controllers.traced
-    if controlled or holds_tracer(equations.residual, q, qd, equations.drive(steps.first[:1])):
+    if controlled or holds_tracer(equations.residual, q, qd, equations.drive(steps.drive_begin[:1])):
         from gbeam.integrate.traced import traced
 
         run, loop = traced(equations, scheme, q, qd, steps)

@@ -70,25 +70,27 @@ class LinearEquations:
         for q_piece, qd_piece, inputs_piece in _pieces(q.shape[1], q, qd, inputs):
             c, k, f = self.matrices(inputs_piece)
             force = f - (k @ q_piece[..., None] + c @ qd_piece[..., None])[..., 0]
-            pieces.append(solved(self.mass, force.T).T)
+            pieces.append(solve_systems(self.mass, force.T).T)
         return namespace(*pieces).concatenate(pieces)
 
 
 @dataclass(frozen=True, eq=False)
 class NonlinearEquations:
-    """r(q, q̇, q̈; inputs(t)) = 0, (..., n), analytic and linear in q̈; leading axes of its arguments are broadcast. Its
-    arrays are arguments of a compiled program. Steps are fitted to its modes at q = 0 under the inputs `idle` of one
-    time (1, ...), which drive nothing; None where these are not its modes elsewhere.
+    """Equations r(q, q̇, q̈; inputs(t)) = 0, (..., n), whose residual is analytic, and linear in q̈.
+
+    Leading axes of the residual's arguments are broadcast, and its arrays are arguments of a compiled program. Steps
+    are fitted to its modes at q = 0 under `idle_inputs` of one time (1, ...), which drive nothing. These are None
+    where the equations have other modes elsewhere.
     """
 
     residual: Any
     drive: Drive
     controllers: Any = None
-    idle: Any = None
+    idle_inputs: Any = None
 
     def accelerations(self, q: Array, qd: Array, inputs: Any) -> Array:
         """Accelerations q̈ (t, n) that satisfy the equations at q, q̇ (t, n) and inputs (t, ...)."""
-        return accelerations(exact(self.residual), q, qd, inputs)
+        return accelerations(exact_residual(self.residual), q, qd, inputs)
 
 
 @record
@@ -104,16 +106,17 @@ class Fitted:
         return self.exact(q, qd, qdd, inputs) + (qdd @ self.mass + qd @ self.damping)
 
 
-def exact(residual: Any) -> Any:
-    """A residual without what is added to fit steps."""
+def exact_residual(residual: Any) -> Any:
+    """Return a residual without the terms that fit steps."""
     return residual.exact if isinstance(residual, Fitted) else residual
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Coordinates q, qd (t, n) over time (t,), as far as the integration got before it failed or was stopped; where the
-    scheme has no accelerations at the ends of steps, they are computed when they are asked for. `samples` are those of
-    the controllers in the loop.
+    """Coordinates q, qd (t, n) over time (t,), as far as the integration got before it failed or was stopped.
+
+    Accelerations that the scheme does not have at the ends of steps are computed when they are asked for. `samples`
+    are those of the controllers in the loop.
     """
 
     time: Floats
@@ -125,7 +128,7 @@ class Trajectory:
     samples: Any = None
 
     @property
-    def whole(self) -> bool:
+    def reached_end(self) -> bool:
         """True if the integration reached the end of its steps."""
         return self.converged and not self.stopped
 
@@ -153,11 +156,11 @@ FEWEST = 50  # states evaluated at once: of fewer, each call costs more than its
 
 def slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
     """Derivatives (3, t, r, n) of a function (t, r) by q, q̇, q̈ (t, n), of a residual K, C, M, at inputs (t, ...)."""
-    return expanded(residual, q, qd, qdd, inputs)[1]
+    return values_and_slopes(residual, q, qd, qdd, inputs)[1]
 
 
-def expanded(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array]:
-    """Values (t, r) of a function and its derivatives, as :func:`slopes` gives them, from the same evaluations.
+def values_and_slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: Any) -> tuple[Array, Array]:
+    """Return values (t, r) of a function and its derivatives, as of :func:`slopes`, from the same evaluations.
 
     Each coordinate of q, q̇ and q̈ takes a complex step of its own: Im f(x + i h) / h is the derivative.
     """
@@ -190,19 +193,20 @@ def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     for q_piece, qd_piece, inputs_piece in _pieces(n, q, qd, inputs):
         forces = residual(q_piece, qd_piece, np.broadcast_to(units, (n + 1, *q_piece.shape)), inputs_piece)
         mass = forces[1:].transpose(1, 2, 0) / HUGE
-        pieces.append(solved(mass, -forces[0][..., None])[..., 0])
+        pieces.append(solve_systems(mass, -forces[0][..., None])[..., 0])
     return np.concatenate(pieces)
 
 
 class Demanded:
-    """Accelerations (t, n) that equations demand of a run at its start and at the ends of its kept steps, each found
-    when it is first asked for, under the commands of `samples` of controllers, if any.
+    """Accelerations (t, n) that equations demand of a run at its start and at the ends of its kept steps.
+
+    Each is computed when it is first asked for, under the commands of the `samples` of controllers, if there are any.
     """
 
     def __init__(self, equations: Any, steps: Any, q: Any, qd: Any, samples: Any = None) -> None:
         """Prepare the inputs. Commands act in the step that ends at a time, and none acts at the start."""
         self.equations, self.q, self.qd = equations, q, qd
-        self.time = np.append(steps.first[:1], steps.end[steps.kept])
+        self.time = np.append(steps.drive_begin[:1], steps.end[steps.kept])
         self.held = None
         if samples is not None:
             held = samples.held
@@ -215,14 +219,15 @@ class Demanded:
         if len(new):
             inputs = self.equations.drive(self.time[new])
             if self.held is not None:
-                inputs = self.equations.controllers.driven(inputs, self.held[new])
+                inputs = self.equations.controllers.add_commands(inputs, self.held[new])
             self.values[new] = self.equations.accelerations(self.q[new], self.qd[new], inputs)
             self.computed[new] = True
         return self.values[index]
 
 
 def _pieces(numbers: int, *parts: Any) -> list[Any]:
-    """Arrays and records (t, ...) cut along time into pieces that fit memory, where each time needs so many `numbers`.
+    """Cut arrays and records (t, ...) along time into pieces that fit memory, where each time needs so many `numbers`.
+
     Arrays of JAX stay whole.
     """
     count, size = len(parts[0]), max(FEWEST, AT_ONCE // max(numbers, 1))
@@ -232,11 +237,11 @@ def _pieces(numbers: int, *parts: Any) -> list[Any]:
     return [each_leaf(lambda leaf, piece=piece: leaf[piece], parts) for piece in pieces]  # type: ignore[misc]
 
 
-def solved(matrix: Array, right: Array) -> Array:
-    """Solutions of linear systems. They are NaN where a matrix is singular, for which NumPy would refuse all."""
+def solve_systems(matrix: Array, right: Array) -> Array:
+    """Solve linear systems. A solution is NaN where its matrix is singular: there NumPy would refuse all systems."""
     try:
         return namespace(matrix, right).linalg.solve(matrix, right)
     except np.linalg.LinAlgError:
         if matrix.ndim == 2:
             return np.full_like(right, np.nan)
-        return np.stack([solved(*pair) for pair in zip(matrix, right, strict=True)])
+        return np.stack([solve_systems(*pair) for pair in zip(matrix, right, strict=True)])

@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.tree import each_leaf, leaves_of
-from gbeam.integrate.equations import LinearEquations, solved
+from gbeam.integrate.equations import LinearEquations, solve_systems
 from gbeam.integrate.relaxed import FEWEST, take_equal_steps
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
@@ -25,7 +25,7 @@ def start(
 
     q̈ is left out where the scheme has no accelerations at the ends of steps, unless JAX traces the run.
     """
-    inputs, first = equations.drive(steps.first[:1]), scheme.tableau(steps.length[0]).first
+    inputs, first = equations.drive(steps.drive_begin[:1]), scheme.tableau(steps.length[0]).initial
     if not (scheme.ends or holds_jax(q, qd, inputs, equations.mass, equations.terms or equations.matrices(inputs))):
         return first[:, :2] @ np.stack([q, qd]), (q, qd)
     qdd = equations.accelerations(q[None], qd[None], inputs)[0]
@@ -141,7 +141,7 @@ def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, grou
         mass, c, k, f = mass[pair], c[..., *pair], k[..., *pair], f[..., group]
     # J x = F − L z at all stages together.
     jacobian, onto = t.jacobians(k, c, mass[None, None])
-    x = solved(jacobian, xp.concatenate([-onto, xp.reshape(f, (-1, stages * n, 1))], axis=-1))
+    x = solve_systems(jacobian, xp.concatenate([-onto, xp.reshape(f, (-1, stages * n, 1))], axis=-1))
     x = xp.reshape(x, (-1, stages, n, m * n + 1))
     return x, _sum(t.g, _unit(m, n)) + _sum(t.d, x)
 
@@ -159,8 +159,8 @@ def _started_anew(equations: LinearEquations, scheme: Scheme, maps: Array, ends:
     q, qd = ends[anew, 0], ends[anew, 1]
     force = -(k @ q + c @ qd)
     force[..., -1] += f
-    qdd = solved(equations.mass, force)
-    maps[anew] = _sum(scheme.tableau(steps.following[anew]).first, np.stack([q, qd, qdd], axis=1))
+    qdd = solve_systems(equations.mass, force)
+    maps[anew] = _sum(scheme.tableau(steps.following[anew]).initial, np.stack([q, qd, qdd], axis=1))
     return maps
 
 

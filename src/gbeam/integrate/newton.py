@@ -18,7 +18,7 @@ import numpy as np
 
 from gbeam.arrays.jax_setup import with_slope
 from gbeam.arrays.namespace import Array
-from gbeam.integrate.equations import Drive, exact
+from gbeam.integrate.equations import Drive, exact_residual
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.verdict import shrinkage
@@ -36,7 +36,7 @@ class Chunk:
     """
 
     steps: Steps
-    last: Any
+    last_counted: Any
     tableau: Any
     inputs: Any
     at_ends: Any
@@ -44,12 +44,12 @@ class Chunk:
     @cached_property
     def counted(self) -> Any:
         """Flags (steps,) of the steps that count."""
-        return (np.arange(len(self.steps) // len(self.last)) <= self.last[:, None]).ravel()
+        return (np.arange(len(self.steps) // len(self.last_counted)) <= self.last_counted[:, None]).ravel()
 
     @property
     def count(self) -> int:
         """Number of groups with a step that counts."""
-        return int(np.count_nonzero(self.last >= 0))
+        return int(np.count_nonzero(self.last_counted >= 0))
 
     @property
     def end(self) -> Steps:
@@ -140,7 +140,7 @@ class Carry(NamedTuple):
 
     z: Array
     x: Array
-    before: Array
+    previous_x: Array
 
 
 def _stage_residual(residual: Any, t: Tableau, z: Array, inputs: Any, x: Array) -> Array:
@@ -178,7 +178,7 @@ def _guess(t: Tableau, carry: Carry) -> Array:
     """First guess of a step's accelerations (s, n), extrapolated linearly from the last two steps or two stages."""
     x = carry.x
     if len(x) == 1:
-        return 2 * x - carry.before
+        return 2 * x - carry.previous_x
     return x + (x[-1] - x[0]) * t.end_z[0, 1] / (t.w_q[-1, 1] - t.w_q[0, 1])
 
 
@@ -191,7 +191,7 @@ def mass_and_acceleration(residual: Any, q: Array, qd: Array, inputs: Any) -> tu
 @jax.jit
 def compiled_accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
     """q̈ that the equations demand at states (k, n) and inputs (k, ...): (k, n)."""
-    return jax.vmap(lambda *state: mass_and_acceleration(exact(residual), *state)[1])(q, qd, inputs)
+    return jax.vmap(lambda *state: mass_and_acceleration(exact_residual(residual), *state)[1])(q, qd, inputs)
 
 
 def _advance(t: Tableau, carry: Carry, x: Array) -> tuple[Carry, Array, Array]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array
 from gbeam.errors import ComputationError
-from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solved
+from gbeam.integrate.equations import NonlinearEquations, accelerations, slopes, solve_systems
 from gbeam.integrate.steps import Steps
 from gbeam.numerics.series import STEP
 
@@ -31,24 +31,25 @@ class Controllers(Protocol):
 
     @property
     def drives(self) -> list[slice]:
-        """Each controller's part of the commands (m,) of all."""
+        """Part of the commands (m,) of all that belongs to each controller."""
         ...
 
-    def measured(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Measurements (t, k) of a controller at states and inputs with a leading axis t."""
+    def measure(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+        """Return the measurements (t, k) of a controller at states and inputs with a leading axis t."""
         ...
 
-    def accelerates(self, controller: int) -> bool:
+    def measures_accelerations(self, controller: int) -> bool:
         """True if a controller measures accelerations."""
         ...
 
-    def started(self, controller: int) -> Any:
-        """State of a controller's law at the start."""
+    def initial_state(self, controller: int) -> Any:
+        """Return the state of a controller's law at the start of a run."""
         ...
 
-    def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
-        """Command of a controller at time t, s, as its law asks for it and within its limits, and the next state;
-        ComputationError if its law gives none.
+    def command(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
+        """Return a controller's command at time t, s, as its law asks for it and within its limits, and the next state.
+
+        Raises ComputationError if its law gives no command.
         """
         ...
 
@@ -56,7 +57,7 @@ class Controllers(Protocol):
         """Raise InputError if a law does not answer a sample as it did, with command and next state."""
         ...
 
-    def driven(self, inputs: Any, held: Array) -> Any:
+    def add_commands(self, inputs: Any, held: Array) -> Any:
         """Return the inputs with the commands `held` (t, m) added."""
         ...
 
@@ -67,7 +68,7 @@ class Controllers(Protocol):
 
 
 class Uncontrolled:
-    """Stands for controllers where there are none."""
+    """Controllers of a run that has none."""
 
     timing: tuple[()] = ()
     drives: tuple[()] = ()
@@ -76,15 +77,16 @@ class Uncontrolled:
         """Return no laws."""
         return []
 
-    def driven(self, inputs: Any, held: Array) -> Any:
+    def add_commands(self, inputs: Any, held: Array) -> Any:
         """Return the inputs themselves."""
         return inputs
 
 
 class Sampling:
-    """Samples of controllers, taken at the beginnings of steps, and the commands `held` in every step (t, m): the
-    last ones where no sample is known yet. A sample is its measurements, its command as asked and as limited, and the
-    next state. A `failure` is the step at whose beginning a law gave no command, and the error.
+    """Samples of controllers, taken at the beginnings of steps, and the commands `held` (t, m) in every step.
+
+    Where no sample is known yet, the last commands are held. A sample is the measurements, the command as asked and as
+    limited, and the next state. A `failure` is the step at whose beginning a law gave no command, and the error.
     """
 
     failure: tuple[int, ComputationError] | None = None
@@ -94,26 +96,26 @@ class Sampling:
         self.controllers, self.residual, self.drive, self.steps = controllers, residual, drive, steps
         self.held = np.zeros((len(steps), max((part.stop for part in controllers.drives), default=0)))
         start, begun = steps.begin[0], steps.begin + NEAR * steps.length
-        # By controllers: of each step the number of the sample taken at its beginning, −1 of none; of each sample the
-        # first step in which its command acts.
-        self.taken, self.since = [], []
+        # For each controller: of each step the number of the sample taken at its beginning, −1 if none is; of each
+        # sample the first step in which its command acts.
+        self.sample_numbers, self.acting_from = [], []
         for period, delay in controllers.timing:
             number = np.floor((begun - start) / period).astype(int)
-            self.taken.append(np.where(np.diff(number, prepend=-1) > 0, number, -1))
+            self.sample_numbers.append(np.where(np.diff(number, prepend=-1) > 0, number, -1))
             acting = np.floor((begun - start - delay) / period)
-            self.since.append(np.searchsorted(acting, np.arange(number[-1] + 2)).tolist())
-        self.started = [controllers.started(c) for c in range(len(self.taken))]
-        self.samples: list[list[tuple[Array, Array, Array, Any]]] = [[] for _ in self.taken]
+            self.acting_from.append(np.searchsorted(acting, np.arange(number[-1] + 2)).tolist())
+        self.initial_states = [controllers.initial_state(c) for c in range(len(self.sample_numbers))]
+        self.samples: list[list[tuple[Array, Array, Array, Any]]] = [[] for _ in self.sample_numbers]
         self.repeated = set[tuple[int, int]]()
 
     @property
-    def begun(self) -> bool:
+    def has_begun(self) -> bool:
         """True if a sample of every controller is taken."""
         return all(self.samples)
 
     def hold(self, end: int) -> None:
-        """Let the last commands act until step `end`."""
-        for part, since, samples in zip(self.controllers.drives, self.since, self.samples, strict=True):
+        """Hold the last commands until step `end`."""
+        for part, since, samples in zip(self.controllers.drives, self.acting_from, self.samples, strict=True):
             if samples:
                 self.held[since[len(samples)] : end, part] = samples[-1][2]
 
@@ -122,10 +124,10 @@ class Sampling:
 
         Later samples are forgotten: they were those of an earlier iterate. An error at the first sample is raised.
         """
-        samples, since = self.samples[c], self.since[c]
+        samples, since = self.samples[c], self.acting_from[c]
         del samples[s:]
         try:
-            asked, limited, after = self.controllers.commanded(c, *self._sample(c, s, step, measured))
+            asked, limited, after = self.controllers.command(c, *self._sample(c, s, step, measured))
         except ComputationError as error:
             if not s:
                 raise
@@ -141,25 +143,26 @@ class Sampling:
 
     def _sample(self, c: int, s: int, step: int, measured: Array) -> tuple[float, Array, Any]:
         """Time, measurements and state that the law of controller `c` receives at sample `s`."""
-        return float(self.steps.begin[step]), measured, self.samples[c][s - 1][3] if s else self.started[c]
+        return float(self.steps.begin[step]), measured, self.samples[c][s - 1][3] if s else self.initial_states[c]
 
     def _repeat(self, c: int, s: int) -> None:
-        """Ask a law again for the sample before number `s`, or for the first one, and refuse a law that answers
-        otherwise: it keeps a state of its own.
+        """Ask a law again for the sample before number `s`, or for the first one.
+
+        A law that answers otherwise keeps a state of its own, and is refused.
         """
         self.repeated.add((c, s))
         before = max(s - 1, 0)
         measured, asked, _, after = self.samples[c][before]
-        sample = self._sample(c, before, int(np.argmax(self.taken[c] == before)), measured)
+        sample = self._sample(c, before, int(np.argmax(self.sample_numbers[c] == before)), measured)
         self.controllers.refuse_memory(c, *sample, (asked, after))
 
-    def stopped(self, step: int) -> None:
-        """Forget a failure unless it is of the step where the run ended: an earlier iterate may have caused it."""
+    def forget_failure(self, step: int) -> None:
+        """Forget a failure that is not of the step where the run ended: an earlier iterate may have caused it."""
         if self.failure is not None and self.failure[0] != step:
             self.failure = None
 
-    def sampled(self, c: int) -> tuple[Array, ...]:
-        """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
+    def sample_arrays(self, c: int) -> tuple[Array, ...]:
+        """Return all measurements (s, k) of a controller, and its commands (s, m) as asked and as limited."""
         return tuple(map(np.stack, tuple(zip(*self.samples[c], strict=True))[:3]))
 
     def residual_slopes(self, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
@@ -170,43 +173,46 @@ class Sampling:
         """Derivatives (t, k, m), by complex steps, of a function (t, k) of states and inputs by the commands."""
         count = self.held.shape[1]
         units = np.broadcast_to(1j * STEP * np.eye(count)[:, None], (count, len(q), count))
-        values = function(q, qd, qdd, self.controllers.driven(inputs, units))
+        values = function(q, qd, qdd, self.controllers.add_commands(inputs, units))
         return np.moveaxis(np.broadcast_to(values, (count, *values.shape[-2:])).imag, 0, -1) / STEP
 
-    def measured(self, c: int, q: Array, qd: Array, inputs: Any) -> Array:
-        """Measurements (t, k) of controller `c` at states and inputs, which include the commands held until then."""
-        qdd = accelerations(self.residual, q, qd, inputs) if self.controllers.accelerates(c) else 0 * q
-        return self.controllers.measured(c, q, qd, qdd, inputs)
+    def measure(self, c: int, q: Array, qd: Array, inputs: Any) -> Array:
+        """Return the measurements (t, k) of controller `c` at states and inputs.
+
+        The inputs include the commands that were held until then.
+        """
+        qdd = accelerations(self.residual, q, qd, inputs) if self.controllers.measures_accelerations(c) else 0 * q
+        return self.controllers.measure(c, q, qd, qdd, inputs)
 
     def measurement_slopes(self, c: int, q: Array, qd: Array, inputs: Any) -> tuple[Array, Array | None]:
-        """Derivatives of measurements with respect to (q, q̇), (t, k, 2 n), and to the commands that acted before, (t,
-        k, m).
+        """Return the derivatives of measurements with respect to (q, q̇) and to the commands that acted before.
 
-        The latter are None unless accelerations are measured: positions and rates do not follow a command at once.
+        They are (t, k, 2 n) and (t, k, m). The latter are None unless accelerations are measured: positions and rates
+        do not follow a command at once.
         """
-        accelerates = self.controllers.accelerates(c)
-        qdd = accelerations(self.residual, q, qd, inputs) if accelerates else 0 * q
-        measured = partial(self.controllers.measured, c)
-        by_place, by_rate, by_change = slopes(measured, q, qd, qdd, inputs)
+        has_accelerations = self.controllers.measures_accelerations(c)
+        qdd = accelerations(self.residual, q, qd, inputs) if has_accelerations else 0 * q
+        measure = partial(self.controllers.measure, c)
+        by_place, by_rate, by_change = slopes(measure, q, qd, qdd, inputs)
         slope = np.concatenate([by_place, by_rate], axis=-1)
-        if not accelerates:
+        if not has_accelerations:
             return slope, None
         # M δq̈ = −(K δq + C δq̇ + the derivatives by what is commanded).
         k, damping, mass = slopes(self.residual, q, qd, qdd, inputs)
         rest = np.concatenate([k, damping, self.residual_slopes(q, qd, qdd, inputs)], axis=-1)
-        by_state, by_command = np.split(by_change @ solved(mass, -rest), [slope.shape[-1]], axis=-1)
-        direct = self._command_slopes(measured, q, qd, qdd, inputs)
+        by_state, by_command = np.split(by_change @ solve_systems(mass, -rest), [slope.shape[-1]], axis=-1)
+        direct = self._command_slopes(measure, q, qd, qdd, inputs)
         return slope + by_state, by_command + direct
 
 
 def sampling_of(equations: NonlinearEquations, steps: Steps) -> Sampling | None:
-    """Samples, yet to be taken, of the controllers of some equations at given steps; None without any."""
+    """Return the samples that controllers of equations have to take at some steps; None without controllers."""
     if equations.controllers is None:
         return None
     return Sampling(equations.controllers, equations.residual, equations.drive, steps)
 
 
-class Held:
+class HeldCommands:
     """The commands that act in the steps of a window, `u` (t, m), corrected with its states."""
 
     def __init__(self, sampling: Sampling, first: int, count: int) -> None:
@@ -214,14 +220,14 @@ class Held:
         self.sampling, self.first = sampling, first
         sampling.hold(first + count)
         self.u = sampling.held[first : first + count].copy()
-        self.before = sampling.held[first - 1] if first else 0 * self.u[0]
+        self.previous_commands = sampling.held[first - 1] if first else 0 * self.u[0]
         self.change = np.zeros_like(self.u)
-        self.settled = False
+        self.is_settled = False
         # Samples due in each step: controller, number in the window, number in the run.
         self.due: list[list[tuple[int, int, int]]] = [[] for _ in self.u]
         # By controllers: steps of the window with a sample, and the inputs there without commands.
         self.samples, self.inputs = {}, {}
-        for c, taken in enumerate(sampling.taken):
+        for c, taken in enumerate(sampling.sample_numbers):
             steps = np.flatnonzero(taken[first : first + count] >= 0)
             if len(steps):
                 self.samples[c], self.inputs[c] = steps, sampling.drive(sampling.steps.begin[first + steps])
@@ -234,21 +240,22 @@ class Held:
 
     def measure(self, z: Array) -> None:
         """Measure at the states z (t, m, n) of the iterate."""
-        self.values = self._evaluate_samples(self.sampling.measured, z)
+        self.values = self._evaluate_samples(self.sampling.measure, z)
 
     def _evaluate_samples(self, function: Any, z: Array) -> dict[int, Any]:
-        """Evaluate a function of a controller, q, q̇ and inputs at the samples of each controller, under the commands
-        that acted before; return the values by the controllers' numbers.
+        """Evaluate a function of a controller, q, q̇ and inputs at the samples of each controller.
+
+        The commands are those that acted before a sample. The values are returned by the controllers' numbers.
         """
-        before, driven = np.concatenate([self.before[None], self.u]), self.sampling.controllers.driven
+        before = np.concatenate([self.previous_commands[None], self.u])
         values = {}
         for c, steps in self.samples.items():
-            values[c] = function(c, z[steps, 0], z[steps, 1], driven(self.inputs[c], before[steps]))
+            inputs = self.sampling.controllers.add_commands(self.inputs[c], before[steps])
+            values[c] = function(c, z[steps, 0], z[steps, 1], inputs)
         return values
 
     def push(self, inverse: Array, t: Any, onto: Array) -> None:
-        """Compute what a change of commands does: it changes accelerations by −J⁻¹ ∂r/∂u and the next z by −d J⁻¹
-        ∂r/∂u.
+        """Compute the effect of a change of commands: −J⁻¹ ∂r/∂u on accelerations, and −d J⁻¹ ∂r/∂u on the next z.
 
         `inverse` is J⁻¹, d that of the tableau `t`, and `onto` ∂r/∂u (t s, n, m).
         """
@@ -257,7 +264,7 @@ class Held:
         by_stages = t.d @ self.answer.reshape(count, -1, n * onto.shape[-1])
         self.step = -by_stages.reshape(count, -1, onto.shape[-1])
 
-    def sampled(self, k: int, moved: Array) -> Array:
+    def take_samples(self, k: int, moved: Array) -> Array:
         """Take the samples at the beginning of step `k` of the window, whose state is to change by `moved` (m n,).
 
         Returns the change (m n,) of the next state by the change of the commands. A sample is measured to first order
@@ -276,11 +283,11 @@ class Held:
             self.change[k] = self.sampling.held[step] - self.u[k]
         return self.step[k].dot(self.change[k])
 
-    def changed(self, shape: tuple[int, ...]) -> Array:
-        """Hold the new commands; return the change of the stages' accelerations, to be subtracted from these."""
+    def apply_change(self, shape: tuple[int, ...]) -> Array:
+        """Hold the new commands, and return the change of the stages' accelerations, to be subtracted from these."""
         self.u = self.u + self.change
         return (self.answer @ self.change[..., None]).reshape(shape)
 
-    def driven(self, inputs: Any, stages: int) -> Any:
-        """Inputs (t s, ...) at all stages with the commands."""
-        return self.sampling.controllers.driven(inputs, np.repeat(self.u, stages, axis=0))
+    def add_commands(self, inputs: Any, stages: int) -> Any:
+        """Return the inputs (t s, ...) at all stages with the commands added."""
+        return self.sampling.controllers.add_commands(inputs, np.repeat(self.u, stages, axis=0))

@@ -30,8 +30,10 @@ from gbeam.numerics.eigen import symmetric, symmetric_modes
 
 @record
 class Tableau:
-    """A scheme at one length of step, or at several on a leading axis: w (s, m), c (s, s), g (m, m), d (m, s), q and q̇
-    at the end (2, m), (2, s), first z of the initial q, q̇, q̈ (m, 3).
+    """Coefficients of a scheme at one length of step, or at several on a leading axis.
+
+    Those of the stages are w (s, m) and c (s, s), those of the next z are g (m, m) and d (m, s). `end_z` (2, m) and
+    `end_x` (2, s) give q and q̇ at the end of a step, `initial` (m, 3) gives z from q, q̇ and q̈ at the start.
     """
 
     w_q: Floats
@@ -42,7 +44,7 @@ class Tableau:
     d: Floats
     end_z: Floats
     end_x: Floats
-    first: Floats
+    initial: Floats
 
     def jacobians(self, k: Any, c: Any, m: Any) -> tuple[Any, Any]:
         """Derivatives of the residuals of a step's stages, from K, C and M (1 or t, s, n, n) at the stages.
@@ -102,7 +104,7 @@ def powers_of_step(m: int, stages: int) -> dict[str, NDArray[np.int64]]:
         "d": x - k[:, None],
         "end_z": k - pair,
         "end_x": x - pair,
-        "first": np.arange(3) - k[:, None],
+        "initial": np.arange(3) - k[:, None],
     }
 
 
@@ -144,7 +146,7 @@ def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: flo
         d=rows[:m, 3:],
         end_z=np.eye(2, m),
         end_x=np.concatenate([c_q, c_v]),
-        first=first[:m],
+        initial=first[:m],
     )
     return Scheme(name, 2, (1.0,), unit)
 
@@ -193,7 +195,7 @@ def gauss() -> Scheme:
         d=d,
         end_z=g,
         end_x=d,
-        first=np.eye(2, 3),
+        initial=np.eye(2, 3),
     )
     return Scheme("gauss", 4, (float(c[0]), float(c[1])), unit, _gauss_exponent)
 
@@ -211,25 +213,29 @@ def _gauss_exponent(z: Complex) -> Complex:
 FITTED = 2.0  # rad in a step, up to which a mode is fitted; a faster one takes what that one does
 
 
-def added(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floats, Floats]:
-    """Matrices (n, n) that steps of a length (s) add to M and C; zero of a scheme that does not fit."""
+def fitting_terms(equations: LinearEquations, scheme: Scheme, step: float) -> tuple[Floats, Floats]:
+    """Matrices (n, n) that fit steps of a length, s, to the modes when added to M and C.
+
+    They are zero for a scheme that does not fit its steps.
+    """
     if scheme.exponent is None or equations.rest is None:
         nothing = np.zeros(np.shape(equations.mass))
         return nothing, nothing
     return to_modes(scheme.exponent, step, equations.mass, *equations.rest)
 
 
-def stepped(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
-    """Residual that steps solve, of `n` coordinates: fitted to the modes at q = 0.
+def fitted_residual(equations: NonlinearEquations, scheme: Scheme, steps: Any, n: int) -> Any:
+    """Return the residual that steps solve, of `n` coordinates, fitted to the modes at q = 0.
 
-    It is the equations' own where these do not keep their modes, where the scheme does not fit steps, and where JAX
-    traces the residual.
+    It is the equations' own residual where these do not keep their modes, where the scheme does not fit steps, and
+    where JAX traces the residual.
     """
     residual = equations.residual
-    if scheme.exponent is None or equations.idle is None or holds_jax(residual):
+    if scheme.exponent is None or equations.idle_inputs is None or holds_jax(residual):
         return residual
     zero = np.zeros((1, n))
-    stiffness, damping, mass = (symmetric(slope[0]) for slope in slopes(residual, zero, zero, zero, equations.idle))
+    at_rest = slopes(residual, zero, zero, zero, equations.idle_inputs)
+    stiffness, damping, mass = (symmetric(slope[0]) for slope in at_rest)
     return Fitted(residual, *to_modes(scheme.exponent, steps.longest, mass, damping, stiffness))
 
 

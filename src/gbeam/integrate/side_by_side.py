@@ -22,7 +22,7 @@ from gbeam.arrays.namespace import Array, namespace
 from gbeam.integrate import newton
 from gbeam.integrate.equations import Fitted, LinearEquations, LinearTerms, NonlinearEquations, Trajectory
 from gbeam.integrate.newton import chunks, stretches
-from gbeam.integrate.schemes import Scheme, Tableau, added, powers_of_step, to_modes
+from gbeam.integrate.schemes import Scheme, Tableau, fitting_terms, powers_of_step, to_modes
 from gbeam.integrate.steps import Steps
 from gbeam.numerics.eigen import symmetric
 
@@ -158,13 +158,13 @@ class Run:
         magnitude = ceil(log(len(steps), NEARLY))  # equal for numbers of steps that are nearly equal
         if isinstance(self.equations, NonlinearEquations):
             leaves, form = self.residual
-            return "nonlinear", form, *map(np.shape, leaves), self.equations.idle is None, magnitude
+            return "nonlinear", form, *map(np.shape, leaves), self.equations.idle_inputs is None, magnitude
         if self.terms is None or (self.scheme.ends and steps.anew.any()):
             return None  # its equations are no sums of terms, or its steps start anew at times of its own
         return "linear", len(self.q), magnitude, self.parts
 
     @property
-    def linear(self) -> bool:
+    def is_linear(self) -> bool:
         """True if its equations are linear."""
         return isinstance(self.equations, LinearEquations)
 
@@ -185,7 +185,7 @@ class Run:
         """Inputs (1 + t s, ...) of linear equations: at the start, at stages, and at ends that are no stages."""
         steps, offsets = self.steps, self.scheme.offsets
         times = [steps.times(offset) for offset in offsets] + ([] if self.scheme.ends else [steps.end])
-        return self.equations.drive(np.append(steps.first[:1], np.stack(times, axis=1)))
+        return self.equations.drive(np.append(steps.drive_begin[:1], np.stack(times, axis=1)))
 
     @cached_property
     def features(self) -> Array:
@@ -253,11 +253,11 @@ def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     mass, q, qd = _stacked([(e.mass, run.q, run.qd) for e, run in zip(equations, runs, strict=True)], axis=-1)
     # Terms that fit steps to the runs' modes.
     mass_terms, damping = _stacked(
-        [added(e, scheme, run.steps.longest) for e, run in zip(equations, runs, strict=True)], -1
+        [fitting_terms(e, scheme, run.steps.longest) for e, run in zip(equations, runs, strict=True)], -1
     )
     inverse = np.moveaxis(np.linalg.inv(np.moveaxis(mass, -1, 0)), 0, -1)
     qdd = accelerations(inverse, terms, features[0], parts, q, qd)
-    z = np.einsum("bmk,knb->mnb", scheme.tableau(lengths[0]).first, np.stack([q, qd, qdd]))
+    z = np.einsum("bmk,knb->mnb", scheme.tableau(lengths[0]).initial, np.stack([q, qd, qdd]))
     histories = np.empty((3, len(runs), count + 1, len(q)))
     histories[:, :, 0] = np.moveaxis(np.stack([q, qd, qdd]), -1, 1)
     features = features[1:].reshape(count, stages, *features.shape[1:])
@@ -309,13 +309,14 @@ def _residuals(runs: Sequence[Run]) -> Residuals:
 
 
 def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
-    """The residuals that steps solve: fitted to their modes, as :func:`gbeam.integrate.schemes.stepped` does."""
+    """Fit the residuals of runs to their modes, as :func:`gbeam.integrate.schemes.fitted_residual` does for one."""
     exponent, equations = runs[0].scheme.exponent, [cast(NonlinearEquations, run.equations) for run in runs]
-    if exponent is None or equations[0].idle is None:
+    if exponent is None or equations[0].idle_inputs is None:
         return residuals
     form, axes, leaves = residuals
     zero = np.zeros((len(runs), len(runs[0].q)))
-    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *(run_equations.idle for run_equations in equations))
+    idle_inputs = (run_equations.idle_inputs for run_equations in equations)
+    idle = jax.tree.map(lambda *leaves: np.concatenate(leaves), *idle_inputs)
     k, c, m = (symmetric(np.asarray(slope)) for slope in _slopes(*residuals, zero, zero, zero, idle))
     mass_terms, damping_terms = to_modes(exponent, [run.steps.longest for run in runs], m, c, k)
     leaves, form = jax.tree.flatten(Fitted(jax.tree.unflatten(form, leaves), mass_terms, damping_terms))
@@ -335,9 +336,9 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
 
     def begin_steps(q: Array, qd: Array, qdd: Array, lengths: Sequence[Any]) -> newton.Carry:
         x = np.broadcast_to(qdd[:, None], (len(q), len(scheme.offsets), q.shape[1]))
-        return newton.Carry(scheme.tableau(np.array(lengths)).first @ np.stack([q, qd, qdd], axis=1), x, x)
+        return newton.Carry(scheme.tableau(np.array(lengths)).initial @ np.stack([q, qd, qdd], axis=1), x, x)
 
-    qdd = accelerations([run.steps.first[0] for run in runs], q, qd)
+    qdd = accelerations([run.steps.drive_begin[0] for run in runs], q, qd)
     carry = begin_steps(q, qd, qdd, [run.steps.length[0] for run in runs])
     pieces, sound = [[x[:, None] for x in (q, qd, qdd)]], np.ones(len(runs), dtype=bool)
     counted = [np.ones((len(runs), 1), dtype=bool)]  # flags of the states that are no fillings
@@ -351,7 +352,7 @@ def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
         counts = np.stack([chunk.counted for chunk in now]) & going[:, None]  # of the steps, without fillings
         ends = [chunk.end for chunk in now]
         tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in now])
-        last, count = np.stack([chunk.last for chunk in now]), max(chunk.count for chunk in now)
+        last, count = np.stack([chunk.last_counted for chunk in now]), max(chunk.count for chunk in now)
         carry, history = _steps(*residual, tableau, carry, inputs, at_ends, last, count)
         *piece, error = (np.asarray(values) for values in history)
         sound &= ((error <= newton.ACCEPTED) | ~counts).all(axis=1)  # NaN is not

@@ -55,22 +55,24 @@ class Corners:
         return Corners(time, jump)
 
     def felt_by(self, scheme: Scheme) -> Corners:
-        """The corners at which a scheme's steps have to end: all, or the jumps alone for schemes of second order."""
+        """Return the corners at which a scheme's steps have to end: all, or for schemes of second order the jumps."""
         return self if scheme.order > 2 else Corners(self.time[self.jump], self.jump[self.jump])
 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps in order, (t,) each: times at which they begin and end, and `first` and `last`, at which the drive is read,
-    just inside of a jump. `kept` steps end at a time of output, `jump` flags a jump at the end, and after `anew` the
-    scheme starts anew. `resume` and `following` are `first` and `length` of the next step.
+    """Steps in order, (t,) each: the times at which they begin and end, and their lengths.
+
+    The drive is read from `drive_begin` to `drive_end`, which are just inside a step where the drive jumps. Steps that
+    are `kept` end at a time of output; `jump` flags a jump at the end, and after `anew` the scheme starts anew.
+    `resume` is `drive_begin` of the next step, `following` its length.
     """
 
     begin: Floats
     length: Floats
     end: Floats
-    first: Floats
-    last: Floats
+    drive_begin: Floats
+    drive_end: Floats
     kept: Flags
     jump: Flags
     anew: Flags
@@ -84,10 +86,10 @@ class Steps:
         return Steps(*(getattr(self, field.name)[which] for field in dataclasses.fields(self)))
 
     def times(self, offset: float) -> Floats:
-        """Times a share `offset` of the way through the steps, s."""
+        """Times, s, at a share `offset` of the way through the steps."""
         if offset == 1.0:
-            return self.last
-        return np.clip(self.begin + offset * self.length, self.first, self.last)
+            return self.drive_end
+        return np.clip(self.begin + offset * self.length, self.drive_begin, self.drive_end)
 
     @property
     def longest(self) -> float:
@@ -100,9 +102,10 @@ class Steps:
         return bool((self.length == self.length[0]).all() and not self.anew.any())
 
 
-def fitted(start: float, step: float, count: int, corners: Corners | None = None) -> Steps:
-    """Return `count` steps of length `step`, split at the corners within them. Their times are products of the step, so
-    that they do not drift.
+def make_steps(start: float, step: float, count: int, corners: Corners | None = None) -> Steps:
+    """Return `count` steps of length `step`, split at the corners within them.
+
+    Their times are products of the step, so that they do not drift.
     """
     if count > FEW:
         return _fitted(start, step, count, corners)
@@ -110,7 +113,7 @@ def fitted(start: float, step: float, count: int, corners: Corners | None = None
     return _shared(start, step, count, key)
 
 
-def joined(parts: Sequence[Steps]) -> Steps:
+def join_steps(parts: Sequence[Steps]) -> Steps:
     """Join steps of parts that follow one another. A scheme starts anew where their lengths differ."""
     if len(parts) == 1:
         return parts[0]
@@ -118,20 +121,20 @@ def joined(parts: Sequence[Steps]) -> Steps:
     whole = Steps(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
     last = np.cumsum([len(part) for part in parts[:-1]]) - 1
     following, resume = whole.following.copy(), whole.resume.copy()
-    following[last], resume[last] = whole.length[last + 1], whole.first[last + 1]
+    following[last], resume[last] = whole.length[last + 1], whole.drive_begin[last + 1]
     anew = whole.jump | (following != whole.length)
     return dataclasses.replace(whole, following=following, resume=resume, anew=anew)
 
 
 @lru_cache(maxsize=8)
 def _shared(start: float, step: float, count: int, corners: tuple[bytes, bytes] | None) -> Steps:
-    """Steps that have been made before, by numbers and the bytes of their corners, which can be keys of a cache."""
+    """Return steps from a cache, whose keys are numbers and the bytes of the corners."""
     restored = None if corners is None else Corners(np.frombuffer(corners[0]), np.frombuffer(corners[1], dtype=bool))
     return _fitted(start, step, count, restored)
 
 
 def _fitted(start: float, step: float, count: int, corners: Corners | None) -> Steps:
-    """Steps between equidistant nodes, cut at the corners that lie off the nodes."""
+    """Make steps between equidistant nodes, and cut them at the corners that lie off the nodes."""
     nodes = np.asarray(start + step * np.arange(count + 1), dtype=np.float64)
     if corners is None or not len(corners.time):
         ones, length = np.ones(count, dtype=bool), np.full(count, step)

@@ -45,8 +45,10 @@ def tangent(
     shape = (len(steps) + 1, *q.shape)
     histories = np.empty(shape), np.empty(shape), np.empty(shape)
     histories[0][0], histories[1][0] = q, qd
-    histories[2][0] = _accelerations(system, steps.first[:1], run, [0], q[None], qd[None])[0]
-    z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[0]).first, np.stack([history[0] for history in histories]))
+    histories[2][0] = _accelerations(system, steps.drive_begin[:1], run, [0], q[None], qd[None])[0]
+    z = np.einsum(
+        "ij,jnp->inp", scheme.tableau(steps.length[0]).initial, np.stack([history[0] for history in histories])
+    )
     # A chunk ends where the scheme starts anew.
     ends = np.append(np.flatnonzero(steps.anew[:-1]) + 1, len(steps)) if scheme.ends else [len(steps)]
     begin = 0
@@ -59,7 +61,7 @@ def tangent(
         if end < len(steps):
             q, qd = histories[0][end], histories[1][end]
             qdd = _accelerations(system, steps.resume[[end - 1]], run, [end], q[None], qd[None])[0]
-            z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[end]).first, np.stack([q, qd, qdd]))
+            z = np.einsum("ij,jnp->inp", scheme.tableau(steps.length[end]).initial, np.stack([q, qd, qdd]))
         begin = end
     return histories
 

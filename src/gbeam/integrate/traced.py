@@ -23,10 +23,10 @@ import numpy as np
 import gbeam.arrays.jax_setup  # noqa: F401
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
-from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact, slopes
+from gbeam.integrate.equations import Demanded, Fitted, NonlinearEquations, exact_residual, slopes
 from gbeam.integrate.newton import compiled_accelerations
 from gbeam.integrate.sampled import Sampling, Uncontrolled, sampling_of
-from gbeam.integrate.schemes import Scheme, stepped
+from gbeam.integrate.schemes import Scheme, fitted_residual
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.windows import windows
 
@@ -72,19 +72,20 @@ class Samples(NamedTuple):
 class TracedLoop:
     """The samples of controllers at given steps."""
 
-    begun, failure = True, None
+    has_begun, failure = True, None
 
     def __init__(self, controllers: Any, steps: Steps) -> None:
         """Plan the samples, as :class:`gbeam.integrate.sampled.Sampling` does, and make the laws at their times."""
         plan = Sampling(controllers, None, None, steps)
-        self.controllers, self.steps, self.taken = controllers, steps, plan.taken
-        self.at = [np.flatnonzero(taken >= 0) for taken in plan.taken]  # steps at whose beginning a sample is taken
+        self.controllers, self.steps, self.sample_numbers = controllers, steps, plan.sample_numbers
+        # Steps at whose beginning a sample is taken.
+        self.sample_steps = [np.flatnonzero(taken >= 0) for taken in plan.sample_numbers]
         numbers = np.arange(len(steps))
         self.active = [
             np.searchsorted(since[: len(at)], numbers, side="right") - 1
-            for since, at in zip(plan.since, self.at, strict=True)
+            for since, at in zip(plan.acting_from, self.sample_steps, strict=True)
         ]  # of a step: the sample that acts, −1 before the first does
-        self.laws = controllers.laws([steps.begin[at] for at in self.at])
+        self.laws = controllers.laws([steps.begin[at] for at in self.sample_steps])
         self.values: list[Samples] = []
 
     @property
@@ -93,21 +94,24 @@ class TracedLoop:
         return [(law.parameters, law.references, law.start) for law in self.laws]
 
     def laws_of(self, inputs: Any) -> list[TracedLaw]:
-        """The laws with other parameters, references and first states, `inputs` as above."""
+        """Return the laws with other parameters, references and first states, which are the `inputs`."""
         return [TracedLaw(law.times, law.function, *values) for law, values in zip(self.laws, inputs, strict=True)]
 
     @property
     def shapes(self) -> list[Samples]:
         """Shapes of the samples of each controller."""
         shapes = []
-        for steps, law, part in zip(self.at, self.laws, self.controllers.drives, strict=True):
+        for steps, law, part in zip(self.sample_steps, self.laws, self.controllers.drives, strict=True):
             commands = part.stop - part.start
             widths = (law.references.shape[1], commands, commands, len(law.start))
             shapes.append(Samples(*(jax.ShapeDtypeStruct((len(steps), width), float) for width in widths)))
         return shapes
 
-    def recorded(self, sampling: Sampling, inputs: Any) -> list[Samples]:
-        """Samples of each controller as arrays, NaN if not taken. `inputs` have the laws' first states."""
+    def record_samples(self, sampling: Sampling, inputs: Any) -> list[Samples]:
+        """Return the samples of each controller as arrays, NaN if not taken.
+
+        `inputs` have the laws' first states.
+        """
         recorded = []
         for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
             arrays = Samples(*(np.full(field.shape, np.nan) for field in shapes))
@@ -118,7 +122,7 @@ class TracedLoop:
             recorded.append(arrays)
         return recorded
 
-    def sampled(self, c: int) -> tuple[Array, ...]:
+    def sample_arrays(self, c: int) -> tuple[Array, ...]:
         """Measurements (s, k) and commands (s, m) of a controller, as asked and as limited."""
         return self.values[c][:3]
 
@@ -140,7 +144,7 @@ class TracedLoop:
         """
         held = self.acting_commands(samples)
         before = jnp.concatenate([0 * held[:1], held[:-1]])
-        laws = zip(self.at, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
+        laws = zip(self.sample_steps, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
         parts = []
         for c, (at, law, by_law, values) in enumerate(laws):
             state = [part[at] for part in run[:2]]
@@ -162,9 +166,10 @@ class TracedLoop:
 
         def measured(residual: Any, driven: Any) -> Array:
             """Measurements (s, k) as a function of what JAX traces; the states of the run are constants."""
-            inputs, controllers = self.controllers.driven(driven, before), self.controllers.rebuild(exact(residual))
-            qdd = compiled_accelerations(residual, q, qd, inputs) if controllers.accelerates(c) else 0 * q
-            return controllers.measured(c, q, qd, qdd, inputs)
+            inputs = self.controllers.add_commands(driven, before)
+            controllers = self.controllers.rebuild(exact_residual(residual))
+            qdd = compiled_accelerations(residual, q, qd, inputs) if controllers.measures_accelerations(c) else 0 * q
+            return controllers.measure(c, q, qd, qdd, inputs)
 
         values, direct = jax.jvp(measured, (residual, driven), (by_residual, by_driven))
         shapes = (*values.shape, 2 * q.shape[1]), (*values.shape, before.shape[1])
@@ -172,10 +177,10 @@ class TracedLoop:
         def host(*arguments: Any) -> Any:
             """Derivatives by states and by commands, which NumPy computes outside of JAX's programs."""
             q, qd, before, residual, driven = jax.tree.map(np.asarray, arguments)
-            controllers = self.controllers.rebuild(exact(residual))
+            controllers = self.controllers.rebuild(exact_residual(residual))
             sampling = Sampling(controllers, residual, None, self.steps)
             with np.errstate(all="ignore"):
-                by_state, by_command = sampling.measurement_slopes(c, q, qd, controllers.driven(driven, before))
+                by_state, by_command = sampling.measurement_slopes(c, q, qd, controllers.add_commands(driven, before))
             return by_state, np.zeros(shapes[1]) if by_command is None else by_command
 
         result = tuple(jax.ShapeDtypeStruct(shape, float) for shape in shapes)
@@ -209,14 +214,14 @@ class _Changes:
 
     def __init__(self, loop: TracedLoop, parts: list[tuple[Array, ...]]) -> None:
         """Arrange the derivatives by steps, and find how many commands of each controller wait until they act."""
-        self.drives, self.at = loop.controllers.drives, loop.at
+        self.drives, self.sample_steps = loop.controllers.drives, loop.sample_steps
         self.starts = [part[-1] for part in parts]
         # Commands wait in a ring, as long as the latest is ahead of the one that acts.
-        newest = [np.maximum.accumulate(taken) for taken in loop.taken]
+        newest = [np.maximum.accumulate(taken) for taken in loop.sample_numbers]
         self.rings = [int((new - act).max()) + 1 for new, act in zip(newest, loop.active, strict=True)]
         self.by_step = [
             (taken, active, *(values[np.maximum(new, 0)] for values in part[:-1]))
-            for taken, active, new, part in zip(loop.taken, loop.active, newest, parts, strict=True)
+            for taken, active, new, part in zip(loop.sample_numbers, loop.active, newest, parts, strict=True)
         ]
 
     @property
@@ -257,10 +262,12 @@ def traced(
     """
     ends = [] if scheme.ends else [steps.end]
     loop = TracedLoop(equations.controllers or Uncontrolled(), steps)
-    times = np.concatenate([steps.first[:1], *(steps.times(offset) for offset in scheme.offsets), *ends, steps.begin])
+    times = np.concatenate(
+        [steps.drive_begin[:1], *(steps.times(offset) for offset in scheme.offsets), *ends, steps.begin]
+    )
     steps = replace(steps, kept=np.ones(len(steps), dtype=bool))
     shape = (len(steps) + 1, len(q))
-    step_residual = stepped(equations, scheme, steps, len(q))
+    step_residual = fitted_residual(equations, scheme, steps, len(q))
 
     def solved(residual: Any, q: Any, qd: Any, driven: Any, inputs: Any) -> Any:
         """Histories (3, t + 1, n) and samples of a run, computed by NumPy outside of JAX's programs."""
@@ -274,7 +281,7 @@ def traced(
         untraced, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         laws = loop.laws_of(inputs)
         if laws:
-            untraced = replace(untraced, controllers=loop.controllers.rebuild(exact(residual), laws))
+            untraced = replace(untraced, controllers=loop.controllers.rebuild(exact_residual(residual), laws))
         samples = sampling_of(untraced, steps)
         with np.errstate(all="ignore"):  # of what is no number
             for *piece, _ in windows(untraced, scheme, q, qd, steps, samples):
@@ -282,7 +289,7 @@ def traced(
                 done += len(piece[0])
             if not scheme.ends:
                 out[2, :done] = Demanded(untraced, steps, out[0], out[1], samples)(np.arange(done))
-        return tuple(out), [] if samples is None else loop.recorded(samples, inputs)
+        return tuple(out), [] if samples is None else loop.record_samples(samples, inputs)
 
     @jax.custom_jvp
     def run(residual: Any, q: Array, qd: Array, driven: Any, inputs: Any) -> Any:
@@ -312,7 +319,7 @@ def _changes(
     """
     (run, samples), (loop, *laws), t = results, in_loop, scheme.tableau(steps.length)
     (q, qd, qdd), (residual, drives), (by_residual, by_drives) = run, primals, tangents
-    count, n, stages, first = len(steps), q.shape[1], len(scheme.offsets), scheme.tableau(steps.length[0]).first
+    count, n, stages, first = len(steps), q.shape[1], len(scheme.offsets), scheme.tableau(steps.length[0]).initial
     x: Array
     z: Array
     if scheme.ends:
@@ -332,13 +339,13 @@ def _changes(
         [jax.tree.map(lambda leaf, part=part: leaf[part], values) for values in (drives, by_drives)]
         for part in (slice(len(states[0])), slice(len(states[0]), None))
     )
-    held, driven_by = loop.acting_commands(samples), loop.controllers.driven
+    held, add_commands = loop.acting_commands(samples), loop.controllers.add_commands
     commands = jnp.concatenate([0 * held[:1], *[held] * ((len(states[0]) - 1) // count)])
     follow = loop.changes((residual, begun[0]), (by_residual, begun[1]), run, *laws, samples)
 
     def host(*arguments: Any) -> Any:
         (q, qd, qdd), residual, driven, commands = jax.tree.map(np.asarray, arguments)
-        inputs = driven_by(driven, commands)
+        inputs = add_commands(driven, commands)
         with np.errstate(all="ignore"):
             onto = Sampling(loop.controllers, residual, None, steps).residual_slopes(q, qd, qdd, inputs)
             return (*slopes(residual, q, qd, qdd, inputs), onto)
@@ -348,7 +355,7 @@ def _changes(
     arguments = states, residual, driven[0], commands
     *slope, onto = jax.pure_callback(host, (*square, wide), *arguments, vmap_method="sequential")
     _, direct = jax.jvp(
-        lambda residual, driven: residual(*states, driven_by(driven, commands)),
+        lambda residual, driven: residual(*states, add_commands(driven, commands)),
         (residual, driven[0]),
         (by_residual, driven[1]),
     )
@@ -386,4 +393,6 @@ def _changes(
     at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes, du)
     before = dq[None], dqd[None], dqdd
     histories = tuple(jnp.concatenate(pair) for pair in zip(before, (*changes, at_ends), strict=True))
-    return histories, [Samples(*(values[k] for values in of_law)) for of_law, k in zip(taken, follow.at, strict=True)]
+    return histories, [
+        Samples(*(values[k] for values in of_law)) for of_law, k in zip(taken, follow.sample_steps, strict=True)
+    ]

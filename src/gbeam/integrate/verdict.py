@@ -36,21 +36,26 @@ EARLIER = 0.01  # of the largest acceleration before a step, whose own may all v
 
 
 class Judgement(NamedTuple):
-    """Flags (t,) of steps that have converged, that shrink slowly, and that are lost: they stay far, or diverge."""
+    """Flags (t,) of steps that have converged, of steps whose corrections shrink slowly, and of steps that are lost.
 
-    converged: Flags
-    slow: Flags
-    lost: Flags
+    A step is lost that stays far from its solution, or diverges.
+    """
+
+    converged_steps: Flags
+    slow_steps: Flags
+    lost_steps: Flags
 
 
 class Verdict:
-    """Corrections of a window's steps, and what they say. Rows of `corrections` (5, t) are the size of a step's last
-    one, the same as a share of its accelerations, their number, the least factor by which one shrank by the same
-    derivatives, and the size of one that is rounding; `before` (t,) are the sizes of those before, `reach` (t,) that of
-    the accelerations. No rounding counts beyond `bound`.
+    """Record of the corrections of a window's steps, and judge of them.
+
+    The rows of `corrections` (5, t) are, of each step: the size of the last correction, this size as a share of the
+    step's accelerations, the number of corrections, the least factor by which one shrank by the same derivatives, and
+    the size of a correction that is rounding. `previous_sizes` (t,) are those of the corrections before the last,
+    `reach` (t,) is the size of the accelerations. No rounding counts beyond `bound`.
     """
 
-    before: Array
+    previous_sizes: Array
     reach: Array
     arrived: bool
 
@@ -90,25 +95,25 @@ class Verdict:
         return self.corrections[1]
 
     @property
-    def begun(self) -> bool:
+    def has_begun(self) -> bool:
         """True if a step has been corrected."""
         return bool(self.corrections[2].any())
 
     @property
-    def stuck(self) -> Flags:
+    def stuck_steps(self) -> Flags:
         """Flags (t,) of steps that many corrections have not made to shrink."""
         size, _, count, *_ = self.corrections
-        flags: Flags = (count >= STUCK) & ~(size <= SLOW * self.before)
+        flags: Flags = (count >= STUCK) & ~(size <= SLOW * self.previous_sizes)
         return flags
 
     @property
-    def fast(self) -> bool:
+    def shrinks_fast(self) -> bool:
         """True if the last correction of every step was much smaller than the one before."""
-        return bool((self.corrections[0] < FAST * self.before).all())
+        return bool((self.corrections[0] < FAST * self.previous_sizes).all())
 
     @property
-    def settled(self) -> bool:
-        """True if commands of controllers, which follow the states, change no more."""
+    def commands_settle(self) -> bool:
+        """True if the commands of controllers, which follow the states, change no more."""
         return bool((self.corrections[0] * QUICKEST <= SETTLED * self.reach).all())
 
     def record(self, size: Array, x: Array) -> None:
@@ -116,7 +121,7 @@ class Verdict:
 
         `arrived` becomes true if the last step has come near its solution by few corrections.
         """
-        self.before, was_near = self.corrections[0].copy(), self.last_is_near
+        self.previous_sizes, was_near = self.corrections[0].copy(), self.last_is_near
         self.reach = reach(x)
         self.corrections[0], self.corrections[1] = size, size / self.reach
         self.corrections[2] += 1
@@ -143,19 +148,19 @@ class Verdict:
         alone = len(size) == 1
         noise = np.minimum(rounding, self.bound) + CANCELLED * loads
         # By derivatives of another state corrections may shrink slowly without being rounding.
-        good = converged(size, self.before, self.reach, noise, fresh=fresh, quick=least <= FAST)
+        good = converged_steps(size, self.previous_sizes, self.reach, noise, fresh=fresh, quick=least <= FAST)
         doubtful = good & ~trusted & ~balanced
         good &= ~doubtful
-        factor = size / np.where(fresh | np.isinf(self.before), np.nan, self.before)
+        factor = size / np.where(fresh | np.isinf(self.previous_sizes), np.nan, self.previous_sizes)
         least[:] = np.fmin(least, factor)
-        slow = (~good & (count > 1) & ~(size <= SLOW * self.before)) | (alone & doubtful)
+        slow = (~good & (count > 1) & ~(size <= SLOW * self.previous_sizes)) | (alone & doubtful)
         far = ~(share <= MOVED)
         lost = ~np.isfinite(size) | (far & (count >= (ALONE if alone else LATE)))
         lost[0] |= count[0] >= ALONE
         return Judgement(good, slow, lost)
 
 
-def balanced(remaining: Array, forces: Array, loads: Array) -> Flags:
+def balanced_steps(remaining: Array, forces: Array, loads: Array) -> Flags:
     """Flags (t,) of steps in balance: their `remaining` forces are small beside the `forces` that cancel there, or no
     more than the rounding of the `loads`; (t, n) each.
     """
@@ -180,7 +185,7 @@ def shrinkage(size: Any, before: Any) -> Any:
     return xp.minimum(size / xp.maximum(before, 1e-300), 1.0)
 
 
-def converged(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Flags:
+def converged_steps(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Flags:
     """Flags (t,) of steps whose last correction, of a `size`, leaves an error below a tolerance and rounding, `noise`.
 
     Corrections are taken to shrink by a constant factor, size / before. By `fresh` derivatives this factor is unknown

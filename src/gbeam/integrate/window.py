@@ -16,7 +16,7 @@ from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.derivatives import Stages, products
 from gbeam.integrate.linear import recurrence
-from gbeam.integrate.sampled import Held, Sampling
+from gbeam.integrate.sampled import HeldCommands, Sampling
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.verdict import CANCELLED, ROUNDING
@@ -99,8 +99,8 @@ class Window:
         self.start, self.first, self.limit = x[-1, -1], self.first + count, LONGEST
         self._keep(slice(count, None))
 
-    def ended(self) -> tuple[Array, ...]:
-        """q, q̇ and, where the scheme has them, q̈ (t, n) at the ends of the steps that have left since the last call."""
+    def take_ends(self) -> tuple[Array, ...]:
+        """Return q, q̇ and, if the scheme has it, q̈ (t, n) at the ends of the steps that left since the last call."""
         ends = tuple(map(np.concatenate, zip(*self.done, strict=True)))
         self.done = []
         return ends
@@ -139,8 +139,8 @@ class Window:
         change = (by_residual + products(answer, by_step[:-1])).reshape(self.x.shape)
         commands = self._commands
         if commands is not None:
-            change = change + commands.changed(self.x.shape)
-            self.inputs = commands.driven(self.free, self.x.shape[1])
+            change = change + commands.apply_change(self.x.shape)
+            self.inputs = commands.add_commands(self.free, self.x.shape[1])
         by_state = by_step.reshape(self.z.shape)
         self.z += by_state
         self.x -= change
@@ -159,9 +159,9 @@ class Window:
         return np.asarray(np.abs(change).reshape(len(self), -1) / CANCELLED)
 
     @property
-    def _commands(self) -> Held | None:
+    def _commands(self) -> HeldCommands | None:
         """Commands to be corrected: none where they have settled."""
-        return None if self.held is None or self.held.settled else self.held
+        return None if self.held is None or self.held.is_settled else self.held
 
     def _place(self) -> None:
         """Set tableau, times and inputs of the steps under way. Drives are evaluated for `AHEAD` steps at once."""
@@ -183,9 +183,9 @@ class Window:
         self.times = self.all_times[under_way]
         self.inputs = self.free = each_leaf(lambda leaf: leaf[under_way], self.driven)
         if self.sampling is not None:
-            self.held = Held(self.sampling, self.first, len(length))
+            self.held = HeldCommands(self.sampling, self.first, len(length))
             self.held.begin(self.z[:-1])
-            self.inputs = self.held.driven(self.free, stages)
+            self.inputs = self.held.add_commands(self.free, stages)
 
     def _state_changes(self, step: Array, defect: Array) -> Array:
         """Changes δz (t + 1, m n) of the states by the recurrence δz₊ = S δz + defect, from zero.
@@ -205,7 +205,7 @@ class Window:
         commands.measure(self.z[:-1])
         maps = np.broadcast_to(step, (count, *step.shape[1:]))
         for k in range(count):
-            changes[k + 1] = maps[k].dot(changes[k]) + defect[k] + commands.sampled(k, changes[k])
+            changes[k + 1] = maps[k].dot(changes[k]) + defect[k] + commands.take_samples(k, changes[k])
         return changes
 
     def _shorten(self, inverse: Array, by_state: Array, change: Array) -> None:

@@ -17,11 +17,11 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array
 from gbeam.integrate.derivatives import Derivatives
-from gbeam.integrate.equations import NonlinearEquations, accelerations, exact
+from gbeam.integrate.equations import NonlinearEquations, accelerations, exact_residual
 from gbeam.integrate.sampled import Sampling
-from gbeam.integrate.schemes import Scheme, stepped
+from gbeam.integrate.schemes import Scheme, fitted_residual
 from gbeam.integrate.steps import Steps
-from gbeam.integrate.verdict import Judgement, Verdict, balanced
+from gbeam.integrate.verdict import Judgement, Verdict, balanced_steps
 from gbeam.integrate.window import Window
 
 Piece = tuple[Any, ...]
@@ -40,24 +40,24 @@ def windows(
         empty = np.zeros((1 + np.count_nonzero(steps.kept), 0))
         yield from ((piece, piece, piece, np.ones(len(piece), dtype=bool)) for piece in (empty[:1], empty[1:]))
         return
-    drive, residual = equations.drive, stepped(equations, scheme, steps, len(q))
+    drive, residual = equations.drive, fitted_residual(equations, scheme, steps, len(q))
 
     def acceleration(t: Any, q: Array, qd: Array) -> Array:
-        return accelerations(exact(residual), q[None], qd[None], drive(np.array([t])))[0]
+        return accelerations(exact_residual(residual), q[None], qd[None], drive(np.array([t])))[0]
 
     with np.errstate(all="ignore"):  # of iterates that diverge
-        qdd = acceleration(steps.first[0], q, qd)
+        qdd = acceleration(steps.drive_begin[0], q, qd)
     yield *(x[None] for x in (q, qd, qdd)[: 2 + scheme.ends]), np.array([True])
     window, begin = Window(residual, drive, scheme, steps, samples), 0
     solver = _Solver(window, Derivatives(residual, samples), Verdict())
     # A scheme whose last stage is the end of a step begins anew after a jump: no window goes beyond one.
     for end in np.append(np.flatnonzero(steps.anew[:-1]) + 1 if scheme.ends else [], len(steps)).astype(int):
-        solver.begin(scheme.tableau(steps.length[begin]).first @ np.stack([q, qd, qdd]), qdd)
+        solver.begin(scheme.tableau(steps.length[begin]).initial @ np.stack([q, qd, qdd]), qdd)
         while begin < end:
             with np.errstate(all="ignore"):
                 solved = solver.solve(end, min(end, begin + ENOUGH))
                 if window.first > begin:
-                    ended = window.ended()
+                    ended = window.take_ends()
                     q, qd = ended[0][-1], ended[1][-1]
                     if scheme.ends and window.first == end and steps.anew[end - 1]:
                         qdd, ended[2][-1] = (acceleration(time[end - 1], q, qd) for time in (steps.resume, steps.end))
@@ -65,7 +65,7 @@ def windows(
                     yield *(ends[kept] for ends in ended), np.ones(np.count_nonzero(kept), dtype=bool)
             if not solved:
                 if samples is not None:
-                    samples.stopped(window.first)
+                    samples.forget_failure(window.first)
                 yield *np.full((2 + scheme.ends, 1, len(qdd)), np.nan), np.array([False])
                 return
             begin = window.first
@@ -90,7 +90,7 @@ class _Solver:
         while self.window.first < enough:
             self._follow(end)
             judgement = self._correct()
-            good, lost = judgement.converged, judgement.lost
+            good, lost = judgement.converged_steps, judgement.lost_steps
             done = len(good) if good.all() else int(np.argmin(good))
             if done and (self.window.sampling is None or done == len(good)):
                 for part in self.parts:
@@ -104,7 +104,7 @@ class _Solver:
         """Append steps before `end`, if the last one is near its solution."""
         if len(self.window) and not self.verdict.last_is_near:
             return
-        added = self.window.room(end, single=self.derivatives.single)
+        added = self.window.room(end, single=self.derivatives.has_one_set)
         if added:
             for part in self.parts:
                 part.extend(added)
@@ -115,22 +115,22 @@ class _Solver:
         stages = window.stages()
         derivatives.renew(stages)
         derivatives.factor(stages, window.tableau, window.held)
-        forces, fresh, trusted = derivatives.forces(stages.states), derivatives.fresh, derivatives.trusted
-        if verdict.begun:  # a first correction is far larger than rounding
+        forces, fresh, trusted = derivatives.forces(stages.states), derivatives.fresh_steps, derivatives.trusted_steps
+        if verdict.has_begun:  # a first correction is far larger than rounding
             verdict.set_rounding(derivatives.accelerations(forces))
         verdict.record(window.correct(stages, derivatives.maps), window.x)
         if verdict.arrived:
             window.grow()
         if window.held is not None:
-            window.held.settled = verdict.settled
+            window.held.is_settled = verdict.commands_settle
         # The rounding of loads is computed only where corrections do not shrink: it costs two more residuals.
         loads, by_loads = 0 * forces, np.float64(0.0)
-        if verdict.stuck.any():
+        if verdict.stuck_steps.any():
             loads = window.loads(stages.states)
             by_loads = derivatives.accelerations(loads)
-        in_balance = balanced(window.residuals, forces, loads)
+        in_balance = balanced_steps(window.residuals, forces, loads)
         judgement = verdict.judge(by_loads, in_balance, fresh=fresh, trusted=trusted)
-        derivatives.grow_old(verdict.shares, judgement.slow, fast=verdict.fast)
+        derivatives.grow_old(verdict.shares, judgement.slow_steps, fast=verdict.shrinks_fast)
         return judgement
 
     def _withdraw(self, first: int) -> bool:

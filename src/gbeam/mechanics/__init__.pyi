@@ -51,4 +51,4 @@ from .tree.signals import signals_of as signals_of
 from .tree.steps import parameters_of_matrices as parameters_of_matrices
 from .tree.steps import rotation_by_parameters as rotation_by_parameters
 from .tree.steps import rotation_by_vector as rotation_by_vector
-from .tree.steps import vector_of as vector_of
+from .tree.steps import rotation_vector as rotation_vector

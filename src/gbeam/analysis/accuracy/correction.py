@@ -200,7 +200,7 @@ class Departures:
             equations, gauss(), first, rate, step=self.interval, count=count - 1, start=float(self.time[0])
         )
         static = -residual @ (stiff / square[~kept] @ stiff.T)  # of the modes that samples do not resolve
-        if not moved.whole:
+        if not moved.reached_end:
             return Correction(*np.full((3, *static.shape), np.nan))
         return Correction(moved.q @ phi.T + static, moved.qd @ phi.T, moved.qdd @ phi.T)
 

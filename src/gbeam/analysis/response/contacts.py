@@ -31,7 +31,7 @@ def creeping(
         return ()
     warnings = list[str]()
     for name, joint, link, q, qd in _states(system, run, inputs()):
-        values, rates = link.held_values(q, qd)
+        values, rates = link.spring_values(q, qd)
         for kind, friction in joint.frictions.items():
             k, driven, step = joint.rate_names.index(kind), kind in joint.rates, np.diff(run.time)
             rate = rates[:, k]
@@ -88,7 +88,7 @@ def _held_coordinates(system: System, run: Trajectory, inputs: Inputs) -> Iterat
     for name, joint, link, q, qd in _states(system, run, inputs):
         # Rates are derivatives along time, by a complex step.
         ahead = [value + 1j * STEP * rate for value, rate in zip(q, qd, strict=True)]
-        values, further = (link.held_values(of_joint, qd)[0] for of_joint in (q, ahead))
+        values, further = (link.spring_values(of_joint, qd)[0] for of_joint in (q, ahead))
         yield name, joint, values, further.imag / STEP
 
 

@@ -24,7 +24,7 @@ from gbeam.analysis.response.stepping import scheme_of
 from gbeam.arrays.types import Floats
 from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import LinearEquations, Trajectory, accelerations, slopes
-from gbeam.integrate.schemes import Scheme, added, stepped
+from gbeam.integrate.schemes import Scheme, fitted_residual, fitting_terms
 from gbeam.integrate.steps import Steps
 from gbeam.integrate.tangent import System as Tangent
 from gbeam.integrate.tangent import tangent
@@ -62,8 +62,8 @@ def _residual(posed: Posed, within: Within | None) -> Any:
     """The residual of a problem or, `within` fitted steps, that of the modified equations which these solve."""
     equations: Any = posed.equations
     if not isinstance(equations, LinearEquations):
-        return equations.residual if within is None else stepped(equations, *within, len(posed.start.y))
-    return _Linear(equations, *(() if within is None else added(equations, within[0], within[1].longest)))
+        return equations.residual if within is None else fitted_residual(equations, *within, len(posed.start.y))
+    return _Linear(equations, *(() if within is None else fitting_terms(equations, within[0], within[1].longest)))
 
 
 def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> Tangent:

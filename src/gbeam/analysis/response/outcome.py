@@ -41,7 +41,7 @@ class Ending:
         """True if the run is done."""
         return self.outcome == "done"
 
-    def of(self, body: str) -> Ending:
+    def name_body(self, body: str) -> Ending:
         """Name a body in the message and the warnings; leave them as they are where the name is empty."""
         if not body:
             return self
@@ -61,7 +61,7 @@ def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats)
     if (step := run.without_mass) is not None:
         free = system.unknown_coordinates
         words = f"at {trajectory.time[step]:.4g} s, {massless(system, free, trajectory.q[step])}"
-        if not trajectory.whole or bent_most(system, free, trajectory.q)[1] > 1:
+        if not trajectory.reached_end or bent_most(system, free, trajectory.q)[1] > 1:
             return Ending(MASSLESS, words)
         doubts = (f"{words}; what moves so grows without bound where steps resolve it",)
     if not (trajectory.stopped or trajectory.converged):
@@ -70,7 +70,7 @@ def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats)
         return Ending("not converged", f"{problem}; try a smaller response.step{other}")
     named = len(run.deforming) > 1
     endings = [
-        _ending_of(run, body, name, bodies.get(name), time).of(name if named else "")
+        _ending_of(run, body, name, bodies.get(name), time).name_body(name if named else "")
         for name, body in run.deforming.items()
     ]
     failed = [ending for ending in endings if not ending.done]
@@ -147,7 +147,7 @@ def stressed_and_bent(run: Run, bodies: Mapping[str, BodyResponse]) -> tuple[str
     """Warn of bodies that yield, bend too far for their models, or lack a stiffness by what loads them."""
     subject, warnings = run.posed.subject, list[str]()
     for body, each in bodies.items():
-        warnings += yielding(each.peaks.loads, "" if subject.body else f" of {body}")
+        warnings += yield_warnings(each.peaks.loads, "" if subject.body else f" of {body}")
         if body == subject.body:
             warnings += far_bent(subject.structure, each.peaks.max_size)
     return (*warnings, *(() if subject.body else run.solution(1).stiffness_warnings))
@@ -158,7 +158,7 @@ def inaccuracies(run: Run, errors: Errors) -> tuple[str, ...]:
     settings = run.posed.settings
     if not settings.estimate:
         return ()
-    if math.isnan(errors.displacement.step) and not run.missed:
+    if math.isnan(errors.displacement.step) and not run.event_warnings:
         return ("no error could be estimated: the run with twice the step fails; give a smaller step",)
     if run.posed.system.only_structure is not None:  # all that its points move is its deflection
         errors = replace(errors, place=ErrorEstimate())
@@ -174,7 +174,7 @@ def _cure_of_step(settings: ResponseSettings) -> str:
     return 'response.integrator = "gauss" follows it in fewer steps, or damp it'
 
 
-def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...]:
+def integrator_advice(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...]:
     """Advise another integrator if an automatic step is `finer` times finer than the results', and that is many."""
     if settings.step is not None or settings.integrator == "gauss" or finer < MANY:
         return ()
@@ -185,7 +185,7 @@ def effort(settings: ResponseSettings, steps: int, finer: int) -> tuple[str, ...
     )
 
 
-def yielding(peaks: LoadPeaks | None, of: str = "") -> list[str]:
+def yield_warnings(peaks: LoadPeaks | None, of: str = "") -> list[str]:
     """Warn where the stress of a beam exceeds the yield strength."""
     strength = None if peaks is None else peaks.yield_strength
     if peaks is None or strength is None:

@@ -18,8 +18,8 @@ from gbeam.analysis.response.stepping import (
     RIGID,
     Plan,
     even_steps,
-    once,
-    planned,
+    plan_one_run,
+    plan_runs,
     scheme_of,
     steps_beyond,
     steps_to_try,
@@ -36,7 +36,7 @@ from gbeam.errors import InputError
 from gbeam.guards.limits import BOUNDLESS, HISTORY_BYTES, STEPS, refuse_more
 from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
-from gbeam.integrate.steps import Corners, Steps, fitted, joined
+from gbeam.integrate.steps import Corners, Steps, join_steps, make_steps
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import SLIP, Inputs
 from gbeam.mechanics.tree.frames import Frame
@@ -165,7 +165,7 @@ class Posed:
         before, count, after = self.counts(step)
         start, kept = self.settings.start, self.kept
         parts = (self.begin, kept, before), (start, step, count), (start + self.settings.duration, kept, after)
-        return joined([fitted(*part, cut) for part in parts if part[-1]])
+        return join_steps([make_steps(*part, cut) for part in parts if part[-1]])
 
     def integrated(self, step: float, cut: Corners | None = None, progress: Any = None) -> Trajectory:
         """Integrate by steps of a length, s, until the model of a body ceases to hold."""
@@ -176,8 +176,8 @@ class Posed:
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
         if not len(self.system.tree.unknowns):  # nothing is integrated
-            return once(self.kept, StepErrors(0.0, 0.0, 0.0))
-        return planned(self.settings, self.kept, self.limit)
+            return plan_one_run(self.kept, StepErrors(0.0, 0.0, 0.0))
+        return plan_runs(self.settings, self.kept, self.limit)
 
     def columns(self, body: str) -> slice:
         """Coordinates that deform a body, among the unknown ones."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading
 from gbeam.analysis.outline import assembly_of, ends_of, outline_of
-from gbeam.analysis.response.outcome import effort, ending_of, inaccuracies, stressed_and_bent
+from gbeam.analysis.response.outcome import ending_of, inaccuracies, integrator_advice, stressed_and_bent
 from gbeam.analysis.response.peaks import displacement_peaks, half_ranges, load_peaks, maxima_of
 from gbeam.analysis.response.posed import begun_in_words
 from gbeam.analysis.response.run import Run
@@ -91,8 +91,8 @@ class Histories:
         """Read a run at every step, or at 50,000 of more: the steps near peaks are looked at again."""
         fewest = min(run.stride, -(-len(run.flight.time) // LOADS_STEPS))
         every = next(count for count in range(fewest, run.stride + 1) if run.stride % count == 0)
-        steps = run.sampled(every)
-        kept = slice(None) if every == run.stride else np.searchsorted(steps, run.sampled(run.stride))
+        steps = run.recorded_steps(every)
+        kept = slice(None) if every == run.stride else np.searchsorted(steps, run.recorded_steps(run.stride))
         return cls(run, name, every, steps, kept, *run.histories(steps), known)
 
     @property
@@ -103,7 +103,7 @@ class Histories:
     @property
     def flown(self) -> slice:
         """The flight among the steps that are looked at."""
-        return self.run.flown(self.every)
+        return self.run.flight_slice(self.every)
 
     def body(self, name: str) -> BodyResponse:
         """Describe a body that deforms, or a rigid specimen."""
@@ -154,7 +154,7 @@ class Histories:
         run = self.run
         if not run.posed.settings.loads:
             return None
-        flown = run.flown(run.stride)
+        flown = run.flight_slice(run.stride)
         out: dict[Quantity, Floats] = {PLACE: self.over_time["place"][self.kept][flown]}
         for name, body in judged_bodies(run.posed.system).items():
             response = bodies[name]
@@ -270,7 +270,8 @@ def response_of(
         if ending.done:
             from_run += stressed_and_bent(run, bodies)
             errors, of_bodies = run.errors(step_errors, read.reading(bodies), progress)
-            from_run += of_bodies + inaccuracies(run, errors) + effort(settings, len(run.flight.time) - 1, run.stride)
+            advice = integrator_advice(settings, len(run.flight.time) - 1, run.stride)
+            from_run += of_bodies + inaccuracies(run, errors) + advice
         root = bodies[subject.body].base if subject.body in bodies else None
         inputs = subject.doubts(name, root, span=(time[0], time[-1]))
         warnings = inputs + settings.warnings + run.doubts + from_run + (() if axes is None else axes.warnings)

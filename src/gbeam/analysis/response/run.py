@@ -31,7 +31,7 @@ from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.linear import is_linear
 from gbeam.mechanics.tree.signal_names import local_names
-from gbeam.mechanics.tree.steps import continuous
+from gbeam.mechanics.tree.steps import remove_sign_jumps
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.eigen import positive_definite
 from gbeam.progress import Progress, tell
@@ -61,9 +61,9 @@ class Run:
         return 1 if self.posed.settings.step is not None else max(1, round(self.posed.kept / self.step))
 
     @property
-    def whole(self) -> bool:
+    def reached_end(self) -> bool:
         """True if the run came to its end."""
-        return self.trajectory.whole
+        return self.trajectory.reached_end
 
     @cached_property
     def traced(self) -> bool:
@@ -81,18 +81,18 @@ class Run:
         """The trajectory over the flight's times."""
         return self.trajectory.select(self.in_flight)
 
-    def sampled(self, stride: int) -> Indices:
+    def recorded_steps(self, stride: int) -> Indices:
         """Indices of the steps of spin-up and spin-down, and of every `stride`-th of the flight."""
         steps, flight = np.arange(len(self.trajectory.time)), self.in_flight
         inside = steps[flight]
         after = steps[flight.stop :] if flight.stop is not None else inside[:0]
         return np.concatenate([steps[: flight.start], inside[::stride], after])
 
-    def flown(self, stride: int) -> slice:
-        """The flight among the steps that are :meth:`sampled`."""
+    def flight_slice(self, stride: int) -> slice:
+        """Slice of the flight among the :meth:`recorded_steps`."""
         return slice(self.in_flight.start, self.in_flight.start + len(self.flight.time[::stride]))
 
-    def _flown(self, stride: int) -> Indices:
+    def _flight_steps(self, stride: int) -> Indices:
         """Indices of every `stride`-th step of the flight."""
         return np.arange(len(self.trajectory.time))[self.in_flight][::stride]
 
@@ -107,8 +107,10 @@ class Run:
         return any(joint.holder.bends for joint in self.posed.system.joints.values())
 
     def aims(self, aim: float, enough: float) -> list[float]:
-        """Errors of each history that :attr:`moved` at which automatic steps aim; of deflections of several bodies
-        `enough` in long runs, where small ones that commands or blows make ring would need many times the steps.
+        """Errors of each history of :attr:`displacements` at which automatic steps aim.
+
+        In long runs of several bodies `enough` is the aim for deflections: small ones that commands or blows make ring
+        would need many times the steps.
         """
         count = sum(kind == DEFLECTION for _, kind in self._moving)
         of_deflections = aim if count < 2 or len(self.flight.time) <= LONG else enough
@@ -116,13 +118,13 @@ class Run:
 
     @property
     def _moving(self) -> list[Quantity]:
-        """Quantities of which :attr:`moved` has the histories: deflections, and places where joints move or shift."""
+        """Quantities of :attr:`displacements`: deflections of bodies, and places where joints move or shift."""
         deforming = [(name, DEFLECTION) for name in self.deforming]
         jointed = any(link.steps for link in self.posed.system.tree.links)
         return [*deforming, PLACE] if jointed else deforming
 
     @cached_property
-    def moved(self) -> list[Floats]:
+    def displacements(self) -> list[Floats]:
         """Displacements (t, 3 p) m over the flight: of each flexible body's points relative to its root, and of all
         points from their first places.
 
@@ -195,9 +197,9 @@ class Run:
         Warnings are of masses off the axis of a beam, and of controllers that lose what has more shapes.
         """
         posed, settings = self.posed, self.posed.settings
-        of_steps = StepErrors() if self.missed else of_steps  # unknown where steps may miss a stop
+        of_steps = StepErrors() if self.event_warnings else of_steps  # unknown where steps may miss a stop
         by_step, say = self._step_errors(of_steps), "errors of shapes and models"
-        if not (settings.estimate and self.whole):
+        if not (settings.estimate and self.reached_end):
             return unjudged(posed.system, by_step, note=settings.not_estimated), ()
 
         judged = self._resolved_run if posed.system.controllers else self
@@ -235,7 +237,7 @@ class Run:
         if self.stride == 1:
             return self
         rough = Run.by_steps(self.posed, self.posed.kept)
-        return rough if rough.whole else self
+        return rough if rough.reached_end else self
 
     @property
     def _starting(self) -> Starting | None:
@@ -253,7 +255,7 @@ class Run:
         return Starting(flags, state if begin.displaces or posed.subject.body else None)
 
     def _friction_errors(self, progress: Progress) -> list[float]:
-        """Errors by the smooth law of friction, of :attr:`moved` and of :meth:`loads`.
+        """Errors by the smooth law of friction, of :attr:`displacements` and of :meth:`loads`.
 
         They are proportional to the rate below which the law is smooth, and follow from a run with half of that rate,
         or with twice where this fails. The list is empty without friction, or where both fail.
@@ -262,8 +264,8 @@ class Run:
             return []
         for factor, share in ((0.5, 2.0), (2.0, 1.0)):  # of the rate, and of the difference that it makes
             other = Run.by_steps(replace(self.posed, slip=factor * self.posed.slip), self.step, progress)
-            if other.whole:
-                mine, others = ((*run.moved, *run.loads(self.stride)) for run in (self, other))
+            if other.reached_end:
+                mine, others = ((*run.displacements, *run.loads(self.stride)) for run in (self, other))
                 return [share * difference(a, b, 1) for a, b in zip(others, mine, strict=True)]
         return []
 
@@ -271,7 +273,7 @@ class Run:
     def loop(self) -> Loop | None:
         """Record of the controllers at the times of the run; None without controllers."""
         controllers, samples = self.posed.controllers, self.trajectory.samples
-        if controllers is None or samples is None or not samples.begun:
+        if controllers is None or samples is None or not samples.has_begun:
             return None
         return loop_of(controllers, samples, self.trajectory.time)
 
@@ -297,16 +299,16 @@ class Run:
         return next(int(step) for step, m in zip(steps, mass, strict=True) if not positive_definite(m))
 
     @cached_property
-    def missed(self) -> tuple[str, ...]:
+    def event_warnings(self) -> tuple[str, ...]:
         """Warning of a stop that the steps may miss; empty if there is none."""
-        return missed_stop(self.posed.system, self.trajectory, lambda: self.driven)
+        return missed_stop(self.posed.system, self.trajectory, lambda: self.all_inputs)
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """Warnings of stops, of springs that a ball turns over, and of friction that lets creep."""
         system, run = self.posed.system, self.trajectory
-        over = half_turn_warnings(system, run, lambda: self.driven)
-        return self.missed + over + creeping(system, run, lambda: self.driven, self._inertia)
+        over = half_turn_warnings(system, run, lambda: self.all_inputs)
+        return self.event_warnings + over + creeping(system, run, lambda: self.all_inputs, self._inertia)
 
     def _inertia(self, name: str, step: int) -> float:
         """Inertia, kg or kg m², that an effort on a local coordinate accelerates at a step, the others being free."""
@@ -317,7 +319,7 @@ class Run:
         return float(1 / np.linalg.inv(local.slopes()[3])[k, k])
 
     @cached_property
-    def driven(self) -> Inputs:
+    def all_inputs(self) -> Inputs:
         """Inputs at all steps."""
         return self.inputs(self.posed.system, slice(None))
 
@@ -327,11 +329,11 @@ class Run:
         It is the run's system, or another one with the same controllers.
         """
         plain = system.inputs(self.trajectory.time[steps], self.posed.motion)
-        return plain if self.loop is None else SystemControllers(system).driven(plain, self.loop.applied[steps])
+        return plain if self.loop is None else SystemControllers(system).add_commands(plain, self.loop.applied[steps])
 
     def solution(self, stride: int) -> Solution:
         """Solution at every `stride`-th step of the flight."""
-        steps = self._flown(stride)
+        steps = self._flight_steps(stride)
         return Solution(
             self.posed.system, self.trajectory.select(steps), lambda system, times: self.inputs(system, steps[times])
         )
@@ -348,7 +350,7 @@ class Run:
             for name, of_body in of_bodies.items():
                 bodies[name].append(of_body)
         over_time = {key: namespace(*values).concatenate(values) for key, values in columns.items()}
-        over_time |= {"attitude": continuous(over_time["attitude"])}
+        over_time |= {"attitude": remove_sign_jumps(over_time["attitude"])}
         return over_time, {name: Carried.joined(of_body) for name, of_body in bodies.items()}
 
 

@@ -9,7 +9,7 @@ from gbeam.analysis.response.posed import Posed, pose, poses, prepared
 from gbeam.analysis.response.record import response_of
 from gbeam.analysis.response.run import Run
 from gbeam.analysis.response.settings import ResponseSettings, Settings
-from gbeam.analysis.response.stepping import answered, enough
+from gbeam.analysis.response.stepping import enough, run_plan
 from gbeam.analysis.steady.subject import Subject
 from gbeam.arrays.namespace import holds_jax
 from gbeam.errors import InputError
@@ -99,7 +99,7 @@ def simulate(
 def _answered(subject: Subject, settings: ResponseSettings, progress: Progress) -> tuple[Run, StepErrors]:
     """Run that counts, of those that the settings need, and the errors of its steps."""
     for posed in poses(subject, settings):
-        run, errors = answered(posed.plan(), partial(_run, posed, progress))
+        run, errors = run_plan(posed.plan(), partial(_run, posed, progress))
         if enough(run, errors, settings):
             break
     return run, errors

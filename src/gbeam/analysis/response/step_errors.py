@@ -39,7 +39,7 @@ class Stepped(Protocol):
         ...
 
     @property
-    def whole(self) -> bool:
+    def reached_end(self) -> bool:
         """True if the run came to its end."""
         ...
 
@@ -49,12 +49,12 @@ class Stepped(Protocol):
         ...
 
     @property
-    def missed(self) -> tuple[str, ...]:
+    def event_warnings(self) -> tuple[str, ...]:
         """Warning of events that the steps may miss, which makes their error unknown; else empty."""
         ...
 
     @property
-    def moved(self) -> Sequence[Floats]:
+    def displacements(self) -> Sequence[Floats]:
         """Histories (t, k) of displacements."""
         ...
 
@@ -64,7 +64,7 @@ class Stepped(Protocol):
         ...
 
     def aims(self, aim: float, enough: float) -> Sequence[float]:
-        """Errors of each history that :attr:`moved` at which automatic steps aim; `enough` is the largest."""
+        """Errors of each history of :attr:`displacements` at which automatic steps aim; `enough` is the largest."""
         ...
 
     def loads(self, stride: int) -> Sequence[Floats]:
@@ -85,7 +85,7 @@ def observed_order(before: float, now: float, ratios: tuple[int, int], highest: 
     first, second = ratios
 
     def lack(p: float) -> float:
-        """Observed difference before the last, minus that which an order implies: falls with p."""
+        """Observed difference before the last one, less the difference that an order p implies. It falls with p."""
         return before - now * (first**p - 1) / (1 - second**-p)
 
     if not (math.isfinite(before) and math.isfinite(now)) or lack(LOWEST_ORDER) <= 0:
@@ -105,19 +105,21 @@ def ratio(coarse: Stepped, fine: Stepped) -> int:
 
 
 def share(runs: Sequence[Stepped], differences: Sequence[float], highest: float) -> float:
-    """Error of the last of two or three runs over its difference from the one before, by the order observed, `highest`
-    at most.
+    """Error of the last of two or three runs over its difference from the one before.
+
+    It follows from the order observed, which counts as `highest` at most.
     """
     order = 1.0
-    if len(runs) > 2 and runs[-3].whole:
+    if len(runs) > 2 and runs[-3].reached_end:
         ratios = ratio(runs[-3], runs[-2]), ratio(runs[-2], runs[-1])
         order = observed_order(differences[-2], differences[-1], ratios, highest)
     return 1 / (ratio(runs[-2], runs[-1]) ** order - 1)
 
 
-def left(runs: Sequence[Stepped], differences: Sequence[float], highest: float) -> float:
-    """Error of the last of two or three runs, by their differences and the order observed. A law that bends within
-    steps has no order, and two runs may agree by chance: there the larger difference counts.
+def remaining_error(runs: Sequence[Stepped], differences: Sequence[float], highest: float) -> float:
+    """Error that remains in the last of two or three runs, by their differences and the order observed.
+
+    A law that bends within steps has no order, and two runs may agree by chance: there the larger difference counts.
     """
     if runs[-1].bends and len(runs) > 2:
         return max(differences[-1], differences[-2] / ratio(runs[-2], runs[-1]))
@@ -126,23 +128,26 @@ def left(runs: Sequence[Stepped], differences: Sequence[float], highest: float) 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated errors of the last of two or three runs, of each history that `moved` and of peaks: by the order
-    observed, and by the scheme's order.
+    """Estimated errors of the last of two or three runs, of each history of displacements and of peaks.
+
+    The first ones follow from the order observed, the promised ones from the scheme's order.
     """
 
-    moved: tuple[float, ...]
+    displacements: tuple[float, ...]
     peaks: float
-    promised: tuple[float, ...]
+    promised_displacements: tuple[float, ...]
     promised_peaks: float
 
     @staticmethod
-    def of(runs: Sequence[Stepped], order: int) -> Estimate:
-        """Estimate from runs with falling steps, by a scheme of an order."""
-        pairs = [(ratio(a, b), a.moved, b.moved) for a, b in pairwise(runs)]
+    def from_runs(runs: Sequence[Stepped], order: int) -> Estimate:
+        """Estimate the errors of the last of several runs with falling steps, by a scheme of an order."""
+        pairs = [(ratio(a, b), a.displacements, b.displacements) for a, b in pairwise(runs)]
         differences = [[difference(a, b, jump) for a, b in zip(*both, strict=True)] for jump, *both in pairs]
-        peaks = max((_apart(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True)), default=0.0)
+        peaks = max(
+            (_relative_difference(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True)), default=0.0
+        )
         jump, highest = ratio(*runs[-2:]), min(order, HIGHEST_ORDER)
-        moved = tuple(left(runs, of_history, highest) for of_history in zip(*differences, strict=True))
+        moved = tuple(remaining_error(runs, of_history, highest) for of_history in zip(*differences, strict=True))
         return Estimate(
             moved,
             peaks * share(runs, [each[0] for each in differences], order),
@@ -151,30 +156,30 @@ class Estimate:
         )
 
 
-def _apart(coarse: Floats, fine: Floats) -> float:
+def _relative_difference(coarse: Floats, fine: Floats) -> float:
     """Largest difference of peaks over the largest peak."""
     return float(np.abs(coarse - fine).max() / fine.max()) if fine.max() > 0 else 0.0
 
 
-def of_everything(runs: Sequence[Stepped], order: int) -> StepErrors:
-    """Errors of the last run: of displacements, of the roots' loads and of stress, which are NaN if not known."""
-    moved = Estimate.of(runs, order).moved
+def estimate_step_errors(runs: Sequence[Stepped], order: int) -> StepErrors:
+    """Estimate the errors of the last run: of displacements, of the roots' loads and of stress; NaN if not known."""
+    moved = Estimate.from_runs(runs, order).displacements
     known = StepErrors(max(moved, default=0.0), moved=moved)
-    if not all(run.whole for run in runs[-2:]):
+    if not all(run.reached_end for run in runs[-2:]):
         return known
-    runs, differences, of_peaks = runs if runs[0].whole else runs[-2:], [], []
+    runs, differences, of_peaks = runs if runs[0].reached_end else runs[-2:], [], []
     for coarse, fine in pairwise(runs):
         stride = max(1, (len(coarse.flight.time) - 1) // _SAMPLES)
         time, both = coarse.flight.time[::stride], (coarse.loads(stride), fine.loads(stride * ratio(coarse, fine)))
         differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
-        of_peaks.append([_peaks_apart(time, a, b) for a, b in zip(*both, strict=True)])
-    errors = [left(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
+        of_peaks.append([_difference_of_peaks(time, a, b) for a, b in zip(*both, strict=True)])
+    errors = [remaining_error(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
     if not errors:
         return known
     if len(runs) > 2:  # peaks may agree by chance: as much is left as the order says of the runs before
         times = ratio(*runs[:2]) ** order
         of_peaks[-1] = [max(now, before / times) for before, now in zip(*of_peaks[-2:], strict=True)]
-    peaks = tuple(left(runs, each, 4 / order) for each in zip(*of_peaks, strict=True))
+    peaks = tuple(remaining_error(runs, each, 4 / order) for each in zip(*of_peaks, strict=True))
     # Force, moment and stress of each body in turn.
     loads, stress = (
         max(errors[::3] + errors[1::3]),
@@ -183,7 +188,7 @@ def of_everything(runs: Sequence[Stepped], order: int) -> StepErrors:
     return replace(known, loads=loads, stress=stress, each=tuple(errors), peaks=peaks)
 
 
-def _peaks_apart(time: Floats, coarse: Floats, fine: Floats) -> float:
+def _difference_of_peaks(time: Floats, coarse: Floats, fine: Floats) -> float:
     """Largest difference of the peaks of histories (t, ..., c) over the largest length."""
     n, size = min(len(coarse), len(fine)), np.linalg.norm(fine, axis=-1).max()
     if fine.ndim == 3:  # stress at every section

@@ -5,12 +5,13 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Generator, Sequence
+from operator import truediv
 from typing import TypeVar
 
 import numpy as np
 
 from gbeam.analysis.response.settings import ResponseSettings
-from gbeam.analysis.response.step_errors import Estimate, Stepped, of_everything, ratio
+from gbeam.analysis.response.step_errors import Estimate, Stepped, estimate_step_errors, ratio
 from gbeam.arrays.namespace import is_traced
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
@@ -30,13 +31,13 @@ BENT = 4  # the largest division where a law bends, so that errors can be seen t
 RIGID = 2e-3  # s: longest step of the results where nothing is unknown
 ROUNDING = 1e-9  # of a number of steps
 SPARE = 1.05  # how much finer a step is than the order promises to be enough
-# Yields a step, s, and what it is for; is sent the run; returns the run that counts with its errors.
+# A plan yields a step, s, and its purpose, receives the run, and returns the run that counts with its errors.
 R = TypeVar("R", bound=Stepped)
 Plan = Generator[tuple[float, str], R, tuple[R, StepErrors]]
 
 
 def scheme_of(settings: ResponseSettings) -> Scheme:
-    """The integration scheme that the settings name."""
+    """Return the integration scheme that the settings name."""
     choice("response.integrator", settings.integrator, SCHEMES)
     scheme = SCHEMES[settings.integrator]
     takes = tuple(inspect.signature(scheme).parameters)
@@ -53,10 +54,10 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
 def steps_to_try(
     step: float, most: int, corners: Callable[[float], Floats], settings: ResponseSettings
 ) -> list[tuple[float, int]]:
-    """Steps of the results to try, s, each with the most steps of a run. Where `step` asks for many steps, fewer ones
-    are tried first, enough for motions that hardly vibrate, unless they could miss a pulse.
+    """Return the steps of the results to try, s, each with the most steps of a run.
 
-    `corners` returns the times, s, that steps of a length should not pass unseen.
+    Where `step` asks for many steps, fewer ones are tried first, unless they could miss a pulse: they are enough for
+    motions that hardly vibrate. `corners` returns the times, s, that steps of a length should not pass unseen.
     """
     tries = [(step, most)]
     if settings.step is None and step < settings.duration / MANY:
@@ -72,17 +73,17 @@ def steps_to_try(
 
 def enough(run: Stepped, errors: StepErrors, settings: ResponseSettings) -> bool:
     """True if a run misses no stop, and its step errors are within a third of the tolerance."""
-    return not run.missed and max(errors.displacement, errors.loads) <= settings.tolerance / 3
+    return not run.event_warnings and max(errors.displacement, errors.loads) <= settings.tolerance / 3
 
 
 def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> int:
-    """Least even number of steps over the duration, none longer than the largest, s, or than from corner to corner."""
+    """Least even number of steps over the duration of which none is longer than `largest`, s, or passes a corner."""
     gaps = np.diff(np.unique(np.clip(corners - settings.start, 0.0, settings.duration)))
     largest = min(largest, gaps.min(where=gaps > ONE_CORNER * settings.duration, initial=largest))
     return 2 * math.ceil(settings.duration / largest / 2 - ROUNDING)
 
 
-def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:
+def run_plan(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:
     """Compute the runs that a plan asks for, one after the other; return the run that counts, and its errors."""
     try:
         wanted = next(plan)
@@ -93,64 +94,67 @@ def answered(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErro
         return chosen, errors
 
 
-def planned(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan[R]:
-    """Plan the runs of settings from the `step` of the results: with ever finer steps, `most` in a run, if the step is
-    automatic; else with that step and, for an estimate, two longer ones.
+def plan_runs(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan[R]:
+    """Plan the runs that settings ask for, from the `step` of the results, s.
+
+    If the step is automatic, the steps become ever finer, `most` in a run. Otherwise the runs have that step and, for
+    an estimate, two longer ones.
     """
     order = scheme_of(settings).order
     if settings.step is None:
-        return (yield from refine(step, order, settings, most))
+        return (yield from plan_refinement(step, order, settings, most))
     if settings.estimate:
-        return (yield from check(step, order))
-    return (yield from once(step, StepErrors()))
+        return (yield from plan_check(step, order))
+    return (yield from plan_one_run(step, StepErrors()))
 
 
-def once(step: float, errors: StepErrors) -> Plan[R]:
+def plan_one_run(step: float, errors: StepErrors) -> Plan[R]:
     """Plan one run, with errors that are known beforehand or unknown."""
     return (yield step, "integrating"), errors
 
 
-def check(step: float, order: int) -> Plan[R]:
+def plan_check(step: float, order: int) -> Plan[R]:
     """Plan runs with a given step, and with twice and four times that, from which the error is estimated."""
     runs = [(yield step, "integrating"), (yield 2 * step, "checking with twice the step")]
-    if not runs[1].whole:
+    if not runs[1].reached_end:
         return runs[0], StepErrors()
     runs.append((yield 4 * step, "checking with four times the step"))
-    return runs[0], of_everything(runs[::-1], order)
+    return runs[0], estimate_step_errors(runs[::-1], order)
 
 
-def refine(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan[R]:
-    """Plan runs with ever finer steps, from twice the results', until the estimated errors of displacements and peaks
-    are within their aims, and those of the root's loads, if followed, within a third of the tolerance (by LOADS_STEPS
-    at most). Where the results' steps are as many as `limit`, a third of the tolerance is the aim of all.
+def plan_refinement(coarse: float, order: int, settings: ResponseSettings, limit: int = MAX_STEPS) -> Plan[R]:
+    """Plan runs with ever finer steps, from twice the results' step, until the errors are within their aims.
+
+    Displacements and peaks have the aims of the settings. The aim of the root's loads is a third of the tolerance, as
+    far as LOADS_STEPS reach it; it is the aim of all where the results have as many steps as `limit`.
     """
     aims, third = (settings.aim, settings.aim_of_peaks), settings.tolerance / 3
     if round(settings.duration / coarse) == limit:
         aims = third, third
 
-    def refined(step: float) -> tuple[float, str]:
+    def refinement(step: float) -> tuple[float, str]:
         return step, f"refining the step to {1e3 * step:.3g} ms"
 
-    runs = [(yield 2 * coarse, "integrating"), (yield refined(coarse))]
+    runs = [(yield 2 * coarse, "integrating"), (yield refinement(coarse))]
     while True:
-        left, promised = _left(runs[-3:], order, aims, third)
-        both, new = runs[-2].whole and runs[-1].whole, runs[-1]
+        left, promised = _remaining_errors(runs[-3:], order, aims, third)
+        both, new = runs[-2].reached_end and runs[-1].reached_end, runs[-1]
         if both and promised <= 1 and (more := _check_needed(runs, left)):
             checked = yield more, f"checking with {1e3 * more:.3g} ms"
             runs = sorted([*runs, checked], key=lambda run: -run.step)
-            left, _ = _left(runs[-3:], order, aims, third)
+            left, _ = _remaining_errors(runs[-3:], order, aims, third)
         excess, most = promised, limit
-        if both and left <= 1 and not new.missed and not (new.bends and len(runs) < 3):
-            errors = of_everything(runs[-3:], order)
+        if both and left <= 1 and not new.event_warnings and not (new.bends and len(runs) < 3):
+            errors = estimate_step_errors(runs[-3:], order)
             excess, most = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
             if not excess > 1:  # errors of loads that are NaN are not followed
                 return new, errors
         finer = min(finer_by(excess, order), BENT if new.bends else JUMPS[-1])
-        stuck = not (runs[-2].whole or new.whole) and (new.flight.stopped or len(runs) > 3)
+        stuck = not (runs[-2].reached_end or new.reached_end) and (new.flight.stopped or len(runs) > 3)
         if stuck or settings.duration / new.step * finer > most:
             break
-        runs.append((yield refined(new.step / finer)))
-    return runs[-1], of_everything(runs[-3:], order)
+        runs.append((yield refinement(new.step / finer)))
+    return runs[-1], estimate_step_errors(runs[-3:], order)
 
 
 def finer_by(excess: float, order: int) -> int:
@@ -159,20 +163,23 @@ def finer_by(excess: float, order: int) -> int:
     return next((jump for jump in JUMPS if jump >= times), JUMPS[-1])
 
 
-def _left(runs: Sequence[Stepped], order: int, aims: tuple[float, float], enough: float) -> tuple[float, float]:
+def _remaining_errors(
+    runs: Sequence[Stepped], order: int, aims: tuple[float, float], enough: float
+) -> tuple[float, float]:
     """Largest of the errors of displacements and peaks over their aims: by the order observed, and by the scheme's."""
-    error, (aim, of_peaks) = Estimate.of(runs, order), aims
-    each = runs[-1].aims(aim, enough)
-    both = (error.moved, error.peaks), (error.promised, error.promised_peaks)
-    left, promised = (
-        max(peaks / of_peaks, *(a / b for a, b in zip(moved, each, strict=True))) for moved, peaks in both
-    )
-    return left, promised
+    error, (aim, aim_of_peaks) = Estimate.from_runs(runs, order), aims
+    aims_of_displacements = runs[-1].aims(aim, enough)
+
+    def excess(displacements: Sequence[float], peaks: float) -> float:
+        return max(peaks / aim_of_peaks, *map(truediv, displacements, aims_of_displacements))
+
+    return excess(error.displacements, error.peaks), excess(error.promised_displacements, error.promised_peaks)
 
 
 def _check_needed(runs: Sequence[Stepped], left: float) -> float | None:
-    """Step, s, of a cheaper run to check that errors fall by the order, or None if no check is needed. After a large
-    jump of the step unresolved modes may make the error look too small.
+    """Step, s, of a cheaper run that checks whether errors fall by the order; None if no check is needed.
+
+    After a large jump of the step unresolved modes may make the error look too small.
     """
     jump, new = ratio(*runs[-2:]), runs[-1]
     if new.bends or (left <= 1 and jump <= 4):

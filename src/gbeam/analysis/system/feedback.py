@@ -61,21 +61,21 @@ class SystemControllers:
         samples = [start + np.arange(0.0, end - start, period) for period, _ in self.timing]
         return np.concatenate([*changes, *samples]) if changes else np.zeros(0)
 
-    def measured(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
-        """Measurements (t, k) of one controller."""
+    def measure(self, controller: int, q: Array, qd: Array, qdd: Array, inputs: Any) -> Array:
+        """Return the measurements (t, k) of one controller."""
         return read_signals(self.system, self.tree, self.every[controller].measure, q, qd, qdd, inputs)
 
-    def accelerates(self, controller: int) -> bool:
+    def measures_accelerations(self, controller: int) -> bool:
         """True if one controller measures accelerations, or loads of sections, which follow from accelerations."""
         section_loads = carried_of(self.system)
         return any(".acceleration_" in name or name in section_loads for name in self.every[controller].measure)
 
-    def started(self, controller: int) -> Any:
-        """State of one controller at the start."""
+    def initial_state(self, controller: int) -> Any:
+        """Return the state of one controller at the start."""
         return self.every[controller].start if self.traced_laws is None else self.traced_laws[controller].start
 
-    def commanded(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
-        """Command that the law of one controller asks for, that command within its limits, and the next state."""
+    def command(self, controller: int, t: float, measured: Array, state: Any) -> tuple[Array, Array, Any]:
+        """Return the command that a controller's law asks for, this command within its limits, and the next state."""
         if self.traced_laws is not None:
             law = self.traced_laws[controller]
             k = int(np.abs(law.times - t).argmin())
@@ -92,8 +92,8 @@ class SystemControllers:
             with naming_controller(self.names[controller]):
                 refuse_memory(self.every[controller], t, measured, state, answer)
 
-    def driven(self, inputs: Any, held: Array) -> Any:
-        """Inputs with commands (t, m) added."""
+    def add_commands(self, inputs: Any, held: Array) -> Any:
+        """Return the inputs with commands (t, m) added."""
         efforts = held @ self.efforts
         changes: dict[str, Any] = {"efforts": efforts if inputs.efforts is None else inputs.efforts + efforts}
         if inputs.wrenches is not None:
@@ -130,7 +130,7 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
     for c, (period, delay) in enumerate(controllers.timing):
         taken = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
-        values, wanted, commands = sampling.sampled(c)
+        values, wanted, commands = sampling.sample_arrays(c)
         # The last time may be that of a sample which no step has taken.
         taken, last = np.minimum(taken, len(values) - 1), np.clip(active, 0, len(values) - 1)
         measured.append(values[taken])
@@ -173,7 +173,7 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
         with naming_controller(name):
             law, parameters = _compile_function(controller, start, restored)
 
-    def commanded(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
+    def command(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
         """Command as the law asks for it, the command within its limit, and the next state."""
         parts, limit = parameters
         asked, after = law(parts, t, references + sign * y, state)
@@ -181,7 +181,7 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
             return asked, asked, after
         return asked, clip_efforts(namespace(asked, limit), as_array(limit), asked), after
 
-    return TracedLaw(times, commanded, (parameters, controller.limit), references, start)
+    return TracedLaw(times, command, (parameters, controller.limit), references, start)
 
 
 def _linear(parts: Any, _: Any, error: Array, state: Array) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ import numpy as np
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
-from gbeam.integrate.equations import Trajectory, expanded
+from gbeam.integrate.equations import Trajectory, values_and_slopes
 from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
@@ -72,7 +72,7 @@ class Point:
             return m @ self.ydd + c @ self.yd + k @ self.y - force, k, c, m
         rubs = any(link.holder.friction.any() for link in self.tree.links)
         tree = self.tree.frictionless if rubs else self.tree
-        residual, (k, c, m) = expanded(tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
+        residual, (k, c, m) = values_and_slopes(tree, self.y[None], self.yd[None], self.ydd[None], self.driven())
         with_friction = self.tree(self.y, self.yd, self.ydd, self.inputs) if rubs else residual[0]
         return with_friction, k[0], c[0], m[0]
 
@@ -91,7 +91,7 @@ class Point:
         state, warnings, local = self.tree.motion(self.y, self.yd, self.ydd, self.inputs), list[str](), None
         for name, joint in system.joints.items():
             k = system.order.index(joint.body)
-            rates = self.tree.links[k].held_values(state.q[k][:-1], state.qd[k][:-1])[1] if joint.frictions else ()
+            rates = self.tree.links[k].spring_values(state.q[k][:-1], state.qd[k][:-1])[1] if joint.frictions else ()
             for kind, friction in joint.frictions.items():
                 i = joint.rate_names.index(kind)
                 if kind in joint.rates or abs(rates[i]) >= STUCK:

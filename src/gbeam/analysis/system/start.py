@@ -14,7 +14,7 @@ from gbeam.analysis.system.search import CLOSE, ITERATIONS, SHORTEST
 from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError
-from gbeam.integrate.equations import accelerations, masses, solved
+from gbeam.integrate.equations import accelerations, masses, solve_systems
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import System
@@ -79,7 +79,7 @@ def _find_root(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, b
     change = z
     for _ in range(ITERATIONS):
         values = function(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
-        change = solved(values.imag.T / STEP, -values[0].real)
+        change = solve_systems(values.imag.T / STEP, -values[0].real)
         z, change = z + change, np.where(bent, change, 0.0)
         if np.abs(change).max(initial=0.0) <= CLOSE * (1e-3 + np.abs(z[bent]).max(initial=0.0)):
             return z, change, True

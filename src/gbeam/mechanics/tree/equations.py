@@ -99,9 +99,9 @@ class Link:
 
     def stored(self, q: list[Array], qd: list[Array]) -> Array:
         """Energy (...) of the joint's springs and stops, J, by coordinates of its steps and rates."""
-        return self.holder.stored(self.held_values(q, qd)[0])
+        return self.holder.stored(self.spring_values(q, qd)[0])
 
-    def held_values(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
+    def spring_values(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
         """Values (..., h) on which the joint's springs act, and their rates, by coordinates and rates of its steps."""
         values, rates = zip(*self._values_by_step(q, qd), strict=True)
         return concatenated(values), concatenated(rates)
@@ -114,11 +114,11 @@ class Link:
         sizes = [part.shape[-1] for part, _ in by_step]
         spans = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
         steps = zip(self.steps, q, spans, strict=True)
-        return [step.pushed(coordinates, pull[..., span], drag[..., span]) for step, coordinates, span in steps]
+        return [step.coordinate_forces(values, pull[..., span], drag[..., span]) for step, values, span in steps]
 
     def _values_by_step(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
         """Values and rates, as :meth:`held_values`, of each step."""
-        return [step.held_values(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
+        return [step.spring_values(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
 
 
 @record
@@ -458,7 +458,7 @@ class Tree:
         for link, *parts in zip(self.links, *self.parted(y, yd, ydd), strict=True):
             steps, kept = [], []  # flags of coordinates: a ball loses its first one
             for step, *rates in zip(link.steps, *parts, strict=False):
-                reduced, *state = step.local(*rates)
+                reduced, *state = step.minimal_form(*rates)
                 steps.append(reduced)
                 states.append(state)
                 kept += [step.size - reduced.size <= k for k in range(step.size)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from gbeam.arrays.namespace import Array, concatenated, namespace
@@ -10,7 +10,7 @@ from gbeam.guards.kinds import KINDS
 from gbeam.mechanics.fields.products import turned
 from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.signal_names import CARRIED, OF_POINTS, kind_of_drive, kind_of_signal, rate_signal
-from gbeam.mechanics.tree.steps import parameters_of_matrices, vector_of
+from gbeam.mechanics.tree.steps import parameters_of_matrices, rotation_vector
 
 
 class Measured(Protocol):
@@ -131,10 +131,14 @@ def measurements(
     The tree is the system's, or its local one. Vectors at a point are computed once for all their components.
     """
     xp, state, columns = namespace(y, inputs.ground.a), tree.motion(y, yd, ydd, inputs), []
-    read = {
+
+    def attitude(frame: Frame) -> Array:
+        return rotation_vector(parameters_of_matrices(xp.broadcast_to(frame.R, (*state.shape, 3, 3))))
+
+    read: dict[str, Callable[[Frame], Any]] = {
         "place": lambda frame: frame.p,
         "velocity": lambda frame: turned(frame.R, frame.v),
-        "attitude": lambda frame: vector_of(parameters_of_matrices(xp.broadcast_to(frame.R, (*state.shape, 3, 3)))),
+        "attitude": attitude,
         "acceleration": lambda frame: frame.a,
         "spin": lambda frame: frame.w,
     }
@@ -145,7 +149,7 @@ def measurements(
             joint = system.joints[owner]
             body = system.order.index(joint.body)
             names = [*joint.values, *map(rate_signal, joint.rate_names)]
-            values_and_rates = tree.links[body].held_values(state.q[body][:-1], state.qd[body][:-1])
+            values_and_rates = tree.links[body].spring_values(state.q[body][:-1], state.qd[body][:-1])
             columns.append(xp.broadcast_to(concatenated(list(values_and_rates))[..., names.index(kind)], state.shape))
         else:
             name, _, axis = kind.partition("_")

@@ -1,7 +1,7 @@
-"""Elementary motions of which joints are chains: slides, rotations by a vector, and a ball.
+"""Elementary motions, of which joints are chains: slides, rotations by a vector, and balls.
 
-Each says how a frame moves relative to the one before it, by its coordinates (..., k) and their rates, and which forces
-on these coordinates do the work of a wrench.
+A step gives the motion of a frame relative to the frame before it, by its coordinates (..., k) and their rates, and the
+forces on these coordinates that do the work of a wrench.
 """
 
 from __future__ import annotations
@@ -28,36 +28,36 @@ class Step(Protocol):
         ...
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        """Motion of the frame after it, by coordinates and rates (..., k)."""
+        """Return the motion of the frame behind the step, by coordinates and rates (..., k)."""
         ...
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
-        """Forces (..., k) on the coordinates that do the work of a wrench on the frame after it."""
+        """Return the forces (..., k) on the coordinates that do the work of a wrench on the frame behind the step."""
         ...
 
-    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
-        """Values (..., h) on which a joint's springs and stops act, and rates on which its dampers and friction do."""
+    def spring_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        """Return the values (..., h) on which springs and stops act, and the rates on which dampers and friction do."""
         ...
 
-    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
-        """Forces (..., k) on the coordinates that do the work of forces (..., h) on these values and rates."""
+    def coordinate_forces(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+        """Return the forces (..., k) on the coordinates that do the work of forces (..., h) on values and rates."""
         ...
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        """Return the same motion by as many coordinates as degrees of freedom, and these with their two rates."""
+    def minimal_form(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        """Return the same motion with as many coordinates as degrees of freedom, and these with their two rates."""
         ...
 
 
 class Minimal:
     """A motion with as many coordinates as degrees of freedom: springs and dampers act on these themselves."""
 
-    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
+    def spring_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
         return q, qd
 
-    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+    def coordinate_forces(self, q: Array, by_values: Array, by_rates: Array) -> Array:
         return by_values + by_rates
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Any, Array, Array, Array]:
+    def minimal_form(self, q: Array, qd: Array, qdd: Array) -> tuple[Any, Array, Array, Array]:
         return self, q, qd, qdd
 
 
@@ -131,69 +131,72 @@ class Ball:
         return 4
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        """Turn, angular velocity and acceleration of the body, by Euler parameters, which need not have unit length."""
+        """Return the rotation of the body and its rates, by Euler parameters, which need not have unit length."""
         xp = namespace(q)
         size = xp.sqrt((q * q).sum(axis=-1, keepdims=True))
         n = q / size
         growth = (n * qd).sum(axis=-1, keepdims=True) / size
-        rate = 2 / size * _outward(n, qd)
-        change = 2 / size * _outward(n, qdd) - 2 * growth * rate
+        rate = 2 / size * _half_angular_velocity(n, qd)
+        change = 2 / size * _half_angular_velocity(n, qdd) - 2 * growth * rate
         return Relative(None, None, None, rotation_by_parameters(n), rate, change)
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         unit_size = (q * qdd + qd * qd + 2 * q * qd + q * q / 2).sum(axis=-1, keepdims=True) - 0.5
         return concatenated([unit_size, wrench.moment])
 
-    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
+    def spring_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
         size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
-        return vector_of(q / size), 2 / size * _outward(q / size, qd)
+        return rotation_vector(q / size), 2 / size * _half_angular_velocity(q / size, qd)
 
-    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+    def coordinate_forces(self, q: Array, by_values: Array, by_rates: Array) -> Array:
         size = namespace(q).sqrt((q * q).sum(axis=-1, keepdims=True))
-        return concatenated([0 * size, body_moment(vector_of(q / size), by_values) + by_rates])
+        return concatenated([0 * size, body_moment(rotation_vector(q / size), by_values) + by_rates])
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
-        by = self.motion(q, qd, qdd)
-        return Turning(q / np.sqrt(q @ q), by.w, by.alpha), np.zeros(3), by.w, by.alpha
+    def minimal_form(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+        relative = self.motion(q, qd, qdd)
+        step = Turning(q / np.sqrt(q @ q), relative.w, relative.alpha)
+        return step, np.zeros(3), relative.w, relative.alpha
 
 
 @record
 class Turning:
-    """Rotation by a vector φ (..., 3) after a ball's unit Euler parameters `before` (4,), from axes that turn on at the
-    angular velocity `spin` (3,) rad/s and acceleration `faster` (3,) rad/s². Its rates are φ̇ + spin, those of the body
-    where φ is zero: departures from a steady spin are departures in the body's axes. Its rows are moments about the
-    turned axes, so that a drive turns on with the body, and its springs act on the whole rotation, as the ball's do.
+    """Rotation by a vector φ (..., 3) after a ball's unit Euler parameters, `initial_parameters` (4,).
+
+    Its axes turn on at the angular velocity `spin` (3,) rad/s and the acceleration `spin_acceleration` (3,) rad/s². Its
+    rates are φ̇ + spin, those of the body where φ is zero: departures from a steady spin are departures in the body's
+    axes. Its rows are moments about the turned axes, so that a drive turns on with the body. Its springs act on the
+    whole rotation, as the ball's do.
     """
 
-    before: Array
+    initial_parameters: Array
     spin: Array
-    faster: Array
+    spin_acceleration: Array
 
     @property
     def size(self) -> int:
         return 3
 
     def motion(self, q: Array, qd: Array, qdd: Array) -> Relative:
-        R, w, alpha = rotation_by_vector(q, qd - self.spin, qdd - self.faster, plane=False)
-        spin, faster = (turned_back(R, vector + 0 * q) for vector in (self.spin, self.faster))
-        R = product(rotation_by_parameters(self.before), R)
-        return Relative(None, None, None, R, w + spin, alpha + faster + cross(spin, w))
+        R, w, alpha = rotation_by_vector(q, qd - self.spin, qdd - self.spin_acceleration, plane=False)
+        spin, spin_rate = (turned_back(R, vector + 0 * q) for vector in (self.spin, self.spin_acceleration))
+        R = product(rotation_by_parameters(self.initial_parameters), R)
+        return Relative(None, None, None, R, w + spin, alpha + spin_rate + cross(spin, w))
 
     def rows(self, q: Array, qd: Array, qdd: Array, wrench: Wrench) -> Array:
         return wrench.moment
 
-    def held_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
+    def spring_values(self, q: Array, qd: Array) -> tuple[Array, Array]:
         return self._total_rotation(q), self.motion(q, qd, 0 * qd).w
 
-    def pushed(self, q: Array, by_values: Array, by_rates: Array) -> Array:
+    def coordinate_forces(self, q: Array, by_values: Array, by_rates: Array) -> Array:
         return body_moment(self._total_rotation(q), by_values) + by_rates
 
-    def local(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
+    def minimal_form(self, q: Array, qd: Array, qdd: Array) -> tuple[Step, Array, Array, Array]:
         return self, q, qd, qdd
 
     def _total_rotation(self, q: Array) -> Array:
-        """Rotation vectors (..., 3) of the Euler parameters `before` and the vectors q after them."""
-        return vector_of(composed_parameters(self.before, parameters_of_vector(q)))
+        """Rotation vectors (..., 3) of the initial Euler parameters followed by rotations by the vectors q."""
+        return rotation_vector(composed_parameters(self.initial_parameters, parameters_of_vector(q)))
 
 
 @record
@@ -216,7 +219,7 @@ class Placed(Minimal):
         return q
 
 
-def _outward(n: Array, rate: Array) -> Array:
+def _half_angular_velocity(n: Array, rate: Array) -> Array:
     """G(n) ė: half the angular velocity, turned axes, of unit Euler parameters whose rate is ė."""
     scalar, vector = n[..., :1], n[..., 1:]
     return scalar * rate[..., 1:] - vector * rate[..., :1] - cross(vector, rate[..., 1:])
@@ -281,10 +284,10 @@ def parameters_of_matrices(R: Array) -> Array:
     largest = xp.diagonal(products, axis1=-2, axis2=-1).argmax(axis=-1)[..., None, None]
     row = xp.take_along_axis(products, largest, axis=-2)[..., 0, :]
     unit = row / xp.sqrt((row * row).sum(axis=-1, keepdims=True))
-    return continuous(xp.where(unit[:1, :1] >= 0, unit, -unit))
+    return remove_sign_jumps(xp.where(unit[:1, :1] >= 0, unit, -unit))
 
 
-def vector_of(e: Array) -> Array:
+def rotation_vector(e: Array) -> Array:
     """Rotation vectors (..., 3), rad, of half a turn at most, of unit Euler parameters (..., 4)."""
     xp = namespace(e)
     e = xp.where(e[..., :1] < 0, -e, e)
@@ -296,8 +299,8 @@ def vector_of(e: Array) -> Array:
     return 4 * tangent * xp.where(small, 1 - s / 3 * (1 - 3 * s / 5), xp.arctan(size) / size)
 
 
-def continuous(e: Array) -> Array:
-    """Euler parameters (t, ..., 4) without jumps of sign."""
+def remove_sign_jumps(e: Array) -> Array:
+    """Return Euler parameters (t, ..., 4) without jumps of sign."""
     xp = namespace(e)
     turn = xp.where((e[1:] * e[:-1]).sum(axis=-1) < 0, -1.0, 1.0)
     return e * xp.cumprod(xp.concatenate([xp.ones_like(turn[:1]), turn]), axis=0)[..., None] if len(e) > 1 else e
