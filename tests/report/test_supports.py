@@ -10,8 +10,8 @@ from matplotlib.markers import CARETUP
 import gbeam as gb
 from gbeam.figures import figures_of
 from gbeam.plots import draw
-from gbeam.report.description import text
-from gbeam.report.page.result import report_of
+from gbeam.report import description_text as text
+from gbeam.report import report_of
 
 from .test_page import header_of
 

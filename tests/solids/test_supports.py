@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.linalg import eigh
 
 import gbeam as gb
-from gbeam.solids.elements import mass_matrix, stiffness_matrix
+from gbeam.solids import mass_matrix, stiffness_matrix
 
 from .bodies import STEEL, STIFF, block
 

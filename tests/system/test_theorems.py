@@ -8,10 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gbeam as gb
-from gbeam.mechanics.fields.products import turned
-from gbeam.mechanics.tree.signals import measurements, signals_of
-from gbeam.mechanics.tree.steps import parameters_of_matrices, rotation_by_parameters, rotation_by_vector, vector_of
-from gbeam.numerics.series import STEP
+from gbeam.mechanics import (
+    measurements,
+    parameters_of_matrices,
+    rotation_by_parameters,
+    rotation_by_vector,
+    rotation_vector,
+    signals_of,
+    turned,
+)
+from gbeam.numerics import STEP
 from tests.system.trees import JOINTS, flexible, tree
 
 LINK = st.tuples(

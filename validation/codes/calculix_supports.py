@@ -17,7 +17,7 @@ import numpy as np
 
 import gbeam as gb
 from gbeam.constants import STANDARD_GRAVITY as G
-from gbeam.solids.elements import mass_matrix
+from gbeam.solids import mass_matrix
 from validation.codes.calculix_solid import Specimen, printed_frequencies, run
 from validation.codes.calculix_specimens import STEEL, grid
 from validation.table import Row

@@ -185,12 +185,16 @@ def _of_response(result: Response, title: str) -> dict[str, Describe]:
 
 
 def _of_body(result: Response, name: str, body: BodyResponse, title: str) -> dict[str, Describe]:
-    """Figures of one body of a response: loads of a rigid specimen; or loads of its root, and stress of a mesh."""
+    """Figures of one body of a response: loads of a rigid specimen; or loads of its root and supports, and stress of a
+    mesh.
+    """
     if body.specimen is not None:
         return {"specimen": partial(bodies.specimen, body.specimen, title)}
     described: dict[str, Describe] = {}
     if body.loads is not None:
         described["loads"] = partial(bodies.loads, result, name, title)
+        if body.loads.support_force is not None:
+            described["supports"] = partial(bodies.supports, result, name, title)
     if body.solid is not None:
         described["stress"] = partial(bodies.stress, body.solid, title)
     return described

@@ -13,6 +13,7 @@ from .fields.basis import bending_shapes as bending_shapes
 from .fields.basis import closed_forms as closed_forms
 from .fields.basis import legendre_shapes as legendre_shapes
 from .fields.basis import quadrature as quadrature
+from .fields.products import turned as turned
 from .fields.projected import ProjectedField as ProjectedField
 from .fields.projected import RootedField as RootedField
 from .fields.projected import projected_field as projected_field
@@ -37,7 +38,6 @@ from .tree.equations import SLIPS as SLIPS
 from .tree.equations import Inputs as Inputs
 from .tree.equations import Tree as Tree
 from .tree.frames import Frame as Frame
-from .tree.frames import turned as turned
 from .tree.joints import JOINT_KINDS as JOINT_KINDS
 from .tree.joints import OF_COORDINATES as OF_COORDINATES
 from .tree.joints import SLIDES as SLIDES

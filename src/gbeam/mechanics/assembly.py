@@ -32,7 +32,7 @@ from gbeam.mechanics.fields.measures import components, measures_of
 from gbeam.mechanics.fields.projected import Field, ReducedField, RootedField, projected_field
 from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import ExpandedField, shaped_strains, strain_field
-from gbeam.mechanics.models import KINDS, Kind, Model
+from gbeam.mechanics.models import MODEL_KINDS, Kind, Model
 from gbeam.mechanics.plausibility import implausible_beam, refuse_disparate, refuse_unknown
 from gbeam.mechanics.recovery import Source
 from gbeam.mechanics.structure import Grip, Structure
@@ -159,7 +159,9 @@ def assembled(
         c = free.coefficients
         return replace(free, coefficients=c.damped(c.damping + root_dashpots(beam, c.size)))
     first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
-    return hold(beam, field, stiffness, heat, build, at, first_station, sum(counts), dependents, KINDS[kind].order)
+    return hold(
+        beam, field, stiffness, heat, build, at, first_station, sum(counts), dependents, MODEL_KINDS[kind].order
+    )
 
 
 def hold(
@@ -243,7 +245,7 @@ class _Unheld(NamedTuple):
 
 def _unheld(beam: Beam, kind: str, counts: Counts, rule: Quadrature, at: Array, families: Families) -> _Unheld:
     """Field, stiffness and heat of a beam by the functions of its shapes, without supports beyond its root."""
-    row = KINDS[kind]
+    row = MODEL_KINDS[kind]
     loaded = [load.at for load in beam.loads if load.at is not None]
     x = np.concatenate([rule.node, [m.at for m in beam.masses], loaded, at])
     move, turn = beam.root.directions()
@@ -280,7 +282,7 @@ def _structure(
     """Structure of a beam from its field, its stiffness, its damping (n, n), by default that of its modes, and the
     forces of a rise of its temperature by 1 K.
     """
-    row = KINDS[kind]
+    row = MODEL_KINDS[kind]
     loaded = [load.at for load in beam.loads if load.at is not None]
     first_station, ratio = len(rule.node) + len(beam.masses) + len(loaded), beam.damping_ratio
     station, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)

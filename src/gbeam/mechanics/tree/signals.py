@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol
 from gbeam.arrays.namespace import Array, concatenated, namespace
 from gbeam.guards.kinds import KINDS
 from gbeam.mechanics.fields.products import turned
+from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import Joint
 from gbeam.mechanics.tree.signal_names import CARRIED, OF_POINTS, kind_of_drive, kind_of_signal, rate_signal
 from gbeam.mechanics.tree.steps import parameters_of_matrices, rotation_vector
