@@ -421,3 +421,51 @@ def test_reactions_balance_where_the_root_gives_way(kind: Any) -> None:
 def test_a_beam_without_rotary_inertia_does_not_turn_about_its_axis() -> None:
     with pytest.raises(gb.InputError, match="rotary_inertia is false, and the root gives way about x"):
         gb.assemble(beam(gb.Support(0.0, OPEN, {"rx": 5.0})), "FOAM", z=2)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_line_without_curvature_is_held_as_a_straight_beam(kind: str) -> None:
+    """Their shapes differ: on a line every family has polynomials and the strains of every unit load."""
+    straight = gb.Line(LENGTH, lambda x: np.zeros((len(x), 3)))
+    supports = [gb.Support(0.4, ["z"], stiffness={"ry": 50.0}), gb.Support(LENGTH, ["x", "y", "z", "rz"])]
+    held = [gb.assemble(beam(*supports, line=line), kind, axial=2, y=5, z=5) for line in (None, straight)]
+    one, other = (gb.modes(model).frequency[0] for model in held)
+    assert other == pytest.approx(one, rel=2e-4)
+    one, other = (gb.static(model, acceleration=(0.0, 5.0, 100.0)).loads.support_force for model in held)
+    assert other == pytest.approx(one, rel=2e-2, abs=1e-2 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_an_arch_and_its_supports_balance(kind: str) -> None:
+    """A quarter of a circle between a pin and a clamp that is turned by 90°: the axes of supports are the root's."""
+    radius = 0.4
+    arc = gb.Line(np.pi / 2 * radius, lambda x: np.stack([0 * x, 1 / radius + 0 * x, 0 * x], axis=1))
+    section = gb.Section.rectangle(WIDTH, THICKNESS)
+    supports = [PIN, gb.Support("tip", ["x", "y", "z", "rx", "ry", "rz"])]
+    metal = gb.Material(DENSITY, MODULUS, poissons_ratio=0.3)
+    arch = gb.Beam(arc.length, section, metal, supports=supports, line=arc)
+    rest = gb.static(gb.assemble(arch, kind, axial=3, y=4, z=5, twist=2), acceleration=(3.0, 2.0, 9.81))
+    loads = rest.loads
+    assert loads is not None and loads.base_force is not None and loads.support_force is not None
+    mass = DENSITY * WIDTH * THICKNESS * arc.length
+    assert loads.base_force[0] == pytest.approx(mass * np.array([3.0, 2.0, 9.81]), rel=1e-9)
+    assert np.linalg.norm(rest.tip) < 1e-15
+    assert rest.errors.loads.total < 0.05
+
+
+def test_a_pinned_arch_buckles_at_the_pressure_of_the_closed_form() -> None:
+    """Of a half-angle α under a pressure that follows it, p = EI/R³ (π²/α² − 1), where it does not shorten.
+
+    The square of its lowest frequency falls as the pressure grows to that; beyond, what was lowest vibrates no more.
+    """
+    radius, angle = 0.5, np.pi / 4
+    arc = gb.Line(2 * angle * radius, lambda x: np.stack([0 * x, 1 / radius + 0 * x, 0 * x], axis=1))
+    section, metal = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS, poissons_ratio=0.0)
+    supports = [PIN, gb.Support("tip", ["x", "z"])]
+    critical, lowest = EI / radius**3 * ((np.pi / angle) ** 2 - 1), list[float]()
+    for share in (0.5, 0.995, 1.005):
+        pressure = gb.Load(distributed=(0.0, 0.0, -share * critical), follower=True)
+        arch = gb.Beam(arc.length, section, metal, supports=supports, line=arc, loads=[pressure])
+        lowest.append(gb.modes(gb.assemble(arch, "FOAM", axial=1, z=4)).frequency[0])
+    assert lowest[1] / lowest[0] == pytest.approx(np.sqrt(0.005 / 0.5), rel=0.05)
+    assert lowest[2] > 2 * lowest[0]

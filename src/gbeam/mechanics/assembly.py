@@ -38,11 +38,9 @@ from gbeam.mechanics.recovery import Source
 from gbeam.mechanics.structure import Grip, Structure
 from gbeam.mechanics.supports import (
     chosen_dependents,
-    counts_by_family,
     counts_without,
     plus,
     refuse_shapeless,
-    refuse_stretched,
     rigid_conditions,
     static_counts,
     supported_shapes,
@@ -119,12 +117,11 @@ def assemble(
     # Integrals from the root are a matrix of all nodes to all.
     nodes = len(rule.node)
     refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
-    refuse_stretched(beam, model.kind)
-    refuse_shapeless(beam, counts)
+    refuse_shapeless(beam, model.kind, counts)
     if beam.temperature is not None and not counts[0]:
         fix = "leave it out, or choose FOAM with modes.axial = 1" if not row.axial else "give modes.axial = 1 or more"
         raise InputError("temperature", "stretches the beam, and the model has no shapes along it", fix)
-    counts = plus(counts, plus(counts_by_family(rigid_conditions(beam)), static_counts(beam)))
+    counts = plus(counts, static_counts(beam, counts))
     families = families_of(beam, model.kind, counts, rule, model.shapes)
     return assembled(beam, model.kind, counts, rule, at, families, model.shapes, automatic=model.automatic)
 
@@ -152,7 +149,8 @@ def assembled(
     ) -> Structure:
         """Structure in the coordinates that are not taken by supports."""
         left = counts_without(counts, taken)
-        return _structure(beam, kind, rule, at, shapes, left, field, stiffness, damping, heat, automatic=automatic)
+        source = Source(beam, shapes, counts, automatic)
+        return _structure(source, kind, rule, at, left, field, stiffness, damping, heat)
 
     if not beam.held_places:
         free = build(field, stiffness, None, heat, ())
@@ -186,8 +184,9 @@ def hold(
     """
     conditions, yielding = rigid_conditions(beam), yielding_conditions(beam)
     every = [*conditions, *yielding]
-    # What bends shortens along x: of polynomials the conditions along x alone are of second order.
-    curved = order is None or (order > 1 and any(condition.direction == "x" for condition in every))
+    # What bends shortens along x: of polynomials of a straight beam the conditions along x alone are of second order.
+    bent = beam.line is not None or any(condition.direction == "x" for condition in every)
+    curved = order is None or (order > 1 and bent)
     slopes, angles = field.sections(slice(first_station, None)).jacobians(np.zeros(len(stiffness)))
     places = tuple((int(np.argmin(np.abs(at - condition.at))), condition.number) for condition in every)
     parted = places[: len(conditions)], places[len(conditions) :]
@@ -266,23 +265,20 @@ def _unheld(beam: Beam, kind: str, counts: Counts, rule: Quadrature, at: Array, 
 
 
 def _structure(
-    beam: Beam,
+    source: Source,
     kind: str,
     rule: Quadrature,
     at: Array,
-    shapes: Shapes,
     counts: Counts,
     field: Field,
     stiffness: Array,
     damping: Array | None,
     heat: Array | None,
-    *,
-    automatic: bool,
 ) -> Structure:
     """Structure of a beam from its field, its stiffness, its damping (n, n), by default that of its modes, and the
     forces of a rise of its temperature by 1 K.
     """
-    row = MODEL_KINDS[kind]
+    beam, row = source.beam, MODEL_KINDS[kind]
     loaded = [load.at for load in beam.loads if load.at is not None]
     first_station, ratio = len(rule.node) + len(beam.masses) + len(loaded), beam.damping_ratio
     station, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
@@ -326,7 +322,7 @@ def _structure(
         load_values=None if history is None else history(np.zeros(())),
         damping_ratio=ratio,
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
-        source=None if is_jax(c.mass) else Source(beam, shapes, automatic),
+        source=None if is_jax(c.mass) else source,
     )
 
 
@@ -364,8 +360,9 @@ def model_of(structure: Structure) -> Model:
     """Return the model of a structure of a beam."""
     assert structure.source is not None
     kind: Any = structure.kind
-    statics = static_counts(structure.source.beam)  # which come on top
-    axial, y, z, *others = (count - more for count, more in zip(structure.counts, statics, strict=True))
+    source = structure.source
+    statics = static_counts(source.beam, source.counts)  # which come on top
+    axial, y, z, *others = (count - more for count, more in zip(source.counts, statics, strict=True))
     return Model(kind, axial, y, z, structure.source.shapes, structure.source.automatic, *others)
 
 

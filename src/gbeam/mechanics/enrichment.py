@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gbeam.arrays.namespace import Array
+from gbeam.arrays.types import Floats
 from gbeam.mechanics.assembly import assembled, breaks_of, families_of
 from gbeam.mechanics.beam_terms import particles_of, stiffness_of
-from gbeam.mechanics.fields.adapted import GROUPS, Space, spaces_of
+from gbeam.mechanics.fields.adapted import GROUPS, Space, spaces_of, springs_for_shapes
 from gbeam.mechanics.fields.basis import Counts, Families, Family, Quadrature, Shapes, joined_family, quadrature
 from gbeam.mechanics.fields.strains import STRAINS, strain_field
 from gbeam.mechanics.models import MODEL_KINDS
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.supports import counts_by_family, heat_load, plus, rigid_conditions, unit_load, yielding_conditions
+from gbeam.mechanics.supports import concerns, heat_load, rigid_conditions, unit_load, yielding_conditions
 from gbeam.results.parts import Base
 from gbeam.structure.beam import Beam
 
@@ -130,7 +131,7 @@ def _flexibilities(beam: Beam, space: Space, force: Array | None) -> list[Array]
     under the beam's supports.
     """
     unloaded = _flexibility(space)
-    if beam.held_places and space.upper is None:
+    if beam.held_places:
         unloaded = _held_flexibility(beam, space, np.zeros_like(space.mass))
     if force is None or not bends(space, force):
         return [unloaded]
@@ -148,14 +149,16 @@ def _held_flexibility(beam: Beam, space: Space, added: Array) -> Array:
     size = np.sqrt(space.stiffness)
     true = space.stiffness.copy()
     true[list(space.loose)] = 0.0
-    stiffness = (np.diag(true) + added) / np.outer(size, size)
+    elastic = np.diag(true) if space.upper is None else space.upper.T @ space.upper
+    stiffness = (elastic + added) / np.outer(size, size)
     for condition in yielding_conditions(beam):
-        if condition.family in space.families:
+        if concerns(space, condition):
             row = unit_load(space, condition) / size
             stiffness_of_support: Any = beam.supports[condition.support].stiffness
             spring = stiffness_of_support.get(condition.direction, 0.0)
             stiffness = stiffness + spring * np.outer(row, row)
-    rows = [unit_load(space, each) / size for each in rigid_conditions(beam) if each.family in space.families]
+    rigid = (condition for condition in rigid_conditions(beam) if concerns(space, condition))
+    rows = [unit_load(space, condition) / size for condition in rigid]
     free = np.eye(len(size))
     if rows:
         free = np.linalg.svd(np.stack(rows))[2][len(rows) :].T
@@ -180,14 +183,15 @@ def bends(space: Space, force: Array) -> bool:
 def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     """Space of all motions of a beam whose line, or section by matrices, couples the directions."""
     families = tuple(family for family in range(6) if family < 3 or counts[family])
-    nodes, springs = len(rule.node), [*beam.root.springs.values()]
+    nodes, springs = len(rule.node), [*springs_for_shapes(beam).values()]
     strained = len(families) * nodes
     strains = np.zeros((6, nodes, strained + len(springs)))
     for k, family in enumerate(families):
         strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes) * (-1 if family == 2 else 1)
     move, turn = (np.pad(by_springs, ((0, 0), (strained, 0))) for by_springs in beam.root.directions())
     loaded = [load.place for load in beam.loads if load.at is not None]
-    x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded])
+    held = [support.place for support in beam.held_places.values()]
+    x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded, held])
     field = strain_field(rule, x, strains, move, turn, beam.line)
     at, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
     particles, rest = field.points(at, offset), np.zeros(field.size)
@@ -209,6 +213,17 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
             if component is not None
             for axis in range(3)
         ]
+    for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
+        part = angles if condition.direction.startswith("r") else slopes
+        loads.append(part[-len(held) :][held.index(condition.at), condition.number % 3])
+
+    def sensitivity(at: Floats) -> tuple[Floats, Floats]:
+        """Displacements and angles (points, 3, n) at the nodes, or at places of supports."""
+        if len(at) == 1 and at[0] in held:
+            k = len(x) - len(held) + held.index(at[0])
+            return slopes[k : k + 1], angles[k : k + 1]
+        return slopes[:nodes], angles[:nodes]
+
     stiffnesses = beam.stiffnesses(rule.node)
     stiffness = [*(stiffnesses[STRAINS[family]] * rule.weight for family in families), springs]
     energy = stiffness_of(beam, rule, strains) if beam.material is None else None
@@ -220,7 +235,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
         turning=0 * mass[:nodes],
         mass=np.einsum("p,pai,paj->ij", mass, moved, moved),
         stiffness=np.concatenate(stiffness),
-        sensitivity=lambda _: (slopes, angles),
+        sensitivity=sensitivity,
         loads=np.stack(loads, axis=1),
         upper=None if energy is None else np.linalg.cholesky(energy).T,
     )
@@ -296,7 +311,7 @@ class Enrichment:
         """Find the shapes that the structure lacks, also under an axial `force` (g,), N."""
         assert structure.source is not None
         self.structure, beam = structure, structure.source.beam
-        counts = plus(structure.counts, counts_by_family(rigid_conditions(beam)))
+        counts = structure.source.counts
         marks = [m.at for m in beam.masses] + [load.place for load in beam.loads if load.at is not None]
         breaks = [*breaks_of(beam), *marks]
         panels = len(quadrature(beam.length, 1, breaks).edges) - 1
@@ -324,7 +339,9 @@ class Enrichment:
 
     def _model(self, kind: str, directions: tuple[bool, bool, bool]) -> tuple[Structure, NDArray[np.int_]]:
         """Build the model and indices of :meth:`model`, with new shapes of families that move along `directions`."""
-        model_counts = plus(self.structure.counts, counts_by_family(rigid_conditions(self.beam)))
+        source = self.structure.source
+        assert source is not None
+        model_counts = source.counts
         wanted = [False] * 6
         for group, along in zip(GROUPS, (*directions, True), strict=True):
             for family in group:
@@ -342,7 +359,6 @@ class Enrichment:
             ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - taken - len(ratio)))
         beam = replace(self.beam, damping_ratio=ratio)
         stations = np.asarray(self.structure.stations)
-        shapes = self.structure.source.shapes  # type: ignore[union-attr]
         starts = np.cumsum([0, *counts])
         index = np.concatenate(
             [
@@ -353,10 +369,10 @@ class Enrichment:
         index = index.astype(int)
         grip = self.structure.grip
         if grip is None:
-            return assembled(beam, kind, counts, self.rule, stations, families, shapes), index
+            return assembled(beam, kind, counts, self.rule, stations, families, source.shapes), index
         dependents = index[list(grip.dependents)]
         rich = assembled(
-            beam, kind, counts, self.rule, stations, families, shapes, dependents=tuple(dependents.tolist())
+            beam, kind, counts, self.rule, stations, families, source.shapes, dependents=tuple(dependents.tolist())
         )
         kept = np.delete(index, grip.dependents)
         return rich, kept - (dependents < kept[:, None]).sum(axis=1)
@@ -365,8 +381,8 @@ class Enrichment:
 def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families:
     """Functions of the structure's own shapes, with those that depend on others where supports hold it."""
     assert structure.source is not None
-    counts = plus(structure.counts, counts_by_family(rigid_conditions(beam)))
-    return families_of(beam, structure.kind, counts, rule, structure.source.shapes)
+    source = structure.source
+    return families_of(beam, structure.kind, source.counts, rule, source.shapes)
 
 
 def _truncated(family: Family, count: int) -> Family:

@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import Value, record
 from gbeam.constants import Shapes
+from gbeam.mechanics.fields.basis import Counts
 from gbeam.structure.beam import Beam
 
 
@@ -63,8 +64,12 @@ class Recovery(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Source(Value):
-    """The beam that a structure was made of, and its model's shapes, whose numbers a study chooses if `automatic`."""
+    """The beam that a structure was made of, and its model's shapes, whose numbers a study chooses if `automatic`.
+
+    These are `counts`, with the static ones of supports among them.
+    """
 
     beam: Beam
     shapes: Shapes
+    counts: Counts
     automatic: bool = False

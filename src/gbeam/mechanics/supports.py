@@ -15,9 +15,11 @@ import numpy as np
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
-from gbeam.mechanics.fields.adapted import Space, space
+from gbeam.mechanics.fields.adapted import Space, nodal_family
 from gbeam.mechanics.fields.basis import FAMILIES, Counts, Families, Family, Quadrature, joined_family
+from gbeam.mechanics.fields.strains import STRAINS
 from gbeam.structure.beam import Beam
+from gbeam.structure.matrices import condensed
 from gbeam.structure.supports import DIRECTIONS
 
 FAMILY = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 2, "rz": 1}  # that moves or turns sections in a direction
@@ -55,16 +57,19 @@ def yielding_conditions(beam: Beam) -> list[Condition]:
     return [Condition(i, support.place, direction) for i, support in held for direction in support.yielding]
 
 
-def counts_by_family(conditions: list[Condition]) -> Counts:
-    """Numbers of conditions on each family of shapes."""
-    axial, y, z, twist, shear_y, shear_z = (sum(each.family == k for each in conditions) for k in range(6))
+def families_of(beam: Beam, condition: Condition, counts: Counts) -> tuple[int, ...]:
+    """Families of shapes that a condition concerns: of a beam whose directions are coupled all that a model has."""
+    return tuple(k for k in range(6) if counts[k]) if beam.coupled else (condition.family,)
+
+
+def static_counts(beam: Beam, counts: Counts) -> Counts:
+    """Numbers of static shapes by family, of supports and of the temperature, in a model with `counts` of shapes."""
+    conditions = [*rigid_conditions(beam), *yielding_conditions(beam)]
+    concerned = [family for condition in conditions for family in families_of(beam, condition, counts)]
+    if beam.temperature is not None and not beam.coupled:
+        concerned.append(0)
+    axial, y, z, twist, shear_y, shear_z = (concerned.count(k) for k in range(6))
     return axial, y, z, twist, shear_y, shear_z
-
-
-def static_counts(beam: Beam) -> Counts:
-    """Numbers of static shapes, by family, that no condition takes: of springs and dampers, and of the temperature."""
-    heated = int(beam.temperature is not None and not beam.coupled)
-    return plus(counts_by_family(yielding_conditions(beam)), (heated, 0, 0, 0, 0, 0))
 
 
 def counts_without(counts: Counts, taken: tuple[int, ...]) -> Counts:
@@ -81,23 +86,14 @@ def plus(counts: Counts, more: Counts) -> Counts:
     return axial, y, z, twist, shear_y, shear_z
 
 
-def refuse_stretched(beam: Beam, kind: str) -> None:
-    """Raise InputError where supports hold a beam whose directions are coupled, or a model that does not know them."""
-    if beam.held_places and beam.coupled:
-        fix = "leave supports out, or give the beam as a mesh, [solid]"
-        raise InputError("supports", "hold a beam that its line or its matrices couple: not computed yet", fix)
+def refuse_shapeless(beam: Beam, kind: str, counts: Counts) -> None:
+    """Raise InputError where a support holds a direction along which a model has no shapes, or its kind knows none."""
     for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
-        where, fix = f"supports[{condition.support}]", 'choose model.kind = "exact", with modes.axial = 1 or more'
+        where, name = f"supports[{condition.support}]", FAMILIES[condition.family]
         if kind == "fourth-order":
+            fix = 'choose model.kind = "exact", with modes.axial = 1 or more'
             raise InputError(where, "is not known to fourth-order models", fix)
-
-
-def refuse_shapeless(beam: Beam, counts: Counts) -> None:
-    """Raise InputError where a support holds a direction along which a model has no shapes."""
-    for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
-        name = FAMILIES[condition.family]
-        if not counts[condition.family]:
-            where = f"supports[{condition.support}]"
+        if not beam.coupled and not counts[condition.family]:
             problem = f"holds {condition.direction}, in which the model has no shapes"
             raise InputError(where, problem, f"give modes.{name} = 1 or more, or leave {condition.direction} out")
 
@@ -108,20 +104,12 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
 
     Where the base contains a static deflection already, as polynomials do, it has one shape more instead.
     """
-    conditions = [*rigid_conditions(beam), *yielding_conditions(beam)]
-    lacking = list(plus(counts_by_family(rigid_conditions(beam)), static_counts(beam)))
-    statics: dict[int, Floats] = {}
-    spaces: dict[int, Space] = {}
-    for family, number in enumerate(lacking):
-        if number:
-            spaces[family] = space(beam, rule, family, counts)
-            loads = [unit_load(spaces[family], condition) for condition in conditions if condition.family == family]
-            if len(loads) < number:
-                loads.append(heat_load(spaces[family]))
-            statics[family] = np.stack(loads, axis=1) / spaces[family].stiffness[:, None]
+    lacking = list(static_counts(beam, counts))
+    statics = {family: _static_strains(beam, rule, family, counts) for family in range(6) if lacking[family]}
+    weights = {family: np.sqrt(beam.stiffnesses(rule.node)[STRAINS[family]] * rule.weight) for family in statics}
     while True:
         plain = base(plus(counts, _negative(lacking)))
-        new = {family: _new(spaces[family], family, plain[family], each) for family, each in statics.items()}
+        new = {family: _new(rule, weights[family], family, plain[family], each) for family, each in statics.items()}
         counted = [len(new.get(family, ())) for family in range(6)]
         if counted == lacking:
             break
@@ -129,7 +117,7 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
     families = list(plain)
     for family, chosen in new.items():
         if chosen:
-            static = spaces[family].family(family, statics[family][:, chosen])
+            static = nodal_family(rule, statics[family][:, chosen], beam.length, axial=family not in (1, 2))
             families[family] = joined_family(families[family], static)
     s, v, w, t, a, b = families
     return s, v, w, t, a, b
@@ -141,10 +129,53 @@ def _negative(counts: list[int]) -> Counts:
     return axial, y, z, twist, shear_y, shear_z
 
 
+def _static_strains(beam: Beam, rule: Quadrature, family: int, counts: Counts) -> Floats:
+    """Strains (g, k) of a family's kind at the nodes, under unit loads at the supports and under a rise of the
+    temperature, each that concerns the family.
+    """
+    columns = [
+        _unit_strains(beam, rule, condition, counts)[STRAINS[family]] * (-1 if family == 2 else 1)
+        for condition in (*rigid_conditions(beam), *yielding_conditions(beam))
+        if family in families_of(beam, condition, counts)
+    ]
+    if beam.temperature is not None and family == 0 and not beam.coupled:
+        columns.append(np.ones(len(rule.node)))
+    return np.stack(columns, axis=1)
+
+
+def _unit_strains(beam: Beam, rule: Quadrature, condition: Condition, counts: Counts) -> Floats:
+    """Strains (6, g) at the nodes of the beam on its root alone, under a unit load along a condition's direction."""
+    place, axes = beam.at_rest(rule.node)
+    at = beam.at_rest([condition.at])[0][0]
+    unit, nothing = np.eye(3)[condition.number % 3], np.zeros(3)
+    turns = condition.direction.startswith("r")
+    force, couple = (nothing, unit) if turns else (unit, nothing)
+    moment = np.cross(at - place, force) + couple
+    vectors = np.stack([np.broadcast_to(force, place.shape), moment], axis=1)
+    carried = np.einsum("gab,gka->gkb", axes, vectors).reshape(len(place), 6)
+    carried = np.where(rule.node[:, None] < condition.at, carried, 0.0)
+    strains = np.zeros((6, len(place)))
+    shaped = sorted({0, 4, 5, *(STRAINS[family] for family in range(6) if counts[family])})
+    if beam.material is None:
+        stiffness = condensed(beam.section.matrices(rule.node)[0], shaped)
+        strains[shaped] = np.linalg.solve(stiffness, carried[:, shaped, None])[..., 0].T
+    else:
+        stiffnesses = beam.stiffnesses(rule.node)
+        for strain in shaped:
+            strains[strain] = carried[:, strain] / stiffnesses[strain]
+    return strains
+
+
 def unit_load(motions: Space, condition: Condition) -> Floats:
     """Generalised forces (n,) on strains of a unit load along a condition's direction."""
     value, angle = motions.sensitivity(np.array([condition.at]))
-    return np.asarray(angle[0] if condition.direction.startswith("r") else value[0])
+    at = (angle if condition.direction.startswith("r") else value)[0]
+    return np.asarray(at if at.ndim == 1 else at[condition.number % 3])
+
+
+def concerns(motions: Space, condition: Condition) -> bool:
+    """True if a condition concerns motions: those in its direction, or those in all."""
+    return motions.loads is not None or condition.family in motions.families
 
 
 def heat_load(motions: Space) -> Floats:
@@ -155,18 +186,16 @@ def heat_load(motions: Space) -> Floats:
     return forces
 
 
-def _new(motions: Space, family: int, plain: Family, statics: Floats) -> list[int]:
-    """Indices of columns of static strains (n, k) that a family's shapes and the columns before do not contain."""
-    shapes, size = plain(motions.rule.node), len(motions.stiffness)
+def _new(rule: Quadrature, weight: Floats, family: int, plain: Family, statics: Floats) -> list[int]:
+    """Indices of columns of static strains (g, k) that a family's shapes and the columns before do not contain.
+
+    The squares of strains times `weight` (g,) are their energies.
+    """
+    shapes = plain(rule.node)
     strain = shapes.curvature if family in (1, 2) else shapes.slope
-    block = motions.block(family)
-    columns = np.zeros((size, strain.shape[1]))
-    columns[block] = strain
-    known, new = np.linalg.qr(motions.scaled(columns))[0], list[int]()
+    known, new = np.linalg.qr(weight[:, None] * strain)[0], list[int]()
     for k in range(statics.shape[1]):
-        part = np.zeros((size, 1))
-        part[block, 0] = statics[block, k]
-        vector = motions.scaled(part)[:, 0]
+        vector = weight * statics[:, k]
         rest = vector - known @ (known.T @ vector)
         rest = rest - known @ (known.T @ rest)
         if np.linalg.norm(rest) > NEW * np.linalg.norm(vector):
@@ -185,6 +214,10 @@ def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, 
     for k, condition in enumerate(conditions):
         before = np.linalg.qr(scaled[:k].T)[0]
         rest = scaled[k] - before @ (before.T @ scaled[k])
+        if not scaled[k].any():
+            problem = f"holds {condition.direction}, in which the model has no shapes"
+            fix = f"give modes.{FAMILIES[condition.family]} = 1 or more, or leave {condition.direction} out"
+            raise InputError(f"supports[{condition.support}]", problem, fix)
         if not np.linalg.norm(rest) > ALIKE * np.linalg.norm(scaled[k]):
             problem = f"holds {condition.direction} at {1e3 * condition.at:g} mm, where it is held already"
             fix = f"leave {condition.direction} out, or raise modes.{FAMILIES[condition.family]}"

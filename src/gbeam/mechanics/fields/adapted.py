@@ -18,7 +18,7 @@ from gbeam.mechanics.fields.strains import STRAINS
 from gbeam.structure.beam import Beam
 
 
-def _family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool) -> Family:
+def nodal_family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool) -> Family:
     """Shapes with nodal curvatures (g, shapes), or slopes if `axial`: clamped at the root, scaled to ∫f² dx = L."""
     integral = rule.cumulative(rule.node)
     slope = nodal if axial else integral @ nodal
@@ -76,7 +76,7 @@ class Space(NamedTuple):
 
     def family(self, family: int, modes: Floats) -> Family:
         """Shapes of one family with the nodal strains of columns (n, k)."""
-        return _family(self.rule, modes[self.block(family)], self.length, axial=family not in (1, 2))
+        return nodal_family(self.rule, modes[self.block(family)], self.length, axial=family not in (1, 2))
 
 
 def springs_for_shapes(beam: Beam) -> dict[str, Any]:

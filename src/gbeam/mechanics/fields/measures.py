@@ -110,12 +110,13 @@ class PolynomialMeasures(Measures):
 
 @record
 class SectionMeasures(Measures):
-    """Measures of sections of a strain field, of a straight beam at rest: each of a section, by its number among the
-    `sections`, in a direction from 0 to 5.
+    """Measures of sections of a strain field: each of a section, by its number among the `sections`, in a direction
+    from 0 to 5. At rest these are at the places `rest` (k, 3) m, with the axes (k, 3, 3) in columns.
     """
 
     sections: StrainField
     rest: Array
+    axes: Array
     which: tuple[tuple[int, int], ...] = static()
 
     @classmethod
@@ -124,7 +125,8 @@ class SectionMeasures(Measures):
         stations = sorted({station for station, _ in which})
         sections = field.sections(first + np.array(stations, dtype=int))
         numbered = tuple((stations.index(station), direction) for station, direction in which)
-        return cls(sections, sections.positions(np.zeros(field.size)), numbered)
+        still = np.zeros(field.size)
+        return cls(sections, sections.positions(still), sections.rotation(still), numbered)
 
     def state(self, q: Array) -> Tangents:
         """Tangents at the sections."""
@@ -205,9 +207,10 @@ class SectionMeasures(Measures):
         return components(self.which, change[..., None], turned)[..., 0]
 
     def _rotation(self, tangents: Tangents, q: Array) -> Array:
-        """Rotations (..., k, 3, 3) of the sections."""
+        """Rotations (..., k, 3, 3) of the sections from rest."""
         shape = (*q.shape[:-1], len(self.rest))
-        return namespace(q).stack([joined(namespace(q), row, shape) for row in tangents.at_points], axis=-2)
+        axes = namespace(q).stack([joined(namespace(q), row, shape) for row in tangents.at_points], axis=-2)
+        return axes @ namespace(self.axes).swapaxes(self.axes, -1, -2)
 
 
 def _for_each_row(tangents: Tangents) -> Tangents:

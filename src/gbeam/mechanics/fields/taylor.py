@@ -163,9 +163,11 @@ class Polynomials:
     def rotation_vectors(self) -> tuple[Any, Any]:
         """Derivatives (p, 3, n) and (p, 3, n, n) at rest of the sections' rotation vectors."""
         xp = namespace(self.turns.first)
-        first, second = (
-            -0.5 * xp.einsum("abc,pbc...->pa...", EPSILON, part) for part in (self.turns.first, self.turns.second)
-        )
+        axes = self.turns.rest
+        parts = (self.turns.first, self.turns.second)
+        if axes is not None:  # [θ]× R0
+            parts = tuple(xp.einsum("pab...,pcb->pac...", part, axes) for part in parts)
+        first, second = (-0.5 * xp.einsum("abc,pbc...->pa...", EPSILON, part) for part in parts)
         return first, second
 
     def generalised_forces(self, q: Any, push: Vector, turn: Vector = NONE) -> Any:
