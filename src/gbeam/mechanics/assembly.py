@@ -192,16 +192,17 @@ def hold(
     parted = places[: len(conditions)], places[len(conditions) :]
     rows = components(places, slopes, angles)
     held, sprung = rows[: len(conditions)], rows[len(conditions) :]
-    spring, damper = (
-        np.array(
-            [getattr(beam.supports[condition.support], name).get(condition.direction, 0.0) for condition in yielding]
-        )
+    yields = [
+        [getattr(beam.supports[condition.support], name).get(condition.direction, 0.0) for condition in yielding]
         for name in ("stiffness", "damping")
-    )
+    ]
+    xp = namespace(stiffness, *yields[0], *yields[1])
+    spring, damper = (xp.asarray(values, dtype=float) for values in yields)
     stiffness = stiffness + sprung.T @ (spring[:, None] * sprung)
     dashpots = sprung.T @ (damper[:, None] * sprung) + root_dashpots(beam, len(stiffness))
     if dependents is None:
-        dependents = chosen_dependents(conditions, held, np.diag(stiffness), shapes)
+        sizes = np.ones(len(stiffness)) if is_jax(stiffness) else np.diag(stiffness)  # the choice is one of rounding
+        dependents = chosen_dependents(conditions, held, sizes, shapes)
     basis = null_basis(held, dependents)
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)
     in_those = heat if curved or heat is None else heat @ basis
@@ -209,7 +210,7 @@ def hold(
     c = supported.coefficients
     # The damping of modes acts where their elastic forces do.
     kept = np.delete(np.eye(len(stiffness)), dependents, axis=1)
-    felt = stiffness @ basis @ np.linalg.solve(c.stiffness, c.damping) @ kept.T
+    felt = stiffness @ basis @ xp.linalg.solve(c.stiffness, c.damping) @ kept.T
     supported = replace(supported, coefficients=c.damped(c.damping + turned(dashpots, basis)))
     free = build(field, stiffness, felt + dashpots, heat, ())
     return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted, curved))

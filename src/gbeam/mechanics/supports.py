@@ -12,14 +12,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gbeam.arrays.namespace import Array
+from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.mechanics.fields.adapted import Space, nodal_family
 from gbeam.mechanics.fields.basis import FAMILIES, Counts, Families, Family, Quadrature, joined_family
 from gbeam.mechanics.fields.strains import STRAINS
 from gbeam.structure.beam import Beam
+from gbeam.structure.material import Material
 from gbeam.structure.matrices import condensed
+from gbeam.structure.section import Section
 from gbeam.structure.supports import DIRECTIONS
 
 FAMILY = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 2, "rz": 1}  # that moves or turns sections in a direction
@@ -104,9 +106,11 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
 
     Where the base contains a static deflection already, as polynomials do, it has one shape more instead.
     """
-    lacking = list(static_counts(beam, counts))
-    statics = {family: _static_strains(beam, rule, family, counts) for family in range(6) if lacking[family]}
-    weights = {family: np.sqrt(beam.stiffnesses(rule.node)[STRAINS[family]] * rule.weight) for family in statics}
+    lacking, rigidities = list(static_counts(beam, counts)), _numbered(beam).stiffnesses(rule.node)
+    statics = {
+        family: _static_strains(beam, rule, rigidities, family, counts) for family in range(6) if lacking[family]
+    }
+    weights = {family: np.sqrt(rigidities[STRAINS[family]] * rule.weight) for family in statics}
     while True:
         plain = base(plus(counts, _negative(lacking)))
         new = {family: _new(rule, weights[family], family, plain[family], each) for family, each in statics.items()}
@@ -123,18 +127,36 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
     return s, v, w, t, a, b
 
 
+def _numbered(beam: Beam) -> Beam:
+    """A beam itself; where JAX traces it, one by numbers that static deflections bend alike: they follow from how its
+    rigidities change along it, and not from their size.
+    """
+    material, section = beam.material, beam.section
+    traced = material is not None and holds_jax(vars(material)), holds_jax(section.dimensions)
+    if material is None or not any(traced):
+        return beam
+    if traced[1] and section.stations:
+        fix = "give numbers, or leave supports out"
+        raise InputError("supports", "hold a beam whose section changes along it and is traced by JAX", fix)
+    metal = Material(1e3, 1e9, poissons_ratio=0.3) if traced[0] else material
+    uniform = Section.rectangle(width=beam.length / 50, thickness=beam.length / 100) if traced[1] else section
+    return Beam(beam.length, uniform, metal)
+
+
 def _negative(counts: list[int]) -> Counts:
     """Numbers with the other sign."""
     axial, y, z, twist, shear_y, shear_z = (-count for count in counts)
     return axial, y, z, twist, shear_y, shear_z
 
 
-def _static_strains(beam: Beam, rule: Quadrature, family: int, counts: Counts) -> Floats:
+def _static_strains(
+    beam: Beam, rule: Quadrature, rigidities: tuple[Floats, ...], family: int, counts: Counts
+) -> Floats:
     """Strains (g, k) of a family's kind at the nodes, under unit loads at the supports and under a rise of the
-    temperature, each that concerns the family.
+    temperature, each that concerns the family. `rigidities` are those of the six strains, (g,) each.
     """
     columns = [
-        _unit_strains(beam, rule, condition, counts)[STRAINS[family]] * (-1 if family == 2 else 1)
+        _unit_strains(beam, rule, rigidities, condition, counts)[STRAINS[family]] * (-1 if family == 2 else 1)
         for condition in (*rigid_conditions(beam), *yielding_conditions(beam))
         if family in families_of(beam, condition, counts)
     ]
@@ -143,7 +165,9 @@ def _static_strains(beam: Beam, rule: Quadrature, family: int, counts: Counts) -
     return np.stack(columns, axis=1)
 
 
-def _unit_strains(beam: Beam, rule: Quadrature, condition: Condition, counts: Counts) -> Floats:
+def _unit_strains(
+    beam: Beam, rule: Quadrature, rigidities: tuple[Floats, ...], condition: Condition, counts: Counts
+) -> Floats:
     """Strains (6, g) at the nodes of the beam on its root alone, under a unit load along a condition's direction."""
     place, axes = beam.at_rest(rule.node)
     at = beam.at_rest([condition.at])[0][0]
@@ -160,9 +184,8 @@ def _unit_strains(beam: Beam, rule: Quadrature, condition: Condition, counts: Co
         stiffness = condensed(beam.section.matrices(rule.node)[0], shaped)
         strains[shaped] = np.linalg.solve(stiffness, carried[:, shaped, None])[..., 0].T
     else:
-        stiffnesses = beam.stiffnesses(rule.node)
         for strain in shaped:
-            strains[strain] = carried[:, strain] / stiffnesses[strain]
+            strains[strain] = carried[:, strain] / rigidities[strain]
     return strains
 
 

@@ -153,6 +153,10 @@ class Beam(Value):
         """Let a support at 0 say what the root holds. Raise InputError if two say it, or something is free to move as
         a rigid body.
         """
+        for i, support in enumerate(self.supports):
+            if is_jax(support.place):
+                problem = "is traced by JAX, and the shapes are placed by its number"
+                raise InputError(f"supports[{i}].at", problem, "give a number")
         at_root = [i for i, support in enumerate(self.supports) if support.place == 0]
         if len(at_root) > 1:
             raise InputError(f"supports[{at_root[1]}].at", "is 0 a second time", "say in one what the root holds")

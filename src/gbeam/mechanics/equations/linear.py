@@ -157,7 +157,7 @@ class Coefficients:
     @property
     def terms(self) -> LinearTerms:
         """Velocity (k, n, n), stiffness (k, n, n) and force (k, n) of a unit of each of the k :meth:`features`."""
-        xp, n = namespace(self.mass), self.size
+        xp, n = namespace(self.mass, self.damping, self.stiffness), self.size
         k_ww = xp.reshape(self.k_ww, (9, *self.k_ww.shape[2:]))
         f_ww = xp.reshape(self.f_ww, (9, *self.f_ww.shape[2:]))
         stiffness = [self.stiffness[None], xp.zeros((3, n, n)), k_ww, self.k_al, self.k_a]
