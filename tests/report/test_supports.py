@@ -127,3 +127,17 @@ def test_reactions_are_drawn_over_time_with_their_peaks_and_errors() -> None:
     study = gb.Study("", {"first": response, "second": response})
     words = [panel.y for panel in figures_of(study)["sizes"]().panels]
     assert words[3:] == ["support force at 400 mm, N", "support moment at 400 mm, mN m", "support force at 600 mm, N"]
+
+
+def test_a_body_is_judged_by_the_point_that_moves_farthest_where_its_tip_is_held() -> None:
+    """The page begins when that point is farthest; a beam whose tip moves is judged by it."""
+    flight = gb.Flight(z=gb.trapezoid(50.0, jerk=2e3, start=0.02, hold=0.05))
+    section, metal = gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9)
+    for supports, name in (([gb.Support(LENGTH, ["z"])], "span"), ([gb.Support(0.3, stiffness={"z": 1e3})], "")):
+        strip = gb.Beam(LENGTH, section, metal, damping_ratio=0.01, supports=supports)
+        response = gb.simulate(gb.assemble(strip, "FOAM", z=3), flight, duration=0.2, estimate=False)
+        assert response.body.farthest == name
+        if name:
+            header: Any = header_of(report_of(gb.Study("", {"flight": response})))
+            time = response.body.peaks.displacement.size.time[0]  # type: ignore[union-attr]
+            assert header["scene"]["start"] == pytest.approx(time, abs=2e-3)

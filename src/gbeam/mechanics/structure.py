@@ -35,7 +35,7 @@ from gbeam.mechanics.fields.taylor import Expanded, Places, Polynomials, exponen
 from gbeam.mechanics.recovery import Recovery, Sections, Source
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
-from gbeam.results.parts import HELD
+from gbeam.results.parts import judged_point
 
 
 @record
@@ -298,11 +298,9 @@ class Structure:
     def farthest_station(self) -> int:
         """Index of the station that moves farthest under even loads where supports hold the tip; else the last."""
         places, c = self.station_places.first, self.coefficients
-        last = len(places) - 1
         if self.grip is None:
-            return last
-        moved = np.linalg.norm(places @ np.linalg.solve(c.stiffness, c.f_a.T), axis=(1, 2))
-        return last if moved[last] >= HELD * moved.max() else int(moved.argmax())
+            return len(places) - 1
+        return judged_point(np.linalg.norm(places @ np.linalg.solve(c.stiffness, c.f_a.T), axis=(1, 2)))
 
     def require_free_tip(self, answer: str) -> None:
         """Raise InputError where supports hold the tip, and an `answer` is judged by what the tip does."""

@@ -22,7 +22,7 @@ from gbeam.report.blocks import (
 from gbeam.report.words import float_of, number, percent, tidy
 from gbeam.results.declared import declarations
 from gbeam.results.errors import ErrorEstimate
-from gbeam.results.parts import HELD, margin_words
+from gbeam.results.parts import margin_words
 
 
 def several(motion: Facts) -> bool:
@@ -96,13 +96,6 @@ def loads_table(bodies: Facts, row_of: str) -> Block:
     stressed = any(float_of(body.get("stress", {}).get("max")) > 0 for body in rows)  # of extreme fibres
     caption = f"Largest loads of the root{', and stress anywhere' if stressed else ''}"
     return table(rows, cells, caption, optional=tuple(cells)[5:], detail=True)
-
-
-def tip_is_held(body: Facts) -> bool:
-    """Return True if supports hold a body's tip: another named point moves much farther."""
-    supports = body.get("loads", {}).get("supports", ())
-    sizes = [float_of(station["size"]["max_abs"]) for station in body.get("stations", ()) if supports]
-    return bool(sizes) and sizes[-1] < HELD * max(sizes)
 
 
 def supports_table(bodies: Facts, row_of: str) -> Block:

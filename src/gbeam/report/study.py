@@ -36,7 +36,6 @@ from gbeam.report.loads import (
     several,
     stations_table,
     supports_table,
-    tip_is_held,
 )
 from gbeam.report.machine import (
     ends_line,
@@ -350,7 +349,7 @@ def _tips(bodies: Facts, head: str) -> Block:
     """Table of the largest displacements of tips: a row for every `head` (motion, body or both) and moving axis."""
     rows = []
     for name, body in bodies.items():
-        if tip_is_held(body):
+        if body.get("farthest"):
             continue
         sizes = {axis: float_of(peak["max_abs"]) for axis, peak in body["tip"].items()}
         # A direction that nothing drives holds rounding errors, whose time would mean nothing.

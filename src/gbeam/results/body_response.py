@@ -14,7 +14,7 @@ from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
-from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks
+from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks, judged_point
 from gbeam.results.result import Floats, Part
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
@@ -71,6 +71,15 @@ class BodyResponse(Part):
     specimen: SpecimenLoads | None = part(
         "loads of a rigid specimen", name="specimen_", key="specimen", optional=True, default=None
     )
+
+    @declared("", "station that moves farthest, where supports hold the tip", role="fact", name=None, optional=True)
+    def farthest(self) -> str:
+        """Name of the station by which the body is judged where supports hold its tip; empty where that is the tip."""
+        peaks = self.peaks.displacement
+        if self.loads is None or self.loads.supports is None or peaks is None:
+            return ""
+        station = judged_point(peaks.size.value)
+        return "" if station == len(self.stations) - 1 else self.points[station]
 
     @declared(
         "m", "largest displacement of every named point", "point", role="rows", name=None, key="points", optional=True

@@ -329,6 +329,13 @@ class Peaks(Part):
         return None if self.displacement is None else self.displacement.size.time
 
 
+def judged_point(sizes: Floats) -> int:
+    """Index of the point of a body under supports by which it is judged, from their displacements (p,): that of its
+    tip, the last, unless supports hold it; then that of the point that moves farthest.
+    """
+    return int(sizes.argmax()) if sizes[-1] < HELD * sizes.max() else len(sizes) - 1
+
+
 def yield_margin(yield_strength: float, stress: Floats) -> Floats:
     """Margin on yield, yield strength over the size of the stress less one: negative beyond yield, inf unstressed."""
     with np.errstate(divide="ignore"):

@@ -15,7 +15,7 @@ from gbeam.guards.checks import index_of
 from gbeam.mechanics.tree.rigid_body import ROOT
 from gbeam.numerics.peaks import maxima, near_maxima, seven_point, vector_peaks
 from gbeam.results.body_response import BodyResponse
-from gbeam.results.parts import HELD, Base, Extremes, Loads, VectorPeaks
+from gbeam.results.parts import Base, Extremes, Loads, VectorPeaks
 from gbeam.results.response import Response
 from gbeam.results.solids import SolidStress
 
@@ -89,9 +89,7 @@ class Quantities:
         """
         if self.body is None:
             return self.points[int(self.response.largest.argmax())]
-        loads, sizes = self.body.loads, np.linalg.norm(self.displacement, axis=-1).max(axis=0)
-        held = loads is not None and loads.supports is not None and sizes[-1] < HELD * sizes.max()
-        return self.points[int(sizes.argmax())] if held else ""
+        return self.points[self.body.points.index(self.body.farthest)] if self.body.farthest else ""
 
     def index(self, where: str, point: str) -> int:
         """Return the number of a named point, with or without the name of the only body; that of the last one if the

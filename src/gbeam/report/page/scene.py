@@ -154,8 +154,9 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
         reach = np.zeros((0, 3))
         if body in beams:
             part["beam"] = _beam(inner, index, numbers)
-            tip = inner["outline"][:, -1:]
-            deflected = tip if _longest(tip) > _longest(deflected) else deflected
+            farthest = (inner["outline"] ** 2).sum(axis=-1).max(axis=0).argmax()
+            moved_farthest = inner["outline"][:, farthest, None]
+            deflected = moved_farthest if _longest(moved_farthest) > _longest(deflected) else deflected
             reach = inner.get("outline_place", reach)  # of a straight one its points say where it is
             carrier |= _carrier(inner, v, index, numbers)
         elif "surface_vertices" in inner:
