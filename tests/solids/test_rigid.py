@@ -222,3 +222,99 @@ def test_a_box_has_one_largest_force_and_one_largest_moment() -> None:
         assert largest == between.size.value == pytest.approx(size, rel=1e-4)
         assert np.abs(samples).max() < 0.999 * size
     assert f"on the fixture up to {60.0:.4g} N and {3.0:.4g} N m" in repr(response)
+
+
+FEET = {"a": (-0.15, -0.1, 0.0), "b": (0.15, -0.1, 0.0), "c": (0.15, 0.1, 0.01), "d": (-0.15, 0.1, 0.0)}
+RESTS = [gb.Support("a", ["x", "y", "z"]), gb.Support("b", ["y", "z"]), gb.Support("c", ["z"])]
+
+
+def on_feet(supports: list[gb.Support], **more: Any) -> gb.RigidSpecimen:
+    whole = gb.RigidSpecimen.box(3.0, (0.3, 0.2, 0.1), (0.01, 0.0, 0.05))
+    return gb.RigidSpecimen(3.0, whole.centre, whole.inertia, whole.corners, points=FEET, supports=supports, **more)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_box_on_six_rigid_directions_stands_as_statics_says(seed: int) -> None:
+    """It has no coordinates, and the six reactions are those that six equations of equilibrium have."""
+    box, flight = on_feet(RESTS), tumbling(seed)
+    structure = box.structure
+    response = gb.simulate(structure, flight, duration=2.0, step=0.01, estimate=False)
+    loads: Any = response.body.loads
+    assert structure.size == 0 and loads.support_names == ("a", "b", "c")
+    unknown = [(each.at, "xyz".index(way)) for each in RESTS for way in each.holds]
+    force = np.stack([np.eye(3)[way] for _, way in unknown])
+    moment = np.stack([np.cross(FEET[at], np.eye(3)[way]) for at, way in unknown])
+    rigid = box.loads(flight, 2.0, sample=0.01)
+    needed = np.concatenate([rigid.force, rigid.moment], axis=1)
+    sizes = np.linalg.solve(np.concatenate([force, moment], axis=1).T, needed.T).T
+    at_samples = [int(np.argmin(np.abs(rigid.time - t))) for t in response.time]
+    for k, (at, way) in enumerate(unknown):
+        reaction = loads.support_force[:, loads.support_names.index(at), way]
+        np.testing.assert_allclose(reaction, sizes[at_samples, k], atol=1e-9 * np.abs(sizes).max())
+    assert not np.any(loads.root_force) and not np.any(loads.support_moment)
+
+
+def test_a_box_on_isolators_moves_as_six_equations_say() -> None:
+    """Frequencies and static reactions of M and K by the feet's places, and the damping of one that bounces evenly."""
+    springs = {"a": (1e5, 1e5, 4e5), "b": (2e5, 1e5, 3e5), "c": (1e5, 3e5, 4e5), "d": (1e5, 1e5, 2e5)}
+    supports = [gb.Support(name, stiffness=dict(zip("xyz", each, strict=True))) for name, each in springs.items()]  # type: ignore[arg-type]
+    box = on_feet(supports)
+    structure = box.structure
+    stiffness = np.zeros((6, 6))
+    maps = {}
+    for name, each in springs.items():
+        arm = np.subtract(FEET[name], box.centre)
+        maps[name] = np.concatenate([np.eye(3), np.cross(np.eye(3), arm).T], axis=1)
+        stiffness += maps[name].T @ np.diag(each) @ maps[name]
+    mass = np.zeros((6, 6))
+    mass[:3, :3], mass[3:, 3:] = 3.0 * np.eye(3), np.asarray(box.inertia)
+    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
+    np.testing.assert_allclose(gb.modes(structure).frequency, np.sqrt(np.sort(squares)) / (2 * np.pi), rtol=1e-9)
+    acceleration = 1e-3 * np.array([3.0, -2.0, 9.0])
+    moved = np.linalg.solve(stiffness, -np.append(3.0 * acceleration, np.zeros(3)))
+    loads: Any = gb.static(structure, acceleration=tuple(acceleration)).loads
+    for k, (name, each) in enumerate(springs.items()):
+        np.testing.assert_allclose(loads.support_force[0, k], -np.array(each) * (maps[name] @ moved), rtol=1e-6)
+    even = {name: (x, y, 0.0) for name, (x, y, _) in FEET.items()}
+    feet = [gb.Support(name, ["x", "y"][: 2 - k // 2], {"z": 1e5}, {"z": 30.0}) for k, name in enumerate(even)]
+    bouncing = gb.RigidSpecimen(
+        3.0, (0, 0, 0.0), box.inertia, box.corners, points=even,
+        supports=[gb.Support(each.at, (), {"x": 1e8, "y": 1e8, **each.stiffness}, each.damping) for each in feet],
+    ).structure  # fmt: skip
+    modes = gb.modes(bouncing)
+    k = int(np.argmin(np.abs(modes.frequency - np.sqrt(4e5 / 3.0) / (2 * np.pi))))
+    assert modes.frequency[k] == pytest.approx(np.sqrt(4e5 / 3.0) / (2 * np.pi), rel=1e-6)
+    assert modes.damping_ratio[k] == pytest.approx(4 * 30.0 / 2 / np.sqrt(4e5 * 3.0), rel=1e-6)
+
+
+def test_a_box_on_isolators_hangs_in_a_tree() -> None:
+    """A heavy car carries it as a wall does."""
+    supports = [gb.Support(name, stiffness={"x": 1e5, "y": 1e5, "z": 2e5}) for name in FEET]
+    alone = on_feet(supports).structure
+    joints = {"free": gb.Joint("free", "car"), "deck": gb.Joint("fixed", "box", on="car.deck")}
+    car = gb.RigidBody(1e6, (1e6, 1e6, 1e6), points={"deck": (0, 0, 0.2)})
+    carried = gb.modes(gb.System({"car": car, "box": alone}, joints), errors=False)
+    np.testing.assert_allclose(carried.frequency, gb.modes(alone).frequency, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("supports", "more", "words"),
+    [
+        (
+            [*RESTS, gb.Support("d", ["z"])],
+            {},
+            r"supports\[3\] holds z at d, where it is held already; leave z out, or ho",
+        ),
+        (RESTS[:2], {}, r"supports leave the body free to move about x; hold that at one more place"),
+        ([gb.Support("lid", ["z"])], {}, r"supports\[0\]\.at is 'lid'; choose one of a, b, c, d, tip"),
+        (RESTS, {"spread_limit": 0.1}, r"spread_limit is of a body that its root holds; leave it out beside supports"),
+        (
+            RESTS,
+            {"bolts": [(0, 0, 0), (1, 0, 0), (0, 1, 0)], "bolt_axis": (0, 0, 1)},
+            r"supports and bolts are both given",
+        ),
+    ],
+)
+def test_how_a_box_cannot_stand_is_refused(supports: list[gb.Support], more: dict[str, Any], words: str) -> None:
+    with pytest.raises(gb.InputError, match=words):
+        _ = on_feet(supports, **more).structure

@@ -122,29 +122,28 @@ def test_a_slender_bar_has_a_beams_frequencies(end: list[Any], root: float) -> N
 
 
 def test_a_pulse_is_balanced_by_root_and_supports_and_told_with_its_error() -> None:
-    """Force and moment of root and supports are those that the same solid's inertia demands, to rounding; those of a
+    """Force and moment of root and supports are those that the same solid's inertia demands; those of a
     model of few modes lie within the stated error of those of a rich one.
     """
-    supports = [gb.Support("end", ["z"]), gb.Support("foot", stiffness={"y": 2e6}, damping={"y": 40.0})]
+    supports = [gb.Support("seat", ["z"]), gb.Support("corner", stiffness={"y": 2e6}, damping={"y": 40.0})]
+    keys: dict[str, Any] = dict(interfaces={"seat": "end"}, points={"corner": "corner"})
     pulse = gb.Flight(z=gb.Sine(800.0, duration=0.004), y=gb.Sine(500.0, duration=0.004))
     few, many = (
-        gb.simulate(model(*supports, modes=count, damping_ratio=0.02), pulse, duration=0.006, step=2e-5)
+        gb.simulate(model(*supports, modes=count, damping_ratio=0.02, **keys), pulse, duration=0.006, step=2e-5)
         for count in (1, 12)
     )
     loads = many.body.loads
     whole = loads.root_force + loads.support_force.sum(axis=1)
     np.testing.assert_allclose(whole, -many.ground_force, atol=1e-9 * np.abs(whole).max())
-    x = np.array([[LENGTH, 0, 0], loads_centre(supports[1])])
+    order = [many.body.points.index(name) for name in ("seat", "corner")]
+    x = np.array([[LENGTH, 0, 0], [LENGTH, WIDTH / 2, HEIGHT / 2]]) + many.body.displacement[:, order]
     moment = loads.root_moment + (loads.support_moment + np.cross(x, loads.support_force)).sum(axis=1)
-    np.testing.assert_allclose(moment, -many.ground_moment, atol=1e-9 * np.abs(moment).max())
+    # The places of supports move to first order, that of the interface to second.
+    np.testing.assert_allclose(moment, -many.ground_moment, atol=1e-5 * np.abs(moment).max())
     largest = max(np.abs(loads.support_force).max(), np.abs(loads.root_force).max())
     apart = np.abs(few.body.loads.support_force - loads.support_force).max() / largest
     assert apart / 5 < few.errors.loads.total and apart < 3 * few.errors.loads.total
     assert few.errors.loads.total < 0.2
-
-
-def loads_centre(support: gb.Support) -> Any:
-    return solid(support).supports[0].centre
 
 
 def test_what_hangs_on_a_held_interface_is_carried_by_its_support() -> None:

@@ -19,6 +19,7 @@ from gbeam.constants import Direction
 from gbeam.errors import InputError
 from gbeam.guards.checks import choice
 from gbeam.mechanics.equations.linear import damping_matrix
+from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Grip, Structure
 from gbeam.numerics.conditions import free_motions, least_motions
 from gbeam.structure.supports import DIRECTIONS, Support
@@ -28,12 +29,13 @@ NOTHING = 1e-9  # of the largest: a force or moment that a place does not take u
 
 class Held(NamedTuple):
     """A place that a support holds, at `centre` (3,) m: of each direction sparse rows (g, u) of its nodes' motions, and
-    levers (g, 6), the force and moment about the centre of a unit along each.
+    levers (g, 6), the force and moment about the centre of a unit along each. It moves by sparse rows `moved` (3, u).
     """
 
     support: Support
     centre: Floats
     motions: Mapping[Direction, tuple[Any, Floats]]
+    moved: Any
 
 
 class Holding:
@@ -58,7 +60,7 @@ class Holding:
         for (k, way, _, _), told_here in zip(rigid, told, strict=True):
             if not told_here.any():
                 problem = f"holds {way} at {places[k].support.at}, where it is held already"
-                fix = f"leave {way} out; how the load would be shared is not known"
+                fix = f"leave {way} out, or hold by springs: how rigid supports share a load is not known"
                 raise InputError(f"supports[{k}]", problem, fix)
         every = np.concatenate([np.zeros((0, 6)), *(levers for *_, levers in rigid)])[new]
         owner = np.repeat([k for k, *_ in rigid], np.diff(ends))[new]
@@ -109,10 +111,19 @@ class Holding:
         left[:, shapes.shape[1] :] += self.lifted
         return left
 
-    def hold(self, structure: Structure, free: Structure, motions: Floats, second: Floats | None = None) -> Structure:
-        """Let supports hold a structure in n coordinates. `free` has the lifted motions besides, and no damping; the
-        unknowns move by `motions` (u, n + s). `second` (s, n, n) are second derivatives by the coordinates of the
-        elastic forces along the lifted motions.
+    def hold(
+        self,
+        structure: Structure,
+        free: Structure,
+        motions: Floats,
+        second: Floats | None = None,
+        *,
+        rooted: bool,
+    ) -> Structure:
+        """Let supports hold a structure in n coordinates, besides its root if that is `rooted`.
+
+        `free` has the lifted motions besides, and no damping; the unknowns move by `motions` (u, n + s). `second` (s,
+        n, n) are second derivatives by the coordinates of the elastic forces along the lifted motions.
         """
         n, count = structure.size, motions.shape[1]
         dampers, c = motions.T @ (self.damping @ motions), structure.coefficients
@@ -129,14 +140,20 @@ class Holding:
             held=tuple(self.taken),
             sprung=tuple(self.sprung),
             names=tuple(str(each.support.at) for each in self.places),
-            places=np.array([each.centre for each in self.places]),
+            places=Places(
+                np.array([each.centre for each in self.places]),
+                np.stack([np.asarray(each.moved @ motions) for each in self.places]),
+            ),
+            rooted=rooted,
             second=None if second is None else np.pad(second, ((0, 0), (0, count - n), (0, count - n))),
         )
         return replace(structure, coefficients=c.damped(felt[:n, :n]), grip=grip)
 
 
-def held_at_points(structure: Structure, supports: Sequence[Support], damping_ratio: Any = None) -> Structure:
-    """Hold a linear structure at its named points, in the shapes that it has.
+def held_at_points(
+    structure: Structure, supports: Sequence[Support], damping_ratio: Any = None, *, rooted: bool
+) -> Structure:
+    """Hold a linear structure at its named points, in the shapes that it has, besides its root if that is `rooted`.
 
     A `damping_ratio` is of the modes that are left; without one they have the damping of the structure.
     """
@@ -155,12 +172,9 @@ def held_at_points(structure: Structure, supports: Sequence[Support], damping_ra
                 problem = f"holds {way} at {support.at}, which does not say how it turns"
                 raise InputError(f"supports[{i}]", problem, f"leave {way} out")
             motions[way] = csr_array(rows[[number]]), np.eye(6)[[number]]
-        places.append(Held(support, structure.station_places.r0[station], motions))
+        places.append(Held(support, structure.station_places.r0[station], motions, moved))
     holding, c = Holding(places, structure.size), structure.coefficients
     left, stiffness = holding.basis.toarray(), c.stiffness + holding.stiffness.toarray()
-    if not left.shape[1]:
-        fix = "hold fewer directions, or take a body with more shapes"
-        raise InputError("supports", f"hold all {structure.size} shapes of the body", fix)
     answers = np.linalg.solve(left.T @ stiffness @ left, holding.static_loads(stiffness))
     motions_of_all = holding.everywhere(np.eye(left.shape[1]), answers)
     sprung = replace(structure, coefficients=replace(c, stiffness=stiffness))
@@ -168,8 +182,7 @@ def held_at_points(structure: Structure, supports: Sequence[Support], damping_ra
     if damping_ratio is not None:
         kept = held.coefficients
         held = replace(held, coefficients=kept.damped(damping_matrix(damping_ratio, kept.mass, kept.stiffness)))
-    doubt = "supports hold the body in the shapes that it has: what shapes it lacks there is not known"
-    return holding.hold(replace(held, warnings=(*held.warnings, doubt)), free, motions_of_all)
+    return holding.hold(held, free, motions_of_all, rooted=rooted)
 
 
 def _acting(levers: Floats) -> list[int]:

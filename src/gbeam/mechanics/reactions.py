@@ -114,5 +114,5 @@ def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:
     for k, (station, direction) in enumerate(every):
         unit[k, np.searchsorted(places, station), direction] = 1.0
     wrench = xp.einsum("tm,mkd->tkd", sizes, unit)
-    at = stations[places].positions(q) if grip.places is None else np.broadcast_to(grip.places, wrench[..., :3].shape)
-    return Reactions(places, at, wrench[..., :3], wrench[..., 3:], grip.names)
+    at = stations[places] if grip.places is None else grip.places[places]
+    return Reactions(places, at.positions(q), wrench[..., :3], wrench[..., 3:], grip.names)

@@ -102,11 +102,11 @@ def section_forces(
 
 def with_supports(loads: Loads, structure: Structure, reactions: Reactions) -> Loads:
     """Add to loads those of the supports, and what the base does to the structure in all, about its root."""
-    demanded, named = reactions.demanded, bool(reactions.names)
+    demanded, places = reactions.demanded, structure.grip and structure.grip.places
     return replace(
         loads,
-        supports=reactions.place[0, :, 0] if named else np.asarray(structure.stations)[reactions.station],
-        support_names=reactions.names if named else None,
+        supports=places.r0[:, 0] if places else np.asarray(structure.stations)[reactions.station],
+        support_names=reactions.names or None,
         support_force=reactions.force,
         support_moment=reactions.moment,
         base_force=loads.root_force - demanded.force.sum(axis=1),
@@ -140,7 +140,12 @@ def _end_loads(
         stress_compression=unknown,
         acceleration=xp.concatenate([base.a_WO_B[:, None], tip], axis=1),
     )
-    return loads if reactions is None else with_supports(loads, structure, reactions)
+    if reactions is None or structure.grip is None:
+        return loads
+    held, nothing = with_supports(loads, structure, reactions), 0 * force
+    if structure.grip.rooted:
+        return held
+    return replace(held, force=nothing, moment=nothing, section_force=nothing, section_moment=nothing)
 
 
 def _equivalent(section_data: Sections, force: Array, moment: Array) -> Array:

@@ -45,9 +45,9 @@ class Grip:
     Its coordinates q (m,) are those of the structure, `basis` (m, n) times them: conditions `rows` (k, m) times q are
     zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The
     conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`; where supports
-    have `names`, on these in place of stations, at their `places` (k, 3) m. They are `curved` where the rows change
-    with q, as those of a beam that shortens as it bends. What bends beside what is held pulls on conditions by
-    ½ q · `second` (k, m, m) q.
+    have `names`, on these in place of stations, at their `places`. They are `curved` where the rows change with q, as
+    those of a beam that shortens as it bends. If it is not `rooted`, the structure has no other hold. What bends beside
+    what is held pulls on conditions by ½ q · `second` (k, m, m) q.
     """
 
     free: Structure
@@ -61,8 +61,9 @@ class Grip:
     sprung: tuple[tuple[int, int], ...] = static()
     curved: bool = static(default=False)
     names: tuple[str, ...] = static(default=())
-    places: Array | None = None
+    places: Places | None = None
     second: Array | None = None
+    rooted: bool = static(default=True)
 
     def measures(self, which: tuple[tuple[int, int], ...]) -> Measures:
         """Displacements and rotations of the free structure's stations, each in a direction."""

@@ -78,5 +78,5 @@ def refuse_free(where: str, held: Floats, points: Floats) -> None:
     motion = motions[values <= FREE * values[0]]
     names = [f"along {axis}" for axis in "xyz"] + [f"about {axis}" for axis in "xyz"]
     free = [name for name, share in zip(names, np.linalg.norm(motion, axis=0), strict=True) if share > 0.5]
-    fix = "hold that direction at one place, or clamp a group"
+    fix = "hold that at one more place"
     raise InputError(where, f"leave the body free to move {' and '.join(free)}", fix)

@@ -256,7 +256,8 @@ class ImportedModel(Value):
             refuse_held(self.stiffness, rigid)
         free = (unknowns[:, 1] == OWN) | ~np.isin(unknowns[:, 0], held)
         places_held = [self._held(i, support, named, free) for i, support in enumerate(supports)]
-        if places_held and not held and not resisted(self.stiffness, rigid).any():
+        rooted = bool(held or resisted(self.stiffness, rigid).any())
+        if places_held and not rooted:
             elastic = [(each, way) for each in places_held for way in (*each.support.rigid, *each.support.stiffness)]
             moved = [each.motions[way][1] @ about(each.centre) for each, way in elastic]
             refuse_free("supports", np.concatenate([np.zeros((0, 6)), *moved]), places)
@@ -308,13 +309,14 @@ class ImportedModel(Value):
             if not supports:
                 return structure
             chosen = np.r_[:n, total : motions.shape[1]]
-            return holding.hold(structure, moving(chosen, block_diag(stiffness, lifting), 0.0), motions[:, chosen])
+            whole = moving(chosen, block_diag(stiffness, lifting), 0.0)
+            return holding.hold(structure, whole, motions[:, chosen], rooted=rooted)
 
         return reduction.structure(build, damping_ratio)
 
     def _held(self, i: int, support: Support, named: Mapping[str, int], free: Flags) -> Held:
         """Motions of the point of the support number `i` by the `free` ones (u,) of the unknowns."""
-        from scipy.sparse import eye_array
+        from scipy.sparse import csr_array, eye_array
 
         choice(f"supports[{i}].at", support.name, tuple(named))
         node, unknowns = named[support.name], np.asarray(self.unknowns)
@@ -325,7 +327,11 @@ class ImportedModel(Value):
                 problem = f"holds {way} at {support.name}, whose node has no such unknown in the matrices"
                 raise InputError(f"supports[{i}]", problem, f"leave {way} out, or export a node that has it")
             motions[way] = rows[row], levers(np.zeros((1, 3)), way)
-        return Held(support, np.asarray(self.nodes)[node], motions)
+        moved = csr_array((3, rows.shape[1]))
+        for axis in range(3):
+            row = np.flatnonzero((unknowns[:, 0] == node) & (unknowns[:, 1] == 1 + axis))
+            moved += csr_array(np.eye(3)[:, [axis] * len(row)]) @ rows[row]
+        return Held(support, np.asarray(self.nodes)[node], motions, moved)
 
     def _node(self, where: str, number: int) -> int:
         """Index of the node with a number. InputError about `where` if there is none."""

@@ -11,10 +11,9 @@ from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.mechanics.holding import Held
 from gbeam.mechanics.reduction import Reduced
-from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.solids.geometry import Mesh
 from gbeam.solids.held import HeldPlace
-from gbeam.solids.links import ON_A_LINE, coupling
+from gbeam.solids.links import ON_A_LINE, coupling, six_particles
 from gbeam.structure.supports import DIRECTIONS
 
 CROSS = np.zeros((3, 3, 3))  # θ × r = θ_a r_b CROSS[a, b]
@@ -53,7 +52,7 @@ class Linked:
             return len(points) - 1
 
         for name, body in links.bodies.items():
-            for place, mass in zip(*_particles(body), strict=True):
+            for place, mass in zip(*six_particles(body), strict=True):
                 add(name, named[self._number[name]] + place, mass)
         for between, _, spring_place in links.springs.values():
             place = named[self._number[between[0]]] if spring_place is None else spring_place
@@ -150,7 +149,8 @@ class Linked:
             way: (vstack([rows[DIRECTIONS.index(way)]], format="csr"), place.levers(self.points, way))
             for way in (*place.support.rigid, *place.support.yielding)
         }
-        return Held(place.support, place.centre, motions)
+        moved = [csr_array(np.full((1, row.shape[0]), 1 / row.shape[0])) @ row for row in rows[:3]]
+        return Held(place.support, place.centre, motions, vstack(moved, format="csr"))
 
     def _turns(self, i: int, place: HeldPlace) -> list[Any]:
         """Rotations of a place's nodes about x, y and z by the unknowns, where its support, number `i`, holds any."""
@@ -286,15 +286,3 @@ class Linked:
         tied = forces.reshape(len(self._tied), 1, 3, -1)
         np.add.at(moments, self._of, self._arms[:, :, None, None] * tied)
         return moments - np.einsum("lbbm,ac->lacm", moments, np.eye(3))
-
-
-def _particles(body: RigidBody) -> tuple[Floats, Floats]:
-    """Places (6, 3) from the root and masses (6,) of six particles with the mass, centre and inertia of a body.
-
-    They are equal, two on each principal axis at ± the square root of 3 ∫ x² dm / m.
-    """
-    moments, axes = np.linalg.eigh(body.tensor)
-    squares = 1.5 * (moments.sum() - 2 * moments)  # 3 ∫ x² dm by the principal moments
-    spread = np.sqrt(np.maximum(squares, 0.0) / body.mass) if body.mass else np.zeros(3)
-    arms = (axes * spread).T
-    return np.asarray(body.centre) + np.concatenate([arms, -arms]), np.full(6, body.mass / 6)

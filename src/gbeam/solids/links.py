@@ -76,6 +76,18 @@ def refuse_names(interfaces: Mapping[str, str], points: Mapping[str, int]) -> No
             raise InputError(f"interfaces.{name}", "is the name of a point too", "choose another")
 
 
+def six_particles(body: RigidBody) -> tuple[Floats, Floats]:
+    """Places (6, 3) from the root and masses (6,) of six particles with the mass, centre and inertia of a body.
+
+    They are equal, two on each principal axis at ± the square root of 3 ∫ x² dm / m.
+    """
+    moments, axes = np.linalg.eigh(body.tensor)
+    squares = 1.5 * (moments.sum() - 2 * moments)  # 3 ∫ x² dm by the principal moments
+    spread = np.sqrt(np.maximum(squares, 0.0) / body.mass) if body.mass else np.zeros(3)
+    arms = (axes * spread).T
+    return np.asarray(body.centre) + np.concatenate([arms, -arms]), np.full(6, body.mass / 6)
+
+
 @dataclass(frozen=True, eq=False)
 class Links(Value):
     """Links of a mesh: nodes (g,) that move as one rigid body.

@@ -346,7 +346,7 @@ class SolidMesh(Mesh):
             every[:, :n, :n] = fields
             free = moving(chosen, block_diag(stiffness, lifting), every, 0.0)
             second = None if pulls is None else pulls[:, :n, :n] + pulls[:, :n, :n].swapaxes(1, 2)
-            return holding.hold(structure, free, motions[:, chosen], second)
+            return holding.hold(structure, free, motions[:, chosen], second, rooted=bool(self.clamps))
 
         structure = reduced.structure(build, damping_ratio)
         if coarser is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Annotated, Any
@@ -15,16 +15,21 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.checks import array, positive, vector
+from gbeam.guards.checks import array, choice, positive, vector
 from gbeam.guards.limits import SAMPLES, refuse_more
 from gbeam.guards.quantities import Factor, PositionVector, Quantity, Rows, Shape
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients
 from gbeam.mechanics.fields.taylor import Places
+from gbeam.mechanics.holding import held_at_points
 from gbeam.mechanics.structure import Structure
+from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.motion.protocol import Motion, kind_of, notes_on
 from gbeam.results.solids import SpecimenLoads
+from gbeam.solids.held import about, levers, refuse_free
+from gbeam.solids.links import six_particles
 from gbeam.solids.stress import hull
 from gbeam.structure.attachments import TIP
+from gbeam.structure.supports import Support
 
 ALIKE = 1e-9  # of the largest second moment: bolts on a line
 SAME = 1e-6  # of the time between samples: corners nearer to one are that one
@@ -79,6 +84,12 @@ class RigidSpecimen(Value):
         "farthest from the root where it is not given",
     ] = field(default_factory=dict)
 
+    supports: Annotated[
+        Sequence[Support],
+        "places that hold it in place of its root, at its points: [ { at, holds, stiffness, damping } ]. On springs it "
+        "moves, as on isolators",
+    ] = ()
+
     def __post_init__(self) -> None:
         """Check the places, the inertia and the bolts, and store them as arrays."""
         shapes = {"centre": (3,), "inertia": (3, 3), "corners": (-1, 3), "bolts": (-1, 3), "bolt_axis": (3,)}
@@ -100,6 +111,11 @@ class RigidSpecimen(Value):
         if value[0] < -1e-12 * value[2] or value[2] > (1 + 1e-9) * (value[0] + value[1]):
             problem = f"has the principal moments {value[0]:.4g}, {value[1]:.4g} and {value[2]:.4g} kg m²"
             raise InputError("inertia", problem, "none is larger than the sum of the others; is it about the centre?")
+        object.__setattr__(self, "supports", tuple(self.supports))
+        if self.supports and self.bolts is not None:
+            raise InputError("supports", "and bolts are both given, and hold it", "keep one of them")
+        if self.supports and self.spread_limit is not None:
+            raise InputError("spread_limit", "is of a body that its root holds", "leave it out beside supports")
         if self.bolts is None:
             if self.bolt_axis is not None:
                 raise InputError("bolt_axis", "is given without bolts", "give their places, or leave it out")
@@ -233,13 +249,50 @@ class RigidSpecimen(Value):
 
     @property
     def structure(self) -> Structure:
-        """The specimen as a structure without coordinates. Its tip is the farthest corner unless it is named."""
-        corners, centre, inertia = map(np.asarray, (self.corners, self.centre, self.inertia))
+        """The specimen as a structure without coordinates, or with those that its supports leave it. Its tip is the
+        farthest corner unless it is named.
+        """
+        return self._on_supports() if self.supports else self._fixed()
+
+    def _on_supports(self) -> Structure:
+        """Structure that supports hold, in displacements and rotations of the centre of mass, six or fewer."""
+        named, tip = self._stations()
+        inertia = (np.asarray(self.inertia) + np.asarray(self.inertia).T) / 2
+        particles, masses = six_particles(RigidBody(self.mass, inertia, self.centre))
+        stations = np.stack([*named.values(), tip])
+        places = np.concatenate([particles, stations])
+        first, second = _rigid_motions(places - np.asarray(self.centre))
+        body = Structure.of_particles(
+            np.concatenate([masses, np.zeros(len(stations))]),
+            places,
+            first,
+            np.zeros((6, 6)),
+            second=second,
+            stations=len(masses) + np.arange(len(stations)),
+            turns=np.broadcast_to(np.eye(3, 6, 3), (len(stations), 3, 6)).copy(),
+            points=(*named, TIP),
+            kind="rigid",
+        )
+        elastic = [(each, way) for each in self.supports for way in (*each.rigid, *each.stiffness)]
+        known = dict(zip(body.points, stations, strict=True))
+        for i, support in enumerate(self.supports):
+            choice(f"supports[{i}].at", support.at, body.points)
+        rows = [levers(np.zeros((1, 3)), way) @ about(known[each.at]) for each, way in elastic]
+        refuse_free("supports", np.concatenate([np.zeros((0, 6)), *rows]), np.asarray(self.corners))
+        return held_at_points(body, self.supports, rooted=False)
+
+    def _stations(self) -> tuple[dict[str, Floats], Floats]:
+        """Places of the named points, and of the tip, m."""
+        named, corners = {name: np.asarray(at) for name, at in self.points.items()}, np.asarray(self.corners)
+        return named, named.pop(TIP, corners[np.linalg.norm(corners, axis=1).argmax()])
+
+    def _fixed(self) -> Structure:
+        """Structure without coordinates, fixed at its root."""
+        centre, inertia = map(np.asarray, (self.centre, self.inertia))
         second = (np.trace(inertia) / 2 * np.eye(3) - inertia) + self.mass * np.outer(centre, centre)
         products = (second[i, j] for i, j in PAIRS)
-        named = dict(self.points)
-        tip = np.asarray(named.pop(TIP, corners[np.linalg.norm(corners, axis=1).argmax()]))
-        points = np.stack([centre, *map(np.asarray, named.values()), tip])
+        named, tip = self._stations()
+        points = np.stack([centre, *named.values(), tip])
         count = len(points)
         square, rate = np.zeros((0, 0)), np.zeros((3, 0, 0))
         rigid = np.array([self.mass, *(self.mass * centre), *products])
@@ -339,6 +392,19 @@ class RigidSpecimen(Value):
         turn = np.linalg.solve(_second_moments(bolts), (moment - np.cross(centroid, force)).T).T
         forces = force[:, None] / len(bolts) + np.cross(turn[:, None], bolts - centroid)
         return {"bolts": bolts, "bolt_force": forces, "bolt_axis": axis / np.linalg.norm(axis)}
+
+
+def _rigid_motions(arms: Floats) -> tuple[Floats, Floats]:
+    """First (p, 3, 6) and second (p, 3, 6, 6) derivatives of places at arms (p, 3) from a point, by its displacement
+    and the rotation vector of the body.
+    """
+    unit = np.eye(3)
+    turned = np.cross(unit, arms[:, None])  # e × r, (p, 3 axes, 3)
+    first = np.concatenate([np.broadcast_to(unit, (len(arms), 3, 3)), turned.swapaxes(1, 2)], axis=2)
+    twice = np.cross(unit[:, None], turned[:, None])  # e × (f × r), (p, e, f, 3)
+    second = np.zeros((len(arms), 3, 6, 6))
+    second[:, :, 3:, 3:] = np.moveaxis(twice + twice.swapaxes(1, 2), -1, 1) / 2
+    return first, second
 
 
 def _second_moments(bolts: Floats) -> Floats:

@@ -25,6 +25,7 @@ from gbeam.structure.supports import Support
 ALIKE = 1e-6  # of the largest: two ways to the same moments
 # Columns of the centrifugal terms: the standard's, and another that is met.
 ORDERS = (((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)), ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+SHAPES = "supports hold the body in the shapes that it has: what shapes it lacks there is not known"
 
 
 @typed
@@ -110,7 +111,11 @@ def read_sid(
     if damping_ratio is None:
         structure = replace(structure, coefficients=terms)
     if supports:
-        structure = held_at_points(structure, supports, damping_ratio)
+        structure = held_at_points(structure, supports, damping_ratio, rooted=True)
+        if not structure.size:
+            fix = "hold fewer directions, or export the body with more shapes"
+            raise InputError("supports", f"hold all {terms.size} shapes of the body", fix)
+        structure = replace(structure, warnings=(*structure.warnings, SHAPES))
     if damping_ratio is not None:
         return structure
     terms = structure.coefficients

@@ -49,7 +49,8 @@ class Support(Value):
         NamedPosition,
         "of a beam the position from the root, or the name of a point of it, such as tip; 0 says what the root itself "
         "holds. Of a mesh the name of a group, whose nodes are held each, of a point, or of an interface or rigid "
-        "link, held by its mean motion; of matrices the name of a point",
+        "link, held by its mean motion; of matrices and rigid bodies the name of "
+        "a point",
     ]
     holds: Annotated[
         Sequence[Direction],

@@ -19,7 +19,7 @@ from gbeam.scenario.schema.declared import arguments_of, table_of
 from gbeam.scenario.schema.fields import Name, Place3, Table
 from gbeam.solids.rigid import RigidSpecimen
 
-_ITEM = "corners", "bolts", "bolt_axis", "spread_limit"  # of an item under test, on whose points nothing hangs
+_ITEM = "corners", "bolts", "bolt_axis", "spread_limit", "supports"  # of an item under test, or on supports
 _Places = Annotated[tuple[Place3, ...], Field(max_length=ENTRIES)]
 
 
