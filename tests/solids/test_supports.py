@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 from scipy import sparse
@@ -164,22 +165,52 @@ def test_a_strip_that_is_held_at_both_ends_pulls_on_them_as_a_beam_does() -> Non
     """
     size, groups = (LENGTH, WIDTH, 0.002), {"end": lambda x: x[:, 0] == LENGTH}
     keys: dict[str, Any] = dict(size=size, groups=groups, cells=(16, 1, 1), element="hexahedron27")
-    strip = model(gb.Support("end", ["x", "y", "z"]), **keys)
+    strip = model(gb.Support("end", ["x", "y", "z"]), points={"middle": (LENGTH / 2, 0, 0)}, **keys)
     clamp = gb.Support(LENGTH, ["x", "z", "ry"])
     section = gb.Section.rectangle(WIDTH, 0.002)
-    beam = gb.assemble(gb.Beam(LENGTH, section, STIFF, damping_ratio=0.0, supports=[clamp]), "exact", axial=2, z=6)
+    middle = [gb.Point("middle", LENGTH / 2)]
+    whole = gb.Beam(LENGTH, section, STIFF, damping_ratio=0.0, supports=[clamp], points=middle)
+    beam = gb.assemble(whole, "exact", axial=2, z=6)
     small, large = (static(each, 0.0, 0.0, 10.0).support_force[0, 0] for each in (strip, beam))
     assert small[[0, 2]] == pytest.approx(large[[0, 2]], rel=0.03)
     bent, true = (gb.static(each, acceleration=(0.0, 0.0, 300.0)) for each in (strip, beam))
     forces = [each.loads.support_force[0, 0, 0] for each in (bent, true)]
     assert bent.errors is not None
     assert abs(forces[0] / forces[1] - 1) < 3 * bent.errors.loads.total and bent.errors.loads.total > 0.05
+    (warning,) = (each for each in bent.warnings if "its supports stretch it" in each)
+    stiffer = float(warning.partition("order of ")[2].partition(" %")[0]) / 100
+    linear = STIFF.density * 300.0 * LENGTH**4 / (32 * STIFF.youngs_modulus * 0.002**2)
+    assert stiffer == pytest.approx(linear / abs(true.at("beam.middle")[2]) - 1, rel=0.15)
+    assert "stated as error of the model" in warning
+
+
+def test_shells_that_are_held_at_both_ends_say_that_they_stretch() -> None:
+    """Their bend of higher order is not computed: the tension is that of the exact beam, and the rest not known."""
+    thick, count = 0.002, 12
+    x, y = np.linspace(0, LENGTH, 2 * count + 1), np.array([-1, 0, 1]) * WIDTH / 2
+    grid = np.stack([*np.meshgrid(x, y, indexing="ij"), np.zeros((len(x), 3))], axis=-1).reshape(-1, 3)
+    corners = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1)]
+    nodes = np.stack([6 * np.arange(count) + 3 * i + j for i, j in corners], axis=1)
+    last = len(grid) - 3
+    sets = {"wall": np.arange(3), "end": last + np.arange(3)}
+    mesh = meshio.Mesh(grid, [("quad8", nodes)], point_sets=sets)
+    keys: dict[str, Any] = dict(materials=STIFF, clamp="wall", unit="m", thickness=thick)
+    fixed = gb.Support("end", ["x", "y", "z", "rx", "ry"])
+    strip = gb.SolidMesh.read(mesh, supports=[fixed], **keys).reduced(modes=6, damping_ratio=0.01).structure
+    small = static(strip, 0.0, 0.0, 10.0)
+    deflection, weight = STIFF.density * 10.0 * LENGTH**4 / (32 * STIFF.youngs_modulus * thick**2), STIFF.density * 10.0
+    # w = 16 d x²(L − x)²/L⁴ with d in the middle: T = EA/2L ∫ w'² = EA (d/L)² 256/105.
+    tension = STIFF.youngs_modulus * WIDTH * thick * (deflection / LENGTH) ** 2 * 256 / 105
+    half = weight * WIDTH * thick * LENGTH / 2
+    assert small.support_force[0, 0] == pytest.approx([tension, 0, half], rel=5e-3, abs=1e-6)
+    far = gb.static(strip, acceleration=(0.0, 0.0, 300.0))
+    assert any("its supports stretch it" in each and each.endswith("not known") for each in far.warnings)
+    with pytest.raises(gb.InputError, match=r"supports\[0\] holds rz at end, where nothing moves so; leave rz out"):
+        gb.SolidMesh.read(mesh, supports=[gb.Support("end", ["rz"])], **keys).reduced(modes=1, damping_ratio=0.0)
 
 
 def test_an_edge_of_shells_is_hinged_or_clamped_by_what_is_held() -> None:
     """A square plate: k = 19.74 hinged, 35.99 clamped, of k/a² √(D/ρ h)/2π."""
-    import meshio
-
     side, thick, count = 0.2, 0.002, 8
     x = np.linspace(0, side, 2 * count + 1)
     grid = np.stack([*np.meshgrid(x, x, indexing="ij"), np.zeros((len(x), len(x)))], axis=-1).reshape(-1, 3)

@@ -57,11 +57,13 @@ class Holding:
         self.basis, new = free_motions(rows)
         ends = np.cumsum([0, *(len(levers) for *_, levers in rigid)])
         told = [new[start:end] for start, end in pairwise(ends)]
-        for (k, way, _, _), told_here in zip(rigid, told, strict=True):
+        for (k, way, motion, _), told_here in zip(rigid, told, strict=True):
             if not told_here.any():
-                problem = f"holds {way} at {places[k].support.at}, where it is held already"
-                fix = f"leave {way} out, or hold by springs: how rigid supports share a load is not known"
-                raise InputError(f"supports[{k}]", problem, fix)
+                words, fix = "nothing moves so", f"leave {way} out"
+                if abs(motion).max() > 0:
+                    words = "it is held already"
+                    fix += ", or hold by springs: how rigid supports share a load is not known"
+                raise InputError(f"supports[{k}]", f"holds {way} at {places[k].support.at}, where {words}", fix)
         every = np.concatenate([np.zeros((0, 6)), *(levers for *_, levers in rigid)])[new]
         owner = np.repeat([k for k, *_ in rigid], np.diff(ends))[new]
         self.taken, lifts = list[tuple[int, int]](), list[Floats]()

@@ -306,9 +306,36 @@ def first_order_clause(share: float) -> str:
 def bent_far(structure: Structure, share: float) -> Iterator[str]:
     """Warn of a bend, as a share of the length, that is too far for a stiffness of first order."""
     if clause := first_order_clause(share):
-        known = structure.richer is not None and structure.richer.bending is not None
-        left_out = "stated as error of the model" if known else "not known"
-        yield f"{clause}: what that leaves out is {left_out}"
+        yield f"{clause}: {_left_out(structure)}"
+
+
+def _left_out(structure: Structure) -> str:
+    """Clause on what a stiffness of first order leaves out."""
+    known = structure.richer is not None and structure.richer.bending is not None
+    return f"what that leaves out is {'stated as error of the model' if known else 'not known'}"
+
+
+def stretched(structure: Structure, q: Any) -> Iterator[str]:
+    """Warn of a mesh that its supports stretch where it bends, by coordinates (..., n).
+
+    What is held takes up R(q), of second degree. With the stiffness L of what is held, the stretch has the energy
+    R L⁻¹ R/2 and adds the share 4 U(q)/(q K q) to the elastic forces.
+    """
+    grip = structure.grip
+    if grip is None or grip.second is None:
+        return
+    held, c = np.array(grip.dependents), structure.coefficients
+    whole = np.reshape(q, (-1, structure.size)) @ grip.basis.T
+    reactions = np.einsum("kij,ti,tj->tk", grip.second / 2, whole, whole)
+    flexibility = np.linalg.pinv(grip.free.coefficients.stiffness[np.ix_(held, held)], hermitian=True)
+    stretch = np.einsum("tj,jk,tk->t", reactions, flexibility, reactions) / 2
+    coordinates = np.reshape(q, (-1, structure.size))
+    energy = 4 * stretch.max() / max(float((coordinates @ c.stiffness * coordinates).sum(axis=1).max()), 1e-300)
+    if energy > NOTICED:
+        yield (
+            f"its supports stretch it where it bends, which stiffens it by the order of {100 * energy:.2g} %: "
+            f"{_left_out(structure)}"
+        )
 
 
 def _warn_of_missing_shapes(structure: Structure, base: Any, where: str, span: tuple[float, float]) -> Iterator[str]:

@@ -16,7 +16,7 @@ from gbeam.analysis.system.steady import MASSLESS, bent_most, massless
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.guards.limits import BOUNDLESS
-from gbeam.mechanics.plausibility import bent_far, elastic_bend, first_order_clause
+from gbeam.mechanics.plausibility import bent_far, elastic_bend, first_order_clause, stretched
 from gbeam.mechanics.structure import Structure
 from gbeam.results.body_response import BodyResponse
 from gbeam.results.errors import ErrorEstimate, Errors
@@ -149,7 +149,7 @@ def stressed_and_bent(run: Run, bodies: Mapping[str, BodyResponse]) -> tuple[str
     for body, each in bodies.items():
         warnings += yield_warnings(each.peaks.loads, "" if subject.body else f" of {body}")
         if body == subject.body:
-            warnings += far_bent(subject.structure, each.peaks.max_size)
+            warnings += [*far_bent(subject.structure, each.peaks.max_size), *stretched(subject.structure, each.q)]
     return (*warnings, *(() if subject.body else run.solution(1).stiffness_warnings))
 
 

@@ -13,7 +13,7 @@ from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.steady import SteadySystem, open_loops
 from gbeam.arrays.types import Complex, Floats
 from gbeam.errors import InputError
-from gbeam.mechanics.plausibility import bend, bent_far, input_warnings
+from gbeam.mechanics.plausibility import bend, bent_far, input_warnings, stretched
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.one_body import HINGE, hub_system
 from gbeam.mechanics.tree.signal_names import deforming, local_names
@@ -118,7 +118,8 @@ class Subject:
             return state.warnings + state.point.sticking(state.system, resting=resting) + open_loops(self.system)
         structure, time = self.structure, state.drive.time
         doubts = input_warnings(structure, self.motion, name=name, span=(time, time), base=self.base(state))
-        return doubts + tuple(bent_far(structure, bend(structure, state.q[self.columns(state)])))
+        q = state.q[self.columns(state)]
+        return (*doubts, *bent_far(structure, bend(structure, q)), *stretched(structure, q))
 
     @property
     def unstiffened(self) -> bool:

@@ -27,7 +27,7 @@ from gbeam.analysis.system.richer import Directions
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.enrichment import enrichment
-from gbeam.mechanics.plausibility import bend, bent_far, unstiffened
+from gbeam.mechanics.plausibility import bend, bent_far, stretched, unstiffened
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame
@@ -173,6 +173,7 @@ class Solution:
         bases = self.bases(lacking) if lacking else {}
         warnings = [(name, unstiffened(flexible[name], base, "its motion")) for name, base in bases.items()]
         warnings += [(name, bent_far(flexible[name], share)) for name, share in self.bends.items()]
+        warnings += [(name, stretched(flexible[name], q)) for name, q in self.deformed.items()]
         return tuple(f"{name}: {warning}" for name, body_warnings in warnings for warning in body_warnings)
 
 
