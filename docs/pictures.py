@@ -1,4 +1,4 @@
-"""Pictures of the README and of pages: the F-16, and a strip held at both ends."""
+"""Pictures of the README and of pages: the F-16, a held strip, and a board on rails."""
 
 from __future__ import annotations
 
@@ -49,6 +49,7 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
             drawing.savefig(folder / f"f16_{name}.png", dpi=150)
         film(study, folder / "f16.gif", frames)
         held().savefig(folder / "held_at_both_ends.png", dpi=150)
+        rails().savefig(folder / "board_on_rails.png", dpi=150)
     tracking, tip = study.responses["centrifuge"].plot("tracking"), study.plot("tip")
     tracking[0].figure.savefig(folder / "f16_tracking.png", dpi=150)
     tip[0].figure.savefig(folder / "f16_tip.png", dpi=150)
@@ -87,6 +88,30 @@ def held() -> Figure:
         xlim=(0, loads[-1]),
     )
     axes.set_ylim(bottom=0)
+    return drawing
+
+
+def rails() -> Figure:
+    """Forces of plug and rails on the board, across it, in the F-16's turn."""
+    study = gb.study(gb.read_scenario(EXAMPLE.parent / "board_on_rails.toml"))
+    response = study.responses["flight"]
+    loads = response.body.loads
+    drawing = Figure(figsize=(6.4, 3.0), layout="constrained")
+    axes = drawing.subplots()
+    for k, (name, colour) in enumerate(
+        zip(loads.support_names, ("#009E73", MACHINE, "#0072B2"), strict=True)
+    ):
+        force = loads.support_force[:, k, 2]
+        axes.plot(
+            response.time, force, color=colour, lw=1.4, label=name.replace("_", " ")
+        )
+    axes.set(
+        xlabel="time, s",
+        ylabel="force across the board, N",
+        title="A board of 280 g in its plug and rails, in the 8 g turn",
+        xlim=(response.time[0], response.time[-1]),
+    )
+    axes.legend()
     return drawing
 
 

@@ -1,7 +1,8 @@
-"""The mesh of data/board.msh: a circuit board on four screws with a transformer, a connector and a processor.
+"""The meshes of data/board.msh and data/board_on_rails.msh: a circuit board with a transformer, a connector and a
+processor, on four screws, or with edges that slide in rails up to a plug.
 
-Shells of eight nodes in the board's middle; `python examples/board.py` writes it again, and prints what hexahedra in
-their place would change. board.toml flies it.
+Shells of eight nodes in the board's middle; `python examples/board.py` writes them again, and prints what hexahedra in
+their place would change. board.toml and board_on_rails.toml fly them.
 """
 
 from __future__ import annotations
@@ -45,6 +46,27 @@ def mesh(size: float = CELL) -> meshio.Mesh:
                        field_data=names)  # fmt: skip
 
 
+def on_rails(size: float = CELL) -> meshio.Mesh:
+    """The board in mm without screws, and lines along its edges: two rails and the plug, at x = 0."""
+    board = mesh(size)
+    points, nodes = board.points, board.cells[0].data
+    groups = [name for name in GROUPS if name != "screws"]
+    numbers = [1 + groups.index(name if name in groups else "board") for name in GROUPS]
+    tags = np.array(numbers)[board.cell_data["gmsh:physical"][0] - 1]
+    lines, of_line = [], []
+    sides = np.concatenate([nodes[:, [i, (i + 1) % 4, 4 + i]] for i in range(4)])
+    edges = {"left_rail": (1, 0.0), "right_rail": (1, WIDTH), "plug": (0, 0.0)}
+    for k, (axis, at) in enumerate(edges.values()):
+        on = sides[np.isclose(points[sides][..., axis], at).all(axis=1)]
+        lines.append(on)
+        of_line.append(np.full(len(on), 1 + len(groups) + k))
+    names = {name: np.array([i, 2]) for i, name in enumerate(groups, 1)}
+    names |= {name: np.array([1 + len(groups) + k, 1]) for k, name in enumerate(edges)}
+    tagged = [tags, np.concatenate(of_line)]
+    cells = [("quad8", nodes), ("line3", np.concatenate(lines))]
+    return meshio.Mesh(points, cells, cell_data={"gmsh:physical": tagged, "gmsh:geometrical": tagged}, field_data=names)
+
+
 def solids(size: float = CELL) -> meshio.Mesh:
     """The board of hexahedra of 20 nodes, its middle on z = 0; groups have the nodes of the whole thickness."""
     points, nodes = block(size)
@@ -79,7 +101,8 @@ def lowest(board: meshio.Mesh, **more: float) -> str:
 
 def main() -> None:
     """Write the mesh, and print what other ones give."""
-    meshio.write(HERE / "data" / "board.msh", mesh(), file_format="gmsh22", binary=False)
+    for name, board in (("board", mesh()), ("board_on_rails", on_rails())):
+        meshio.write(HERE / "data" / f"{name}.msh", board, file_format="gmsh22", binary=False)
     for size in (CELL, CELL / 2):
         print(f"{size:g} mm, shells,    ", lowest(mesh(size), thickness=1e-3 * THICKNESS))
         print(f"{size:g} mm, hexahedra, ", lowest(solids(size)))
