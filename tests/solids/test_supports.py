@@ -159,6 +159,19 @@ def test_what_hangs_on_a_held_interface_is_carried_by_its_support() -> None:
     assert (loads.root_force + loads.support_force[:, 0])[0, 2] == pytest.approx(9.81 * (2 + 2700 * AREA * LENGTH))
 
 
+def test_a_plant_has_the_roots_moment_beside_its_supports() -> None:
+    """The gain at rest of the base's acceleration on the moment of the root alone is the static one."""
+    held = model(gb.Support("end", ["z"]), gb.Support("foot", stiffness={"y": 2e6}), damping_ratio=0.02)
+    plant = gb.linearize(held, gb.Flight(z=gb.constant(1.0)))
+    gain = plant.d - plant.c @ np.linalg.solve(plant.a, plant.b)
+    names = [each.name for each in plant.outputs], [each.name for each in plant.inputs]
+    for axis, turned in (("z", 1), ("y", 2)):
+        acceleration = np.where(np.array(list("xyz")) == axis, 1e-2, 0.0)
+        moment = static(held, *acceleration).root_moment[0, turned] / 1e-2
+        row, column = names[0].index(f"root_moment_{'xyz'[turned]}"), names[1].index(f"base_acceleration_{axis}")
+        assert gain[row, column] == pytest.approx(moment, rel=1e-4)
+
+
 def test_a_strip_that_is_held_at_both_ends_pulls_on_them_as_a_beam_does() -> None:
     """The tension of a bend, which the linear deflection has not yet, is a reaction, and the model's error tells what
     it changes in the deflection.

@@ -109,6 +109,8 @@ class Holding:
         """Motions (u, n + s) of all unknowns: shapes (f, n) of what is left, and lifted motions with their answers (f,
         s).
         """
+        if not self.taken:
+            return shapes
         left = np.asarray(self.basis @ np.concatenate([shapes, answers], axis=1))
         left[:, shapes.shape[1] :] += self.lifted
         return left

@@ -45,9 +45,10 @@ class Reactions(NamedTuple):
 
     @property
     def demanded(self) -> Hung:
-        """Demand of the supports on the structure, as bodies that hang on it do."""
+        """Demand of the supports on the structure, as bodies that hang on it do; by names on its last station."""
         xp = namespace(self.force)
-        return Hung(self.station, -self.force, -self.moment - xp.cross(self.place, self.force))
+        station = np.full_like(self.station, -1) if self.names else self.station
+        return Hung(station, -self.force, -self.moment - xp.cross(self.place, self.force))
 
     def with_hung(self, hung: Hung | None) -> Hung:
         """Demand of the supports and of bodies that are `hung` on the structure."""

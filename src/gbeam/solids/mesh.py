@@ -224,7 +224,8 @@ class SolidMesh(Mesh):
         for block in self.blocks:
             counts[block.kind] = counts.get(block.kind, 0) + len(block.nodes)
         elements = ", ".join(f"{count} {kind}" for kind, count in counts.items())
-        held = ", ".join(f"{name} holds {count}" for name, count in self.clamps.items())
+        counts = self.clamps | {place.name: len(np.unique(place.node)) for place in self.supports}
+        held = ", ".join(f"{name} holds {count}" for name, count in counts.items())
         return f"SolidMesh({len(np.unique(self.numbers))} nodes, {elements}, {self.mass:.4g} kg, {held})"
 
     @typed
@@ -281,7 +282,8 @@ class SolidMesh(Mesh):
         tied, stiffness = linked.tied_rows(stiffness), linked.condensed_stiffness(stiffness)
         places = [linked.held(i, place) for i, place in enumerate(self.supports)]
         holding = Holding(places, stiffness.shape[0])
-        stiffness = stiffness + holding.stiffness
+        if holding.sprung:
+            stiffness = stiffness + holding.stiffness
         left = linked.narrowed(holding.basis) if holding.taken else linked
         reduced = reduce(
             holding.left(stiffness),
