@@ -107,6 +107,8 @@ def _body(
         raise InputError("", "material is missing", fix)
     if thickness is not None and thicknesses is not None:
         raise InputError("thicknesses", "is given beside thickness", "keep one of them")
+    if not {"clamp", "supports", "springs"} & options.keys():
+        raise InputError("", "clamp is missing", "add the name of the group that is screwed on, or supports")
     options |= {"materials": material or materials, "thickness": thickness or thicknesses, "point_masses": masses}
     keys = {"point_masses": "masses", "materials": "materials" if materials else "material"}
     keys |= {"thickness": "thicknesses" if thicknesses else "thickness", "source": "mesh"}
