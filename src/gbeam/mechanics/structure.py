@@ -15,14 +15,7 @@ from gbeam.guards.checks import implausible, positive
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.held import HeldComplete, HeldInertia, Springs
 from gbeam.mechanics.equations.inertia import Inertia
-from gbeam.mechanics.equations.linear import (
-    Bending,
-    Coefficients,
-    Geometric,
-    coefficients,
-    damping_matrix,
-    rest_modes,
-)
+from gbeam.mechanics.equations.linear import Bending, Coefficients, Geometric, coefficients, damping_matrix, rest_modes
 from gbeam.mechanics.equations.moments import Moments
 from gbeam.mechanics.equations.virtual_work import LoadHistory, LoadWork
 from gbeam.mechanics.fields.basis import FAMILIES, Counts
