@@ -1,8 +1,11 @@
 """Constants of nature and of the models, and the names that Python and scenarios choose among."""
 
+import math
 from typing import Literal
 
 STANDARD_GRAVITY = 9.80665  # m/s²
+DEGREE = math.pi / 180  # rad
+RPM = math.pi / 30  # a turn in a minute, rad/s
 BY_STRAINS = frozenset({"exact", "fourth-order"})  # models whose coordinates are strains, without a unit
 
 ModelKind = Literal["TLAM", "FOAM", "SFOAM", "CFOAM", "fourth-order", "exact"]

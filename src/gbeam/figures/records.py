@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import DEGREE, STANDARD_GRAVITY
 from gbeam.figures.description import Figure, Line, Panel, Span, of_motion
 from gbeam.printable import raised
 from gbeam.results.description import Channels, RecordSummary
 
-_SHOWN = {"m/s^2": (1 / STANDARD_GRAVITY, "g"), "rad/s": (180 / math.pi, "deg/s")}  # of what is flown
+_SHOWN = {"m/s^2": (1 / STANDARD_GRAVITY, "g"), "rad/s": (1 / DEGREE, "deg/s")}  # of what is flown
 _ROW, _ROWS, _LETTER = 0.12, 3, 0.01  # of a panel's height a row of names of parts, and of its width a letter
 _BETWEEN = 0.003  # of a panel's width: parts that touch are shaded so far apart
 _ALWAYS = (-math.inf, math.inf)

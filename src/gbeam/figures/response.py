@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gbeam.constants import RPM
 from gbeam.figures.description import (
     FLIGHT,
     REFERENCE,
@@ -292,7 +293,7 @@ def hub(response: Response, motion: HubResult, title: str = "") -> Figure:
     """Describe the turning of a hub or an arm about z: its angle, its rate and, if known, the torque of its drive."""
     turns = np.abs(motion.angle).max(initial=0.0) / (2 * math.pi)
     unit, angle = ("turns", motion.angle / (2 * math.pi)) if turns > MOST_TURNS else ("deg", np.degrees(motion.angle))
-    histories = [(f"angle, {unit}", angle), ("rate, rpm", 30 / math.pi * motion.rate)]
+    histories = [(f"angle, {unit}", angle), ("rate, rpm", motion.rate / RPM)]
     if motion.drive_torque is not None:
         scale, unit = scale_of("N m", motion.drive_torque)
         histories.append((f"drive torque, {unit}", scale * motion.drive_torque))

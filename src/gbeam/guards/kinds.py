@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import DEGREE, RPM, STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -70,9 +70,9 @@ USUAL: dict[str, dict[str, float]] = {
     "time": {"ms": 1e-3, "min": 60.0},
     "acceleration": {"g": STANDARD_GRAVITY},
     "jerk": {"g/s": STANDARD_GRAVITY},
-    "angle": {"deg": 0.017453292519943295},
-    "angular rate": {"rpm": 0.10471975511965977, "deg/s": 0.017453292519943295, "Hz": 6.283185307179586},
-    "angular acceleration": {"deg/s^2": 0.017453292519943295},
+    "angle": {"deg": DEGREE},
+    "angular rate": {"rpm": RPM, "deg/s": DEGREE, "Hz": 6.283185307179586},
+    "angular acceleration": {"deg/s^2": DEGREE},
     "power": {"kW": 1e3},
     "frequency": {"Hz": 1.0},
     "ratio": {"%": 0.01},
@@ -110,37 +110,11 @@ _BY_KIND = {
     "ratio": "damping_ratio fatigue_exponent poissons_ratio robust shear_coefficient_y shear_coefficient_z tolerance",
 }
 _BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}
-# By function or class: kinds of arguments that differ from those of others of their name; "" where there is none.
+# By function or class: kinds of arguments as their signatures declare them, or :func:`kinds`; "" where there is none.
 _BY_OWNER: dict[str, dict[str, Declared]] = {
-    "Case": {"tolerance": ""},
-    "Choice": {"turns": "angle"},
-    "Clamped": {"first": "time", "last": "time"},
-    "Convolved": {"width": "time"},
-    "Gauge": {"y": "length", "z": "length"},
     "ImportedModel": {"nodes": "length", "mass": ""},
     "box": {"size": "length", "centre": "length", "bolts": "length"},
-    "buckling_acceleration": {"upper": "acceleration"},
-    "Line": {"breaks": "length", "corners": "length", "turns": "angle"},
-    "PiecewiseLinear": {"times": "time"},
-    "Joint": {"turn": "angle"},
-    "SmoothedPiecewiseLinear": {"width": "time"},
-    "build_target": {"gravity": "", "leave_out": "time"},
-    "campbell": {"start": "angular rate", "end": "angular rate"},
-    "critical_speed": {"upper": "angular rate"},
-    "critical_speed_map": {"upper": "angular rate", "masses": "mass"},
-    "fit": {"at": "time", "bounds": WRITTEN, "options": WRITTEN},
     "of_particles": {"r0": "length", "stations": ""},
-    "of_pieces": {"lengths": "length", "twist": "angle", "turn_y": "angle", "turn_z": "angle"},
-    "of_points": {"points": "length", "twist": "angle"},
-    "linearize": {"at": ""},
-    "optimise": {"at": "time", "bounds": WRITTEN, "options": WRITTEN},
-    "plan": {"envelope": "length"},
-    "sensitivity": {"at": "time", "options": WRITTEN},
-    "shape_command": {"distance": "length"},
-    "shape_hub_command": {"distance": "length"},
-    "smoothed": {"width": "time"},
-    "sweep": {"at": "time", "over": WRITTEN, "options": WRITTEN},
-    "vector": {"x": ""},
 }
 T = TypeVar("T", bound=Callable[..., Any])
 

@@ -58,9 +58,9 @@ def integrate_steps(
     if not np.size(q):
         return Trajectory(time, *np.zeros((3, len(time), 0)))
     if isinstance(equations, LinearEquations):
-        run, samples = _linear(equations, scheme, q, qd, steps), None
+        run, samples = _linear_pieces(equations, scheme, q, qd, steps), None
     else:
-        run, samples = _nonlinear(equations, scheme, q, qd, steps)
+        run, samples = _nonlinear_pieces(equations, scheme, q, qd, steps)
     pieces: list[tuple[Any, ...]] = []
     converged, stopped, done = True, False, 0
     for *piece, solved in run:
@@ -85,7 +85,7 @@ def integrate_steps(
     return replace(trajectory, stopped=stopped or trajectory.failure is not None)
 
 
-def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
+def _linear_pieces(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps) -> Iterator[Piece]:
     """Pieces of a run of linear equations: first the initial state, then the kept steps of each chunk."""
     z, state = linear.start(equations, scheme, steps, q, qd)
     size = len(steps) if is_jax(state[-1]) else LINEAR_CHUNK
@@ -96,7 +96,7 @@ def _linear(equations: LinearEquations, scheme: Scheme, q: Any, qd: Any, steps: 
         yield *piece, np.ones(len(piece[0]), dtype=bool)
 
 
-def _nonlinear(
+def _nonlinear_pieces(
     equations: NonlinearEquations, scheme: Scheme, q: Any, qd: Any, steps: Steps
 ) -> tuple[Iterator[Piece], Any]:
     """Pieces of a run of nonlinear equations, and the samples of its controllers or None, which are taken meanwhile."""

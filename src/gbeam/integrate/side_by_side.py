@@ -210,7 +210,7 @@ class Run:
 
 def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
     """Integrate runs of one shape. A run whose corrections have failed is None, to be integrated alone."""
-    solve = _linear if isinstance(runs[0].equations, LinearEquations) else _nonlinear
+    solve = _integrate_linear if isinstance(runs[0].equations, LinearEquations) else _integrate_nonlinear
     histories, converged = solve(runs)
     trajectories = []
     for run, sound, *state in zip(runs, converged, *histories, strict=True):
@@ -239,7 +239,7 @@ def _filled(values: Array, count: int) -> Array:
     return np.concatenate([values, np.repeat(values[-1:], missing, axis=0)]) if missing else values
 
 
-def _linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
+def _integrate_linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     """Histories of linear runs, and flags (b,) of those that converged: all."""
     scheme, stages = runs[0].scheme, stage_count(runs[0].scheme)
     count = max(len(run.steps) for run in runs)
@@ -323,7 +323,7 @@ def _fitted(runs: Sequence[Run], residuals: Residuals) -> Residuals:
     return form, (*axes, 0, 0), leaves
 
 
-def _nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
+def _integrate_nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     """Histories of nonlinear runs, and flags (b,) of those whose steps have all converged."""
     scheme = runs[0].scheme
     equations: list[Any] = [run.equations for run in runs]

@@ -360,7 +360,7 @@ def _changes(
         (by_residual, driven[1]),
     )
 
-    def accelerated(part: slice, dq: Array, dqd: Array, du: Array) -> Array:
+    def acceleration_changes(part: slice, dq: Array, dqd: Array, du: Array) -> Array:
         """Changes of q̈ at some of the states, by those of q, q̇ and commands there."""
         k, c, m = (matrices[part] for matrices in slope)
         if isinstance(residual, Fitted):
@@ -384,13 +384,13 @@ def _changes(
         dx = -(inverse @ change).reshape(stages, n)
         return (g @ dz + d @ dx, law), (dz, dx, du, taken)
 
-    dqdd = accelerated(slice(0, 1), dq[None], dqd[None], jnp.zeros((1, commands.shape[1])))
+    dqdd = acceleration_changes(slice(0, 1), dq[None], dqd[None], jnp.zeros((1, commands.shape[1])))
     begin = first @ jnp.stack([dq, dqd, dqdd[0]]), follow.begin
     by_step = inverse, by_z, select_stages(onto), select_stages(direct), t.g, t.d, follow.by_step
     _, (dz, dx, du, taken) = jax.lax.scan(step, begin, by_step)
     ends = t.end_z @ dz + t.end_x @ dx
     changes = ends[:, 0], ends[:, 1]
-    at_ends = dx[:, -1] if scheme.ends else accelerated(slice(-count, None), *changes, du)
+    at_ends = dx[:, -1] if scheme.ends else acceleration_changes(slice(-count, None), *changes, du)
     before = dq[None], dqd[None], dqdd
     histories = tuple(jnp.concatenate(pair) for pair in zip(before, (*changes, at_ends), strict=True))
     return histories, [

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import DEGREE, RPM, STANDARD_GRAVITY
 from gbeam.printable import raised
 from gbeam.report.words import columns, number, percent, rounding
 
@@ -21,8 +21,8 @@ _SHOWN = {
     "µm/m": 1e6,
     "g": 1 / STANDARD_GRAVITY,
     "g/s": 1 / STANDARD_GRAVITY,
-    "deg": 180 / math.pi,
-    "rpm": 30 / math.pi,
+    "deg": 1 / DEGREE,
+    "rpm": 1 / RPM,
 }
 
 _NUMERIC = re.compile(r"[-+±–<]?\s*\d.*|–?")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import DEGREE, RPM, STANDARD_GRAVITY
 from gbeam.printable import level_words
 from gbeam.report.words import axis_words, tidy
 from gbeam.results.description import BodyDescription, Curves, Description, RecordSummary, Vector
@@ -47,7 +47,7 @@ def _level_words(level: ArmLevel) -> str:
     """Words on what a plain arm holds."""
     return (
         f"{level.level / STANDARD_GRAVITY:.4g} g along {axis_words(level.load)}, {axis_words(level.up)} up: "
-        f"{30 / math.pi * level.rate:.4g} rpm at {level.radius:.4g} m, {level.reached:.4g} to {level.ends:.4g} s"
+        f"{level.rate / RPM:.4g} rpm at {level.radius:.4g} m, {level.reached:.4g} to {level.ends:.4g} s"
     )
 
 
@@ -211,7 +211,7 @@ def _cells(record: RecordSummary, curves: Curves) -> dict[str, str]:
     scales = [(STANDARD_GRAVITY, "g")] * len(columns)
     if record.rate_columns is not None and curves.rates is not None:
         columns += zip("pqr", record.rate_columns, curves.rates.smallest, curves.rates.largest, strict=True)
-        scales += [(math.pi / 180, "deg/s")] * 3
+        scales += [(DEGREE, "deg/s")] * 3
     for (key, column, smallest, largest), (size, unit) in zip(columns, scales, strict=True):
         low, high = (f"{value / size:.4g}" for value in (smallest, largest))
         cells[f"{key} = {column}"] = f"{low} to {high} {unit}" if column != "0" else ""

@@ -8,6 +8,7 @@ from itertools import zip_longest
 
 import numpy as np
 
+from gbeam.constants import RPM
 from gbeam.printable import raised
 from gbeam.report.blocks import (
     FIGURES,
@@ -176,7 +177,7 @@ def error_notes(facts: Facts) -> list[Block]:
     return [Sentence(f"{words}: {note}", "faint")] if note else []
 
 
-_SPEEDS = {"rad/s": 1.0, "rpm": 30 / np.pi}
+_SPEEDS = {"rad/s": 1.0, "rpm": 1 / RPM}
 
 
 def campbell(facts: Facts, speeds: Mapping[str, float] = _SPEEDS) -> Blocks:

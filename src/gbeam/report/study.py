@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gbeam.constants import RPM
 from gbeam.printable import level_words
 from gbeam.report.arm import balance, levels
 from gbeam.report.blocks import (
@@ -89,7 +90,7 @@ def response_lines(response: Response) -> Iterator[str]:
         yield from (f"{prefix}{line}" for line in _body_lines(body))
     if response.hub is not None:
         angle, rate = response.hub.angle_end, response.hub.rate_max
-        rpm = number(30 / math.pi * rate)
+        rpm = number(rate / RPM)
         yield f"{response.environment}: angle at the end {angle_words(angle)}, largest rate {rpm} rpm"
         if free_hub and np.any(response.body.damping_ratio):
             yield _damping(response.body)

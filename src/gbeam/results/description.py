@@ -4,12 +4,11 @@ run.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import DEGREE, STANDARD_GRAVITY
 from gbeam.results.declared import declared, fact, internal, part, rows
 from gbeam.results.declared import quantity as entry  # a record has a field of that name
 from gbeam.results.machine import ArmLevel
@@ -152,7 +151,7 @@ class RecordSummary(Part):
         for k, (axis, column) in enumerate(self.channels.items()):
             if column == "0":
                 continue
-            size, unit = (STANDARD_GRAVITY, "g") if axis in "xyz" else (math.pi / 180, "deg/s")
+            size, unit = (STANDARD_GRAVITY, "g") if axis in "xyz" else (DEGREE, "deg/s")
             rows.append((axis, unit, [f"{offsets[k] / size:.4g}" for offsets in by_stretch]))
         return rows
 

@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from gbeam.arrays.types import Indices, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
+from gbeam.guards.quantities import Quantity
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import FRAME, Accelerated, FrequencyErrors, Noted, accelerated, acceleration_lines
 from gbeam.results.result import Complex, Figured, Floats, Part
@@ -64,8 +65,8 @@ class Gauge(Value):
     """
 
     at: float | str
-    y: float = 0.0
-    z: float = 0.0
+    y: Annotated[float, Quantity("length")] = 0.0
+    z: Annotated[float, Quantity("length")] = 0.0
     along: Numbers = (1.0, 0.0, 0.0)
     body: str = ""
 

@@ -16,7 +16,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.quantities import Angle, Position
+from gbeam.guards.quantities import Angle, Position, Quantity
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -81,9 +81,9 @@ class Line(Value):
 
     length: float
     curvature: Curvature
-    breaks: Numbers = ()
-    corners: Numbers = ()
-    turns: ArrayLike = ()
+    breaks: Annotated[Numbers, Quantity("length")] = ()
+    corners: Annotated[Numbers, Quantity("length")] = ()
+    turns: Annotated[ArrayLike, Quantity("angle")] = ()
 
     def __post_init__(self) -> None:
         """Check the corners and breaks, and try the curvature at 64 positions."""
@@ -118,7 +118,12 @@ class Line(Value):
     @classmethod
     @typed
     def of_pieces(
-        cls, lengths: ArrayLike, *, twist: ArrayLike = 0.0, turn_y: ArrayLike = 0.0, turn_z: ArrayLike = 0.0
+        cls,
+        lengths: Annotated[ArrayLike, Quantity("length")],
+        *,
+        twist: Annotated[ArrayLike, Quantity("angle")] = 0.0,
+        turn_y: Annotated[ArrayLike, Quantity("angle")] = 0.0,
+        turn_z: Annotated[ArrayLike, Quantity("angle")] = 0.0,
     ) -> Line:
         """Build a line of pieces that turn evenly: straight ones, arcs, helices, and corners, which have no length.
 
@@ -156,7 +161,13 @@ class Line(Value):
 
     @classmethod
     @typed
-    def of_points(cls, points: ArrayLike, twist: ArrayLike = 0.0, *, smooth: bool = True) -> Line:
+    def of_points(
+        cls,
+        points: Annotated[ArrayLike, Quantity("length")],
+        twist: Annotated[ArrayLike, Quantity("angle")] = 0.0,
+        *,
+        smooth: bool = True,
+    ) -> Line:
         """Build a line through points: a smooth curve, or straight pieces with corners.
 
         Parameters

@@ -13,6 +13,7 @@ import numpy as np
 from gbeam.analysis.case import Case
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import WRITTEN, kinds
 from gbeam.progress import Progress
 from gbeam.questions import Needs, Options, reduced
 from gbeam.results.result import Floats
@@ -37,6 +38,7 @@ _TIED = 0.7  # correlation of residuals with the next ones, above which they are
 _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 
+@kinds(at="time", bounds=WRITTEN, options=WRITTEN)
 @typed
 def fit(
     scenario: str | os.PathLike[str] | Case,

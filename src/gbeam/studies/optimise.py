@@ -15,7 +15,7 @@ from gbeam.analysis.case import Case
 from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.kinds import KINDS
+from gbeam.guards.kinds import KINDS, WRITTEN, kinds
 from gbeam.guards.units import read_quantity
 from gbeam.progress import Progress
 from gbeam.questions import Options
@@ -35,6 +35,7 @@ LIMITS = "limits"
 _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 
+@kinds(at="time", bounds=WRITTEN, options=WRITTEN)
 @typed
 def optimise(
     scenario: str | os.PathLike[str] | Case,

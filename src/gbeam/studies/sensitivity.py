@@ -15,6 +15,7 @@ from gbeam.analysis.case import Case
 from gbeam.constants import Verb
 from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import WRITTEN, kinds
 from gbeam.progress import Progress
 from gbeam.questions import Options
 from gbeam.results.cases import Sensitivity
@@ -45,6 +46,7 @@ _SMOOTH = 1e-3  # of the figure over the value: a smaller difference is rounding
 _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|passed|yielded|margin_estimate)(\.|\[|$)")
 
 
+@kinds(at="time", options=WRITTEN)
 @typed
 def sensitivity(
     scenario: str | os.PathLike[str] | Case,

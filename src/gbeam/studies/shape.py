@@ -48,6 +48,7 @@ def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
 @kinds(
     limit=lambda arguments: DRIVES[_drive(arguments)][1],
     rate=lambda arguments: "speed" if _drive(arguments)[1] else "angular rate",
+    distance="length",
 )
 @typed
 def shape_hub_command(

@@ -16,6 +16,7 @@ from gbeam.analysis.case import Case
 from gbeam.constants import Sampler, Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import WRITTEN, kinds
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
 from gbeam.progress import tell
 from gbeam.questions import Options
@@ -34,6 +35,7 @@ _LONGEST = 256  # cases in a batch
 Progress = Callable[[int, int, int], None] | bool | None
 
 
+@kinds(at="time", over=WRITTEN, options=WRITTEN)
 @typed
 def sweep(
     scenario: str | os.PathLike[str] | Case,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from gbeam.constants import Measure, Mounting
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
+from gbeam.guards.quantities import Quantity
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.course import INVERSES
@@ -73,7 +74,7 @@ class Choice:
     widths: Numbers
     refined: bool = True
     limited: bool = True
-    turns: tuple[Turn, ...] = ()
+    turns: Annotated[tuple[Turn, ...], Quantity("angle")] = ()
     between: bool = False
 
 

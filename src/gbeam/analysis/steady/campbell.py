@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import groupby, pairwise
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats, Indices, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.quantities import Quantity
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.profiles.profile import Profile
@@ -115,8 +116,8 @@ def campbell(
     *,
     turning: str | None = None,
     speeds: Numbers | None = None,
-    start: float = 0.0,
-    end: float | None = None,
+    start: Annotated[float, Quantity("angular rate")] = 0.0,
+    end: Annotated[float, Quantity("angular rate")] | None = None,
     count: int = 60,
     modes: int = 8,
     orders: Sequence[int] | Indices = (1, 2, 3, 4),

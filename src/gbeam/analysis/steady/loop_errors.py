@@ -17,6 +17,7 @@ from gbeam.analysis.system.rest import transfer
 from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats, Indices
+from gbeam.constants import DEGREE
 from gbeam.errors import ComputationError, InputError
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -30,7 +31,7 @@ CURES = {MORE: f"; {MORE_SHAPES}", COARSER: f"; {ROUGH_MESH[1]}"}
 SHOWN = {  # words, factors and units
     "gain": ("gain", 1.0, ""),
     "gain_low": ("gain not below", 1.0, ""),
-    "phase": ("phase", 180 / math.pi, " deg"),
+    "phase": ("phase", 1 / DEGREE, " deg"),
     "delay": ("delay", 1e3, " ms"),
     "modulus": ("least distance from -1", 1.0, ""),
 }

@@ -10,6 +10,7 @@ eigenvalues decide. There damping matters: the least of it lowers the flutter lo
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
+from gbeam.guards.quantities import Quantity
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
@@ -59,7 +61,7 @@ def critical_speed(
     motion: Motion | None = None,
     *,
     turning: str | None = None,
-    upper: float | None = None,
+    upper: Annotated[float, Quantity("angular rate")] | None = None,
     time: float = 0.0,
     name: str = "",
     progress: Progress = None,
@@ -158,9 +160,9 @@ def critical_speed_map(
     beam: Beam,
     model: Model,
     motion: Motion,
-    masses: Numbers,
+    masses: Annotated[Numbers, Quantity("mass")],
     positions: Numbers,
-    upper: float | None = None,
+    upper: Annotated[float, Quantity("angular rate")] | None = None,
     *,
     name: str = "",
     progress: Progress = None,
@@ -225,7 +227,11 @@ def critical_speed_map(
 
 @typed
 def buckling_acceleration(
-    structure: Structure | System, *, time: float = 0.0, upper: float | None = None, progress: Progress = None
+    structure: Structure | System,
+    *,
+    time: float = 0.0,
+    upper: Annotated[float, Quantity("acceleration")] | None = None,
+    progress: Progress = None,
 ) -> Critical:
     """Acceleration of the root along +x at which the beam, pushed by it, buckles under its own inertia.
 

@@ -130,7 +130,7 @@ JOINT_KINDS: dict[JointKind, Kind] = {
 }
 
 
-@kinds(coupling=_kinds_of_coupling, **{key: partial(_kinds_of, key) for key in OF_COORDINATES})
+@kinds(turn="angle", coupling=_kinds_of_coupling, **{key: partial(_kinds_of, key) for key in OF_COORDINATES})
 @typed
 @dataclass(frozen=True, eq=False)
 class Joint(Value):

@@ -14,6 +14,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
+from gbeam.guards.kinds import kinds
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
 from gbeam.motion.profiles.profile import Convolved, Profile, append_axes
 from gbeam.numerics.series import Series, stack, where
@@ -125,6 +126,7 @@ class Turned(Profile):
         return Turned(self.profile.smoothed(width), self.matrix)
 
 
+@kinds(x="")
 @typed
 def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> Vector:
     """Return the vector profile of three components; one left out is zero.
@@ -206,6 +208,7 @@ def _cut(table: PiecewiseLinear, first: float, last: float) -> PiecewiseLinear:
     return PiecewiseLinear(inside, table(inside))
 
 
+@kinds(first="time", last="time")
 @record
 class Clamped(Profile):
     """A curved profile that is constant before one time and after another, s; see :func:`clamped`."""

@@ -14,6 +14,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
+from gbeam.guards.kinds import kinds
 from gbeam.guards.quantities import OfProfile, Quantity
 from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded, append_axes, hann_orders
 from gbeam.numerics.series import Series
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from gbeam.results.description import RecordSummary
 
 
+@kinds(times="time")
 @record
 class PiecewiseLinear(Profile):
     """Straight between knots, constant before the first and after the last; one knot makes a constant."""
@@ -110,6 +112,7 @@ def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
     )
 
 
+@kinds(width="time")
 @record
 class SmoothedPiecewiseLinear(Rounded):
     """Convolution of a piecewise-linear profile with the Hann kernel, exact and three times differentiable.

@@ -14,6 +14,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
 from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import positive
+from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.numerics.series import Series, compose, where
 
@@ -90,6 +91,7 @@ class Profile(ABC):
         return Convolved(self, width)
 
 
+@kinds(width="time")
 @typed
 def smoothed(profile: Profile, width: Any) -> Profile:
     """Round the corners of a profile: its convolution with a Hann kernel, three times differentiable.
@@ -255,6 +257,7 @@ def soft_step(value: Series, middle: Any, band: Any) -> Series:
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
+@kinds(width="time")
 @record
 class Convolved(Rounded):
     """A profile convolved with the Hann kernel of width W.

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
-from gbeam.constants import STANDARD_GRAVITY
+from gbeam.constants import DEGREE, RPM, STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.units import UnitError
 from gbeam.printable import advise, shortened
@@ -19,7 +19,7 @@ UNITS: dict[str, dict[str, float]] = {
         **{"g": STANDARD_GRAVITY, "m/s^2": 1.0, "ft/s^2": 0.3048, "mg": STANDARD_GRAVITY / 1000},
         **{"mm/s^2": 1e-3, "cm/s^2": 1e-2, "in/s^2": 0.0254},
     },
-    "rate": {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30},
+    "rate": {"rad/s": 1.0, "deg/s": DEGREE, "rpm": RPM},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
 }
 _FEET = {"ft": "f", "in": "i"}  # in fps2 and ips2

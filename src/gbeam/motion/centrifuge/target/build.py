@@ -14,6 +14,7 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
+from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import KNOTS, refuse_more
 from gbeam.motion.centrifuge.target.reachability import (
     LEAST_IDLE,
@@ -53,6 +54,7 @@ _ROUNDING = 1e-9
 Stretches = Sequence[tuple[float, float]]
 
 
+@kinds(gravity="", leave_out="time")
 @typed
 def build_target(
     raw: Profile,
