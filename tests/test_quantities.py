@@ -349,7 +349,8 @@ def documented(thing: Any) -> dict[str, str]:
         if line and not line.startswith(" "):
             head, _, kind = line.partition(" : ")
             names = [each.strip() for each in head.split(",")]
-            units = " ".join(part for part in kind.split(", ")[1:] if SAID.fullmatch(part))
+            parts = (unit for part in kind.split(", ")[1:] for unit in part.split(" or "))
+            units = " ".join(unit for unit in parts if SAID.fullmatch(unit))
             words |= {each: f"{words.get(each, '')} {units}" for each in names}
         else:
             words |= {each: f"{words.get(each, '')} {line.strip()}" for each in names}

@@ -12,11 +12,12 @@ from inspect import cleandoc, signature, unwrap
 from textwrap import fill
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from gbeam.guards.quantities import OneOrSome, Quantity, Rows, Shape
+from gbeam.guards.quantities import OfCoordinate, OneOrSome, Quantity, Rows, Shape
 
 SECTION = "Parameters\n----------\n"
 _FOLLOWING = re.compile(r"^(Returns|Yields|Attributes|Raises|Notes|See Also|References|Examples)\n-+$", re.MULTILINE)
 _WIDTH = 112
+_MANY = 6  # keys of a dictionary, of which more are not listed
 _NUMERIC = (float, int, Any)  # types of numbers
 _PLAIN = {float: "float", int: "int", bool: "bool", str: "str", Any: "object"}
 _LISTS = {list: "list", tuple: "tuple", collections.abc.Sequence: "sequence", collections.abc.Iterable: "iterable"}
@@ -31,6 +32,7 @@ class Parameter:
     words: str  # what it is, beginning with a small letter and without a full stop; empty if it says nothing
     default: Any  # inspect.Parameter.empty where it must be given
     quantity: Quantity | None  # that its numbers are; None if they are none
+    of_coordinate: OfCoordinate | None = None  # quantities of which they are, by the coordinate
 
     @property
     def required(self) -> bool:
@@ -72,7 +74,8 @@ def _parameter(name: str, hint: Any, default: Any) -> Parameter:
     marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
     words = next((mark for mark in marks if isinstance(mark, str)), "")
     quantity = next((mark for mark in _annotations(hint) if isinstance(mark, Quantity)), None)
-    return Parameter(name, hint, words, default, quantity)
+    of_coordinate = next((mark for mark in marks if isinstance(mark, OfCoordinate)), None)
+    return Parameter(name, hint, words, default, quantity, of_coordinate)
 
 
 def resolved_hints(function: Callable[..., Any]) -> dict[str, Any]:
@@ -125,6 +128,8 @@ def _entry(parameter: Parameter) -> str:
     if parameter.quantity is not None:
         kind[0] = kind[0].replace("object", "float")  # of any kind of number, JAX's among them
         kind += [parameter.quantity.unit] if parameter.quantity.unit else []
+    if parameter.of_coordinate is not None:
+        kind.append(parameter.of_coordinate.unit)
     if not parameter.required:
         kind.append("optional")
     return f"{parameter.name} : {', '.join(kind)}" + (f"\n{_sentence(parameter)}" if parameter.words else "")
@@ -167,13 +172,14 @@ def type_words(hint: Any) -> str:
     origin, parts = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         kinds = (alternative for alternative in alternatives(hint) if alternative is not type(None))
-        return " or ".join(dict.fromkeys(map(type_words, kinds)))
+        return " or ".join(sorted(dict.fromkeys(map(type_words, kinds)), key=lambda words: words.startswith("dict")))
     if origin is Literal:
         return f"{{{', '.join(map(repr, parts))}}}"
     if origin in _LISTS:
         return f"{_LISTS[origin]} of {type_words(parts[0])}" if parts else _LISTS[origin]
     if origin in (dict, Mapping, collections.abc.Mapping):
-        return f"dict of {type_words(parts[0])} to {type_words(parts[1])}"
+        keys = "str" if len(get_args(parts[0])) > _MANY else type_words(parts[0])
+        return f"dict of {keys} to {type_words(parts[1])}"
     if getattr(origin, "__name__", "") == "ndarray":
         return "ndarray"
     return _PLAIN.get(hint, getattr(hint, "__name__", str(hint)))

@@ -146,6 +146,20 @@ class QuantityOrName(Quantity):
 
 
 @dataclass(frozen=True)
+class OfCoordinate:
+    """Annotation of a value of a coordinate: its kinds of quantity, of a displacement and of an angle, and its sign."""
+
+    displacement: str  # a key of KINDS
+    angle: str
+    sign: Sign = "any"
+
+    @property
+    def unit(self) -> str:
+        """Both SI units as they are printed, such as m or rad."""
+        return " or ".join(Quantity(kind).unit for kind in (self.displacement, self.angle))
+
+
+@dataclass(frozen=True)
 class Count:
     """Annotation of a whole number: its least and largest value."""
 

@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gbeam.arrays.namespace import as_array, concatenated, is_jax
 from gbeam.arrays.tree import Value, assign, follows
-from gbeam.arrays.types import Numbers
 from gbeam.constants import Coordinate, Direction, JointKind, Rate
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, finite, positive, vector
 from gbeam.guards.kinds import Kinds, kinds
+from gbeam.guards.parameters import parameters_of
+from gbeam.guards.quantities import OfCoordinate, PositionVector, RotationVector, Shape
 from gbeam.mechanics.tree.course import Course
-from gbeam.mechanics.tree.equations import Holder
+from gbeam.mechanics.tree.equations import SLIP, SLIPS, Holder
 from gbeam.mechanics.tree.steps import (
     Ball,
     Placed,
@@ -39,30 +40,22 @@ _Values = ArrayLike | Mapping[Coordinate, ArrayLike] | None  # of a single coord
 _Rates = ArrayLike | Mapping[Rate, ArrayLike] | None
 _Drives = Profile | ArrayLike | Mapping[Rate, Profile | ArrayLike] | None
 GROUND = "ground"
+_FRICTION = (
+    f"Coulomb friction, times tanh(rate/{SLIP:g}), the rate in m/s or rad/s: less below {' and '.join(SLIPS)}, so that "
+    "what it holds creeps"
+)
 _EYE = np.eye(3)
 _EASY = ("stiffness", "ease", "damping", "friction", "stop_stiffness")
 OF_RATES = ("initial_rate", "damping", "friction", "rate", "effort")  # keys by the names of rates
 DIRECTIONS = get_args(Direction)
 SLIDES = ("displacement", "x", "y", "z")  # coordinates in m; others are angles
-# Kinds of what is said of a coordinate: of a displacement, and of an angle.
-OF_COORDINATES = {
-    "initial": ("length", "angle"),
-    "initial_rate": ("speed", "angular rate"),
-    "stiffness": ("stiffness", "rotational stiffness"),
-    "ease": ("length", "angle"),
-    "damping": ("damping", "rotational damping"),
-    "friction": ("force", "torque"),
-    "stops": ("length", "angle"),
-    "stop_stiffness": ("stiffness", "rotational stiffness"),
-    "rate": ("speed", "angular rate"),
-    "effort": ("force", "torque"),
-}
 COUPLINGS = ("rotational stiffness", "force", "stiffness")  # of two coordinates, by how many are displacements
 
 
 def kind_of_value(key: str, coordinate: str) -> str:
     """Kind of quantity, such as "torque", that a joint's key takes for a coordinate."""
-    return OF_COORDINATES[key][coordinate not in SLIDES]
+    mark = OF_COORDINATES[key]
+    return mark.displacement if coordinate in SLIDES else mark.angle
 
 
 def _kinds_of(key: str, arguments: Mapping[str, Any]) -> Kinds:
@@ -130,52 +123,24 @@ JOINT_KINDS: dict[JointKind, Kind] = {
 }
 
 
-@kinds(turn="angle", coupling=_kinds_of_coupling, **{key: partial(_kinds_of, key) for key in OF_COORDINATES})
 @typed
 @dataclass(frozen=True, eq=False)
 class Joint(Value):
     """A joint that holds a body on a point of another body, or on the ground.
 
-    Parameters
-    ----------
-    kind : str
-        ``fixed``, ``revolute`` (one angle), ``prismatic`` (one displacement), ``cylindrical`` (both along one axis),
-        ``universal`` (two angles, one after the other), ``spherical`` (any rotation) or ``free`` (six rates).
-    body : str
-        The body that it holds, by its root.
-    on : str
-        ``ground``, or a point of another body: ``"bus.left"``; ``"bus.root"`` is its root.
-    axes : sequence of vectors, optional
-        Directions in axes of the point: one of a revolute, prismatic or cylindrical joint, two of a universal one, the
-        second as it stands at a first angle of zero; of any length.
-    at : (3,)
-        Place of the joint from the point, axes of the point, m.
-    turn : (3,)
-        Rotation vector of the body's root axes in those of the point where all coordinates are zero, rad.
-    initial, initial_rate : float or mapping of str to float
-        Coordinates, m or rad, and rates, m/s or rad/s, at the start, zero unless given, by name (``angle``,
-        ``displacement``, ``angle_1``, ``angle_2``, ``x``, ``y``, ``z``); of a single coordinate just its value. A
-        spherical or free joint turns by the rotation vector ``rx``, ``ry``, ``rz``, of half a turn at most, from where
-        `turn` sets it, at the angular velocity ``wx``, ``wy``, ``wz``, both in axes of the body: `initial`, springs and
-        stops are given by the former, `initial_rate`, `damping`, `friction`, `rate` and `effort` by the latter.
-    stiffness, ease, damping, friction : float or mapping of str to float
-        Spring, N/m or N m/rad, coordinate at which it has no force, m or rad, damper, N s/m or N m s/rad, and Coulomb
-        friction F, N or N m, of each coordinate. A ``fixed`` joint gives way along and about the axes that have a
-        stiffness: ``x``, ``y``, ``z``, ``rx``, ``ry``, ``rz``, the last three components of a rotation vector. Friction
-        is F tanh(rate/s), with s = 1 mm/s or 0.001 rad/s (0.0573 °/s): what it holds against a load P creeps, by s
-        artanh(P/F), and what is slower than s feels less of it. Equilibria and small departures are without friction.
-    coupling : mapping of str to float, optional
-        Stiffness between two coordinates, by both names, such as ``{"y-rz": -2e4}``: with the springs of all six
-        directions the 6 × 6 stiffness of a fixture, N/m, N, or N m.
-    stops : pair of float or mapping of str to pairs
-        Lowest and highest coordinate, m or rad, at which stops begin to give way.
-    stop_stiffness : float or mapping of str to float
-        Of the stops, N/m or N m/rad.
-    rate : Profile or mapping of str to Profile, optional
-        Prescribed rates, m/s or rad/s: such coordinates are no unknowns, and what their drives need is a result. Of
-        ``wx``, ``wy`` and ``wz`` all three are prescribed, or none.
-    effort : Profile or mapping of str to Profile, optional
-        Force or torque of a drive on each coordinate, N or N m.
+    Values are given by the names of coordinates: ``angle``, ``displacement``, ``angle_1``, ``angle_2``, ``x``, ``y``
+    and ``z``. Of a single coordinate just the value is given. A spherical or free joint turns by the rotation vector
+    ``rx``, ``ry``, ``rz``, of half a turn at most, from where `turn` sets it, at the angular velocity ``wx``, ``wy``,
+    ``wz``. Both are in axes of the body: `initial`, `stiffness`, `ease` and `stops` are given by the former,
+    `initial_rate`, `damping`, `friction`, `rate` and `effort` by the latter.
+
+    A ``fixed`` joint gives way along and about the axes that have a stiffness: ``x``, ``y``, ``z``, ``rx``, ``ry``,
+    ``rz``, the last three components of a rotation vector. Its `coupling` is the stiffness between two of them, by both
+    names, such as ``{"y-rz": -2e4}``: with six springs it is the 6 × 6 stiffness of a fixture, in N/m, N and N m.
+
+    What friction F holds against a load P creeps, by s artanh(P/F) with the rate s of its law. Equilibria and small
+    departures are without friction. Coordinates with a prescribed `rate` are no unknowns, and what their drives need is
+    a result; of ``wx``, ``wy`` and ``wz`` all three are prescribed, or none.
 
     Attributes
     ----------
@@ -203,23 +168,49 @@ class Joint(Value):
     ('angle',)
     """
 
-    kind: JointKind
-    body: str
-    on: str = GROUND
-    axes: ArrayLike | None = None
-    at: Numbers = (0.0, 0.0, 0.0)
-    turn: Numbers = (0.0, 0.0, 0.0)
-    initial: _Values = None
-    initial_rate: _Rates = None
-    stiffness: _Values = None
-    ease: _Values = None
-    damping: _Rates = None
-    friction: _Rates = None
-    stops: _Values = None
-    stop_stiffness: _Values = None
-    rate: _Drives = None
-    effort: _Drives = None
-    coupling: Any = None
+    kind: Annotated[
+        JointKind,
+        "kind of the joint: fixed, revolute (one angle), prismatic (one displacement), cylindrical (both along one "
+        "axis), universal (two angles, one after the other), spherical (any rotation) or free (any motion)",
+    ]
+    body: Annotated[str, "NAME of the body that it holds, by its root"]
+    on: Annotated[
+        str, 'what it hangs on: "ground", or a point of a body, such as "bus.left"; "bus.root" is its root'
+    ] = GROUND
+    axes: Annotated[
+        ArrayLike | None,
+        "directions in axes of the point, of any length: one of a revolute, prismatic or cylindrical joint, two of a "
+        "universal one, the second as it stands at a first angle of zero",
+    ] = None
+    at: Annotated[PositionVector, "place of the joint from the point: [x, y, z]"] = (0.0, 0.0, 0.0)
+    turn: Annotated[
+        RotationVector,
+        "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]",
+    ] = (0.0, 0.0, 0.0)
+    initial: Annotated[_Values, OfCoordinate("length", "angle"), "coordinate at the start"] = None
+    initial_rate: Annotated[_Rates, OfCoordinate("speed", "angular rate"), "rate at the start"] = None
+    stiffness: Annotated[_Values, OfCoordinate("stiffness", "rotational stiffness", "zero or more"), "spring"] = None
+    ease: Annotated[_Values, OfCoordinate("length", "angle"), "coordinate at which the spring has no force"] = None
+    damping: Annotated[_Rates, OfCoordinate("damping", "rotational damping", "zero or more"), "damper"] = None
+    friction: Annotated[_Rates, OfCoordinate("force", "torque", "zero or more"), _FRICTION] = None
+    stops: Annotated[
+        _Values,
+        OfCoordinate("length", "angle"),
+        Shape((2,)),
+        "lowest and highest coordinate, at which stops begin to give way",
+    ] = None
+    stop_stiffness: Annotated[
+        _Values, OfCoordinate("stiffness", "rotational stiffness", "zero or more"), "stiffness of the stops"
+    ] = None
+    rate: Annotated[
+        _Drives,
+        OfCoordinate("speed", "angular rate"),
+        "prescribed rate, instead of effort: a quantity or a profile",
+    ] = None
+    effort: Annotated[
+        _Drives, OfCoordinate("force", "torque"), "force or torque of a drive: a quantity or a profile"
+    ] = None
+    coupling: Annotated[Any, "stiffness between two coordinates"] = None
     coordinates: tuple[str, ...] = follows()
     values: tuple[str, ...] = follows()
     rate_names: tuple[str, ...] = follows()
@@ -463,3 +454,10 @@ class Joint(Value):
                 listed = f"choose from {', '.join(names)}" if names else "leave it out"
                 raise InputError(f"{where}.{name}", f"is no coordinate of a {self.kind} joint", listed)
         return dict(values)
+
+
+# Quantities of what is said of a coordinate, by key.
+OF_COORDINATES = {
+    name: parameter.of_coordinate for name, parameter in parameters_of(Joint).items() if parameter.of_coordinate
+}
+kinds(coupling=_kinds_of_coupling, **{key: partial(_kinds_of, key) for key in OF_COORDINATES})(Joint)

@@ -7,47 +7,38 @@ everything about them.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from itertools import combinations
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, create_model
 
-from gbeam.guards.quantities import Quantity, Sign
-from gbeam.mechanics.tree.equations import SLIP, SLIPS
-from gbeam.mechanics.tree.joints import COUPLINGS, GROUND, JOINT_KINDS, SLIDES, Joint, Kind, kind_of_value
+from gbeam.guards.parameters import Parameter, alternatives, parameters_of
+from gbeam.guards.quantities import Quantity, Shape
+from gbeam.mechanics.tree.joints import (
+    COUPLINGS,
+    GROUND,
+    JOINT_KINDS,
+    OF_COORDINATES,
+    SLIDES,
+    Joint,
+    Kind,
+    kind_of_value,
+)
+from gbeam.motion.profiles.profile import Profile
 from gbeam.scenario.schema.declared import OVER_TIME, chosen, makes
 from gbeam.scenario.schema.fields import Direction, Place3, Table, Turn3, fields_of, optional
 
-
-def _number(kind: str, sign: Sign = "any") -> Any:
-    return Annotated[float, Quantity(kind, sign)]
+_PARAMETERS = parameters_of(Joint)
 
 
-_size = partial(_number, sign="zero or more")
-
-
-def _pair(kind: str) -> Any:
-    return tuple.__class_getitem__((_number(kind), _number(kind)))
-
-
-# By key about coordinates: a function from the kind of quantity to the type of its value, and its words.
-_ABOUT: dict[str, tuple[Callable[[str], Any], str]] = {
-    "initial": (_number, "coordinate at the start"),
-    "initial_rate": (_number, "rate at the start"),
-    "stiffness": (_size, "spring"),
-    "ease": (_number, "coordinate at which the spring has no force"),
-    "damping": (_size, "damper"),
-    "friction": (
-        _size,
-        f"Coulomb friction, times tanh(rate/{SLIP:g}), the rate in m/s or rad/s: less below {' and '.join(SLIPS)}, so "
-        "that what it holds creeps",
-    ),
-    "stops": (_pair, "lowest and highest coordinate, at which stops begin to give way"),
-    "stop_stiffness": (_size, "stiffness of the stops"),
-    "rate": (OVER_TIME.__getitem__, "prescribed rate, instead of effort: a quantity or a profile"),
-    "effort": (OVER_TIME.__getitem__, "force or torque of a drive: a quantity or a profile"),
-}
+def _value_type(parameter: Parameter, coordinate: str) -> Any:
+    """Type of what a parameter of joints says of a coordinate: a number, several, or a profile over time."""
+    kind, mark = kind_of_value(parameter.name, coordinate), parameter.of_coordinate
+    if Profile in alternatives(parameter.hint):
+        return OVER_TIME[kind]
+    number = Annotated[float, Quantity(kind, mark.sign if mark else "any")]
+    shape = next((mark for mark in parameter.hint.__metadata__ if isinstance(mark, Shape)), None)
+    return number if shape is None else tuple.__class_getitem__((number,) * shape.sizes[0])
 
 
 class Coordinates(Table):
@@ -76,10 +67,10 @@ def _optional(of: Any, description: str) -> tuple[Any, Any]:
 def _joint(name: str, kind: Kind) -> Any:
     """Table of a kind of joint; values are written plainly for one coordinate, in tables by name for several."""
     fields = _placed(name, kind)
-    for key, (type_of, words) in _ABOUT.items():
-        coordinates = kind.names_in(key)
-        kinds = {coordinate: kind_of_value(key, coordinate) for coordinate in coordinates}
-        by_coordinate = {coordinate: _optional(type_of(kinds[coordinate]), words) for coordinate in coordinates}
+    for key in OF_COORDINATES:
+        parameter, coordinates = _PARAMETERS[key], kind.names_in(key)
+        words = parameter.words
+        by_coordinate = {coordinate: _optional(_value_type(parameter, coordinate), words) for coordinate in coordinates}
         if len(coordinates) == 1:
             fields[key] = by_coordinate[coordinates[0]]
         elif coordinates:
@@ -93,26 +84,25 @@ def _joint(name: str, kind: Kind) -> Any:
 
 def _placed(name: str, kind: Kind) -> dict[str, Any]:
     """Keys of a kind of joint that say between which bodies it is, and where."""
-    hung = 'what it hangs on: "ground", or a point of a body, such as "bus.left"; "bus.root" is its root'
-    turn = "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]"
+    words = {key: parameter.words for key, parameter in _PARAMETERS.items()}
     fields: dict[str, Any] = {
         "kind": (Literal[name], Field(description="kind of the joint")),
-        "body": (str, Field(description="NAME of the body that it holds, by its root")),
-        "on": (str, Field(default=GROUND, description=hung)),
+        "body": (str, Field(description=words["body"])),
+        "on": (str, Field(default=GROUND, description=words["on"])),
     }
     if kind.axes:
         vectors = ", ".join(["[x, y, z]"] * kind.axes)
         second = ", the second as it stands at a first angle of zero" if kind.axes > 1 else ""
         directions = Annotated[tuple[Direction, ...], Field(min_length=kind.axes, max_length=kind.axes)]
         fields["axes"] = (directions, Field(description=f"directions in axes of the point{second}: [{vectors}]"))
-    fields["at"] = (Place3, Field(default=(0.0, 0.0, 0.0), description="place of the joint from the point: [x, y, z]"))
-    fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=turn))
+    fields["at"] = (Place3, Field(default=(0.0, 0.0, 0.0), description=words["at"]))
+    fields["turn"] = (Turn3, Field(default=(0.0, 0.0, 0.0), description=words["turn"]))
     return fields
 
 
 def _coupling(name: str, kind: Kind) -> tuple[Any, Any]:
     """Key of stiffnesses between two coordinates of a kind of joint, by both names."""
-    words = "stiffness between two coordinates"
+    words = _PARAMETERS["coupling"].words
     fields = {}
     for one, two in combinations(kind.value_names, 2):
         slides = (one in SLIDES) + (two in SLIDES)
