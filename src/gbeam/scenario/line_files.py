@@ -10,13 +10,14 @@ import numpy as np
 
 from gbeam.errors import InputError
 from gbeam.guards.limits import ENTRIES
+from gbeam.guards.parameters import parameters_of
 from gbeam.guards.units import UnitError, quantity
 from gbeam.structure.line import Line
 
 if TYPE_CHECKING:
     from gbeam.io.table import Table
 
-_COLUMNS = {"x": "length", "y": "length", "z": "length", "twist": "angle"}  # of a line's file, with their kinds
+_COLUMNS = dict.fromkeys("xyz", "points") | {"twist": "twist"}  # of a line's file, with the parameters that they give
 _POINT = re.compile(r"points\[(\d+)\]")
 _NAMED = "name the columns x [mm], y [mm], z [mm], twist [deg], in units of their own, and leave others out"
 
@@ -48,12 +49,14 @@ def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
     """Columns of a line's file by name, in SI; `unit` is of lengths without one. InputError for an unknown column."""
     from gbeam.motion.records.units import unit_in_name, words_of
 
+    declared = parameters_of(Line.of_points)
+    kinds = {name: declared[parameter].quantity for name, parameter in _COLUMNS.items()}
     columns: dict[str, Any] = {}
     for column in rows.columns:
         stated = column.unit.strip("[]() ") or unit_in_name(column.name)
         name, *others = words_of(column.name) or [""]
-        kind = _COLUMNS.get(name)
-        if kind is None or others not in ([], words_of(stated)) or name in columns:
+        kind = known.kind if (known := kinds.get(name)) else ""
+        if not kind or others not in ([], words_of(stated)) or name in columns:
             problem = f"has a column {column.name!r}" + (" a second time" if name in columns else "")
             raise InputError("", problem, _NAMED)
         length_unit = unit if kind == "length" else None
