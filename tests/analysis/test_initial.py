@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gbeam import Flight, Hub, Initial, InputError, Response, Structure, System, modes, simulate, static
-from gbeam.analysis import started
+from gbeam.analysis import starting_point
 
 from ..calling import Answer, gbeam
 from ..scenarios import FAST
@@ -80,7 +80,7 @@ def test_a_tip_velocity_rings_with_its_amplitude_over_the_frequency() -> None:
 def test_large_displacements_are_those_of_the_tip(kind: str) -> None:
     structure = hub_beam(kind)
     initial = Initial(tip_displacement={"y": 1.5}, tip_velocity={"y": 0.3})
-    point = started(System.of(structure), None, 0.0, initial)
+    point = starting_point(System.of(structure), None, 0.0, initial)
     q, qd = point.y, point.yd
     tip = np.asarray(structure.displacement(q))[-1]
     assert tip[1] == pytest.approx(1.5, rel=1e-12)

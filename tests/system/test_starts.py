@@ -252,7 +252,7 @@ def test_what_is_displaced_states_the_error_that_one_body_states() -> None:
 def test_a_traced_start_is_that_of_numbers() -> None:
     import jax
 
-    from gbeam.analysis import started, started_traced
+    from gbeam.analysis import starting_point, starting_state
 
     initial = gb.Initial(displacement={"panel.tip": {"z": 4e-3, "y": 1e-3}}, velocity={"panel.tip": {"z": 0.1}})
 
@@ -262,9 +262,9 @@ def test_a_traced_start_is_that_of_numbers() -> None:
         return craft(gb.Joint("revolute", "hub", axes=[(0, 0, 1)]), gb.assemble(beam, "FOAM", axial=0, y=2, z=2), 1.0)
 
     def begun(thickness: Any) -> Any:
-        return started_traced(system(thickness), None, 0.0, initial)
+        return starting_state(system(thickness), None, 0.0, initial)
 
-    point, traced = started(system(THICKNESS), None, 0.0, initial), jax.jit(begun)(THICKNESS)
+    point, traced = starting_point(system(THICKNESS), None, 0.0, initial), jax.jit(begun)(THICKNESS)
     for ours, theirs in zip(traced, (point.y, point.yd), strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-14)
 

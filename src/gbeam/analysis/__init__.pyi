@@ -58,5 +58,5 @@ from .system.richer import judged_beams as judged_beams
 from .system.richer import richer as richer
 from .system.richer import with_beams as with_beams
 from .system.solution import Solution as Solution
-from .system.start import started as started
-from .system.start import started_traced as started_traced
+from .system.start import starting_point as starting_point
+from .system.start import starting_state as starting_state

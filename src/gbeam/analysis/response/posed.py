@@ -28,7 +28,7 @@ from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.feedback import SystemControllers
 from gbeam.analysis.system.initial import STATE_WORDS, Initial, assign_to_bodies
 from gbeam.analysis.system.point import Point
-from gbeam.analysis.system.start import started, started_traced, unknown_at_start
+from gbeam.analysis.system.start import starting_point, starting_state, unknown_at_start
 from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags, Floats
@@ -264,8 +264,8 @@ def begun(subject: Subject, settings: ResponseSettings, time: float) -> Begun:
     """Coordinates and rates (n,) in which a system begins at a time, s."""
     system, ground = subject.system, subject.ground
     if system.holds_jax or holds_jax(ground):
-        return Begun(*started_traced(system, ground, time, settings.begin))
-    point = started(system, ground, time, settings.begin)
+        return Begun(*starting_state(system, ground, time, settings.begin))
+    point = starting_point(system, ground, time, settings.begin)
     return Begun(point.y, point.yd)
 
 

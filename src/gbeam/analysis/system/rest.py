@@ -14,7 +14,7 @@ from gbeam.analysis.system.initial import Initial
 from gbeam.analysis.system.point import Point
 from gbeam.analysis.system.search import NEAR, followed, holds_bodies, relaxed, rested
 from gbeam.analysis.system.solution import Solution
-from gbeam.analysis.system.start import started
+from gbeam.analysis.system.start import starting_point
 from gbeam.analysis.system.steady import SteadySystem, release
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
@@ -110,7 +110,7 @@ def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
 
 def beginning(system: System, drive: Drive) -> SteadySystem:
     """System in motion as it starts, its bodies bent as in inertia relief, so that none of them is shaken."""
-    return SteadySystem(system, drive, started(system, drive.motion, drive.time, Initial("relief")), begins=True)
+    return SteadySystem(system, drive, starting_point(system, drive.motion, drive.time, Initial("relief")), begins=True)
 
 
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:

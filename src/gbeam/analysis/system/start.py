@@ -23,8 +23,9 @@ from gbeam.numerics.series import STEP
 
 
 class Begun(NamedTuple):
-    """Coordinates and accelerations (n,) of a start. Where there is no start, `adrift` is the index of the coordinate
-    that moves on without limit, else −1.
+    """Coordinates and accelerations (n,) of a start.
+
+    `adrift` is the index of a coordinate that moves on without limit, so that there is no start; −1 if none does.
     """
 
     q: Array
@@ -35,8 +36,8 @@ class Begun(NamedTuple):
 def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags, accelerated: Flags) -> Begun:
     """Solve for a start near q, qd (n,).
 
-    Coordinates that are `bent` rest there with their forces in balance; those that are `accelerated` have the
-    accelerations that their forces make; the others are held. NaN where JAX traces the residual and there is no start.
+    Coordinates that are `bent` rest with their forces in balance. Those that are `accelerated` have the accelerations
+    that their forces make. The others are held. The result is NaN where JAX traces the residual and there is no start.
     """
     held, traced = ~(bent | accelerated), holds_jax(residual, q, qd, inputs)
     begun: Array = np.zeros(len(bent))
@@ -46,23 +47,23 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
         q, qd, begun = map(jnp.asarray, (q, qd, begun))  # beside inputs that are traced, NumPy would read them
 
     def forces(z: Array) -> Array:
-        """Residual (..., n) where z (..., n) are displacements and accelerations. That of a held coordinate is z."""
+        """Residual (..., n) at displacements and accelerations z (..., n); z itself for coordinates that are held."""
         remaining = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
         return namespace(remaining).where(held, z, remaining)
 
-    def eased(z: Array, share: Any, first: Array) -> Array:
-        """Residual of which only a share of that at the start has to vanish."""
+    def partial_forces(z: Array, share: Any, first: Array) -> Array:
+        """Residual less the rest, 1 − `share`, of the `first` one: its root balances only this share of the forces."""
         return forces(z) - (1.0 - share) * first
 
     if traced:
         from gbeam.mechanics.equations.compiled import root
 
-        z = root(partial(eased, first=forces(begun)), begun)
+        z = root(partial(partial_forces, first=forces(begun)), begun)
         return Begun(q + bent * z, accelerated * z)
     z, reached, stride = begun, 0.0, 1.0
     while reached < 1.0:
         share = min(reached + stride, 1.0)
-        wanted = forces if share == 1.0 else partial(eased, share=share, first=forces(begun))
+        wanted = forces if share == 1.0 else partial(partial_forces, share=share, first=forces(begun))
         moved, change, converged = _find_root(wanted, z, bent)
         if converged:
             z, reached, stride = moved, share, 2 * stride
@@ -75,7 +76,10 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
 
 @np.errstate(all="ignore")  # corrections may leave all numbers
 def _find_root(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, bool]:
-    """Root of a function near z (n,) by Newton's method, last correction of what is `bent`, True if converged."""
+    """Find the root of a function near z (n,) by Newton's method.
+
+    Returns the root, the last correction of the coordinates that are `bent`, and True if the method has converged.
+    """
     change = z
     for _ in range(ITERATIONS):
         values = function(z + 1j * STEP * np.eye(len(z)))  # whose real parts are those of z
@@ -86,16 +90,17 @@ def _find_root(function: Any, z: Floats, bent: Flags) -> tuple[Floats, Floats, b
     return z, change, False
 
 
-def started(system: System, motion: Motion | None, time: float, initial: Initial) -> Point:
-    """State in which joints begin, with the accelerations that its forces make. ComputationError where no shape of the
-    bodies is as `initial` says: see :class:`gbeam.Initial`.
+def starting_point(system: System, motion: Motion | None, time: float, initial: Initial) -> Point:
+    """Return the state in which joints begin, with the accelerations that its forces make.
+
+    Raises ComputationError where the bodies have no shape as `initial` says: see :class:`gbeam.Initial`.
     """
     tree, inputs = system.tree, system.inputs(np.asarray(time), motion)
     y, yd = system.start[0][tree.unknowns], system.start[1][tree.unknowns]
     undeformed = Point(tree, y, yd, np.zeros_like(y), inputs)
     refuse_massless(system, undeformed, masses(tree, y[None], yd[None], undeformed.driven())[0])
-    begun, bent, accelerated = _begun(system, inputs, initial)
-    y, yd = begun.q, _moving(system, begun.q, yd, initial)
+    begun, bent, accelerated = _solve_for_start(system, inputs, initial)
+    y, yd = begun.q, _starting_rates(system, begun.q, yd, initial)
     if begun.adrift >= 0:
         body, fix = (
             system.coordinates[tree.unknowns[begun.adrift]].rpartition(".")[0],
@@ -108,17 +113,20 @@ def started(system: System, motion: Motion | None, time: float, initial: Initial
     return Point(tree, y, yd, ydd, inputs)
 
 
-def started_traced(system: System, motion: Motion | None, time: float, initial: Initial) -> tuple[Array, Array]:
-    """Coordinates and rates (n,) as `started` has them, for a system that JAX traces; NaN where no shape is at rest."""
-    y = _begun(system, system.inputs(np.asarray(time), motion), initial)[0].q
-    return y, _moving(system, y, system.start[1][system.tree.unknowns], initial)
+def starting_state(system: System, motion: Motion | None, time: float, initial: Initial) -> tuple[Array, Array]:
+    """Return the coordinates and rates (n,) of :func:`starting_point` for a system that JAX traces.
+
+    They are NaN where the bodies have no shape at rest.
+    """
+    y = _solve_for_start(system, system.inputs(np.asarray(time), motion), initial)[0].q
+    return y, _starting_rates(system, y, system.start[1][system.tree.unknowns], initial)
 
 
-def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Flags, Flags]:
-    """Coordinates and accelerations of a start, and flags (n,) of the coordinates that were bent and of those that were
-    accelerated.
+def _solve_for_start(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Flags, Flags]:
+    """Solve for the coordinates and accelerations of a start.
 
-    Bodies with displaced points take their shapes from these; what is left to bend or accelerate is solved for.
+    Returns flags (n,), too, of the coordinates that were bent and of those that were accelerated. Bodies with displaced
+    points take their shapes from these points; what remains to bend or accelerate is solved for.
     """
     tree, moved = system.tree, assign_to_bodies(system.flexible, initial.displaced)
     y, yd = system.start[0][tree.unknowns], system.start[1][tree.unknowns]
@@ -126,7 +134,7 @@ def _begun(system: System, inputs: Inputs, initial: Initial) -> tuple[Begun, Fla
     if initial.acceleration is not None:  # joints are held, and what floats deforms, too
         bodies = [_body_selection(system, name).any(axis=0) for name in system.flexible]
         bent, accelerated = np.any([bent, *bodies], axis=0), np.zeros_like(bent)
-        inputs, yd = _accelerated(inputs, np.asarray(initial.acceleration)), 0 * yd
+        inputs, yd = _accelerate_ground(inputs, np.asarray(initial.acceleration)), 0 * yd
     for name, components in moved.items():
         if components:
             onto = _body_selection(system, name)
@@ -143,8 +151,8 @@ def _body_selection(system: System, name: str) -> Floats:
     return (np.array(deforming(system.coordinates, name), dtype=int)[:, None] == system.tree.unknowns).astype(float)
 
 
-def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
-    """Rates (n,) at coordinates y: joints' `yd`, and bodies' by the initial velocities of their points."""
+def _starting_rates(system: System, y: Array, yd: Array, initial: Initial) -> Array:
+    """Rates (n,) at coordinates y: `yd` of joints, and those of bodies by the initial velocities of their points."""
     for name, components in assign_to_bodies(system.flexible, initial.moving).items():
         if components:
             onto = _body_selection(system, name)
@@ -152,8 +160,8 @@ def _moving(system: System, y: Array, yd: Array, initial: Initial) -> Array:
     return yd
 
 
-def _accelerated(inputs: Inputs, acceleration: Floats) -> Inputs:
-    """Inputs of a ground that only has an acceleration, and of joints that rest."""
+def _accelerate_ground(inputs: Inputs, acceleration: Floats) -> Inputs:
+    """Return inputs by which the ground has this acceleration and nothing else, and joints rest."""
     ground, still = inputs.ground, 0 * inputs.ground.w
     moving = inputs.prescribed
     return replace(
@@ -166,9 +174,9 @@ def _accelerated(inputs: Inputs, acceleration: Floats) -> Inputs:
 def unknown_at_start(system: System, initial: str) -> tuple[Flags, Flags]:
     """Flags (n,) of the free coordinates that a start bends and of those that it accelerates; the others are held.
 
-    By `initial` = "equilibrium" joints hold what they move. Springs of a clamp bend as a body does, unless it is said
-    where they begin; springs at the root of a body that deforms let it go, for it has no mass there to be held by. What
-    floats is undeformed.
+    With `initial` = "equilibrium" joints hold what they move. Springs of a clamp bend as a body does, unless their
+    start is given. Springs at the root of a body that deforms let it go, since it has no mass at the root by which it
+    could be held. Bodies that float are undeformed.
     """
     bent, accelerated = list[bool](), list[bool]()
     for k in system.tree.unknowns:
