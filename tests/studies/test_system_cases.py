@@ -88,7 +88,7 @@ def test_a_fit_finds_what_was_measured(modal: bool, tmp_path: Path, monkeypatch:
         table = np.stack([response.time, 1e3 * signals[0], signals[1]], axis=1)[::10]
         head = "time,right.tip.place_z [mm],hinge_right.angle"
     np.savetxt(data, table, delimiter=",", header=head, comments="")
-    for judge in ("analysis.steady.frequency_errors.Richer.errors", "analysis.response.run.system_errors"):
+    for judge in ("analysis.steady.frequency_errors.RicherModels.errors", "analysis.response.run.system_errors"):
         monkeypatch.setattr(f"gbeam.{judge}", None)
     fit = gb.fit(gb.read_scenario(SATELLITE, SHORT), data, [path])
     assert fit.values[0] == pytest.approx(true, rel=1e-4) and fit.before[0] == 100.0
