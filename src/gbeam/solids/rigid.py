@@ -273,11 +273,11 @@ class RigidSpecimen(Value):
             points=(*named, TIP),
             kind="rigid",
         )
-        elastic = [(each, way) for each in self.supports for way in (*each.rigid, *each.stiffness)]
+        elastic = [(held.name, way) for held in self.supports for way in (*held.rigid, *held.stiffness)]
         known = dict(zip(body.points, stations, strict=True))
         for i, support in enumerate(self.supports):
-            choice(f"supports[{i}].at", support.at, body.points)
-        rows = [levers(np.zeros((1, 3)), way) @ about(known[each.at]) for each, way in elastic]
+            choice(f"supports[{i}].at", support.name, body.points)
+        rows = [levers(np.zeros((1, 3)), way) @ about(known[name]) for name, way in elastic]
         refuse_free("supports", np.concatenate([np.zeros((0, 6)), *rows]), np.asarray(self.corners))
         return held_at_points(body, self.supports, rooted=False)
 
