@@ -48,9 +48,7 @@ class Samples:
     """Arguments with which the public functions can be called."""
 
     def __init__(self, folder: Path) -> None:
-        self.beam = gb.Beam(
-            0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9, expansion=23e-6), damping_ratio=0.01
-        )
+        self.beam = gb.Beam(0.3, gb.Section.rectangle(0.02, 0.004), gb.Material(2700, 70e9), damping_ratio=0.01)
         self.structure = gb.assemble(self.beam, "FOAM", axial=0, y=1, z=1)
         pressed = replace(self.beam, loads=[gb.Load(0.3, force=(-1.0, 0.0, 0.0))])
         self.column = gb.assemble(pressed, "FOAM", axial=0, y=1, z=1)
@@ -87,7 +85,7 @@ class Samples:
         origin = self.case.scenario
         columns = ("time_s", "n_x_g", "-n_y_g", "-n_z_g", "g")
         settings = {"duration": 0.1, "step": 5e-3, "estimate": False}
-        beam = (0.3, self.beam.section, self.beam.material)
+        beam = (0.3, self.beam.section, gb.Material(2700, 70e9, expansion=23e-6))
         return {
             "AxisLimit": ((1.0, 1.0, 1.0), {}),
             "Beam": (
@@ -183,9 +181,18 @@ class Samples:
             ),
             "RigidSpecimen": (
                 (1.0, (0.0, 0.0, 0.0), np.eye(3), [(0.1, 0.0, 0.0)]),
-                {"bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0), "spread_limit": 0.1, "points": {"lid": (0, 0, 1)}},
+                {
+                    "bolts": np.eye(3), "bolt_axis": (0.0, 0.0, 1.0), "spread_limit": 0.1, "points": {"lid": (0, 0, 1)},
+                    "supports": (),
+                },
             ),
-            "Root": ((1e6, 1e6, 1e6, 1e3, 1e3), {}),
+            "Root": (
+                (),
+                {
+                    "translation_x": 1e6, "translation_y": 1e6, "translation_z": 1e6,
+                    "rotation_x": 1e3, "rotation_y": 1e3, "rotation_z": 1e3,
+                },
+            ),
             "Section": (("rectangle", {"width": (0.02,), "thickness": (0.004,)}), {"stations": (), "plate": False}),
             "Sine": ((1.0, 1.0, 0.0), {}),
             "SmoothStep": ((1.0, 1.0, 0.0), {}),
@@ -293,7 +300,7 @@ class Samples:
             "read_matrix": ((self.matrix, "k"), {}),
             "read_sid": (
                 (Path(__file__).parents[1] / "examples" / "data" / "strip.sid",),
-                {"damping_ratio": 0.1, "points": {"tip": 2}, "kind": "arm"},
+                {"damping_ratio": 0.1, "points": {"tip": 2}, "kind": "arm", "supports": ()},
             ),
             "read_record": (
                 (self.record, *columns),

@@ -98,7 +98,7 @@ def test_a_case_is_shown_on_one_line(samples: Samples) -> None:
 def test_objects_are_shown_on_one_short_line(samples: Samples, name: str) -> None:
     args, keywords = samples.calls()[name]
     text = repr(getattr(gb, name)(*args, **keywords))
-    assert text.startswith(f"{name}(") and "\n" not in text and len(text) < 300
+    assert text.startswith(f"{name}(") and "\n" not in text and len(text) < 320
 
 
 def test_objects_are_shown_by_what_is_not_as_by_default(samples: Samples) -> None:

@@ -65,6 +65,7 @@ USUAL: dict[str, dict[str, float]] = {
     "pressure": {"kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
     "force": {"kN": 1e3},
     "force per length": {"kN/m": 1e3},
+    "expansion": {"ppm/K": 1e-6},
     "stiffness": {"kN/m": 1e3, "N/mm": 1e3},
     "torque": {"kN m": 1e3},
     "time": {"ms": 1e-3, "min": 60.0},

@@ -35,6 +35,7 @@ second = [time] = s = sec
 kelvin = [temperature] = K
 radian = [angle] = rad
 percent = 0.01 = %
+ppm = 1e-6
 
 minute = 60 * second = min
 hour = 60 * minute = h
@@ -57,8 +58,8 @@ Msi = 1000000 * psi
 # Units that a misspelt one is compared with: the usual spellings, not every prefix of every unit.
 _SPELLINGS = """
 m mm cm km µm um g kg mg s ms us min h rad mrad deg rev rpm Hz kHz g0 N kN MN W kW MW Pa kPa MPa GPa in ft lb lbf
-psi ksi Msi % watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution hertz
-newton pascal inch foot pound percent
+psi ksi Msi % ppm K watt meter metre millimeter gram kilogram second millisecond minute hour radian degree revolution
+hertz newton pascal inch foot pound percent
 """
 CELSIUS, ICE = ("degC", "°C"), 273.15  # names of the degree Celsius, and its zero in K
 BEGINNING = re.compile(r"\s*+(?:[+-]\s*+)?(\.?\d|inf|nan)", re.IGNORECASE)  # of a text that gives a number: 20 mm

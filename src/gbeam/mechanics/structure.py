@@ -39,8 +39,8 @@ class Grip:
     zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The
     conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`; where supports
     have `names`, on these in place of stations, at their `places`. They are `curved` where the rows change with q, as
-    those of a beam that shortens as it bends. If it is not `rooted`, the structure has no other hold. What bends beside
-    what is held pulls on conditions by ½ q · `second` (k, m, m) q.
+    those of a beam that shortens as it bends. Not `rooted`, the structure has no other hold. What bends beside what is
+    held pulls on conditions by ½ q · `second` (k, m, m) q.
     """
 
     free: Structure

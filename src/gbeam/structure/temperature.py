@@ -30,13 +30,13 @@ class Temperature(Value):
     >>> strip = gb.Section.rectangle(width=0.02, thickness=0.004)
     >>> metal = gb.Material(2700, 70e9, expansion=23e-6)
     >>> clamp = gb.Support(at=0.6, holds=["x", "z", "ry"])
-    >>> warm = gb.Temperature("40 degC", reference="20 degC")
+    >>> warm = gb.Temperature("24 degC", reference="20 degC")
     >>> lowest = []
     >>> for temperature in (None, warm):
     ...     beam = gb.Beam(0.6, strip, metal, supports=[clamp], temperature=temperature)
     ...     lowest.append(gb.modes(gb.assemble(beam, "FOAM", axial=1, z=5)).frequency[0])
-    >>> print(f"{lowest[0]:.1f} Hz, heated by 20 K {lowest[1]:.1f} Hz")
-    58.2 Hz, heated by 20 K 35.4 Hz
+    >>> print(f"{lowest[0]:.1f} Hz, heated by 4 K {lowest[1]:.1f} Hz")
+    58.2 Hz, heated by 4 K 35.8 Hz
     """
 
     value: Annotated[
