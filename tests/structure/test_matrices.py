@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gbeam as gb
+from gbeam.results import Base
 
 ALUMINIUM = gb.Material(2700.0, 70e9, poissons_ratio=0.33)
 SECTION = gb.Section.rectangle(0.03, 0.02)
@@ -57,8 +58,8 @@ def test_the_axis_may_lie_beside_the_section() -> None:
     # the turning brings there.
     rate, load = np.array([3.0, -40.0, 20.0]), np.array([30.0, 40000.0, -80000.0])
     arm = np.array([0.0, *centre])
-    base = gb.motion.Base(load, rate, np.zeros(3))
-    moved = gb.motion.Base(load - np.cross(rate, np.cross(rate, arm)), rate, np.zeros(3))
+    base = Base(load, rate, np.zeros(3))
+    moved = Base(load - np.cross(rate, np.cross(rate, arm)), rate, np.zeros(3))
     of_one, of_two = gb.solve_equilibrium(one, base), gb.solve_equilibrium(two, moved)
     assert two.strain_energy(of_two.q) == pytest.approx(float(one.strain_energy(of_one.q)), rel=1e-7)
     ends = [structure.output[-1:] for structure in (one, two)]

@@ -469,3 +469,25 @@ def test_a_pinned_arch_buckles_at_the_pressure_of_the_closed_form() -> None:
         lowest.append(gb.modes(gb.assemble(arch, "FOAM", axial=1, z=4)).frequency[0])
     assert lowest[1] / lowest[0] == pytest.approx(np.sqrt(0.005 / 0.5), rel=0.05)
     assert lowest[2] > 2 * lowest[0]
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_shallow_arch_sinks_as_the_closed_form_says_until_it_snaps(kind: str) -> None:
+    """Of a half sine with a rise of λ times 2 √(I/A), under a load q: q̂ = (λ − η) + (λ² − η²) η, with the rise η left.
+
+    Up to its largest q̂, at η² = (λ² − 1)/3; q̂ EI (π/L)⁴ 2 √(I/A) is the part of the load that is a half sine, 4 q/π.
+    """
+    rise, unit, wave = 1.5, 2 * THICKNESS / np.sqrt(12), np.pi / LENGTH
+    x = np.linspace(0, LENGTH, 11)
+    line = gb.Line.of_points(np.stack([x, 0 * x, rise * unit * np.sin(wave * x)], axis=1))
+    section, metal = gb.Section.rectangle(WIDTH, THICKNESS), gb.Material(DENSITY, MODULUS, poissons_ratio=0.0)
+    still = gb.Flight(z=0.0).base(0.0)
+    for left in (1.2, 0.8, 0.7):  # it snaps at 0.65
+        load = ((rise - left) + (rise**2 - left**2) * left) * EI * wave**4 * unit * np.pi / 4
+        pushed = [gb.Load(distributed=(0.0, 0.0, -load))]
+        supports = [PIN, gb.Support("tip", ["x", "z"])]
+        arch = gb.Beam(line.length, section, metal, supports=supports, line=line, loads=pushed)
+        model = gb.assemble(arch, kind, axial=1, z=5)
+        equilibrium = gb.solve_equilibrium(model, still)
+        middle = model.displacement(equilibrium.q)[0, 2]
+        assert equilibrium.stable and middle == pytest.approx((left - rise) * unit, rel=0.02)

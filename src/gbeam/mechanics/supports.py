@@ -106,7 +106,10 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
 
     Where the base contains a static deflection already, as polynomials do, it has one shape more instead.
     """
-    lacking, rigidities = list(static_counts(beam, counts)), _numbered(beam).stiffnesses(rule.node)
+    lacking = list(static_counts(beam, counts))
+    if not any(lacking):
+        return base(counts)
+    rigidities = _numbered(beam).stiffnesses(rule.node)
     statics = {
         family: _static_strains(beam, rule, rigidities, family, counts) for family in range(6) if lacking[family]
     }
