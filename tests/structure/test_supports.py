@@ -491,3 +491,13 @@ def test_a_shallow_arch_sinks_as_the_closed_form_says_until_it_snaps(kind: str) 
         equilibrium = gb.solve_equilibrium(model, still)
         middle = model.displacement(equilibrium.q)[0, 2]
         assert equilibrium.stable and middle == pytest.approx((left - rise) * unit, rel=0.02)
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_a_rod_that_only_stretches_is_held_at_both_ends(kind: str) -> None:
+    """Its lowest frequency is that of half a wave, c/2L; half of its weight is on either end."""
+    rod = gb.assemble(beam(gb.Support(LENGTH, ["x"])), kind, axial=3)
+    assert gb.modes(rod).frequency[0] == pytest.approx(np.sqrt(MODULUS / DENSITY) / (2 * LENGTH), rel=1e-4)
+    loads = gb.static(rod, acceleration=(100.0, 0.0, 0.0)).loads
+    assert loads is not None and loads.support_force is not None
+    assert loads.support_force[0, 0, 0] == pytest.approx(100.0 * LINE_MASS * LENGTH / 2, rel=1e-6)

@@ -21,7 +21,6 @@ from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.measures import Measures
 from gbeam.mechanics.fields.taylor import Places, Turns
 from gbeam.mechanics.fields.vectors import Vector
-from gbeam.numerics.series import STEP
 
 CORRECTIONS, AS_LONG = 24, 4  # of Newton's method at most, and with the same slopes
 NEAR = 1e-10  # likewise: a larger last correction has found nothing
@@ -167,9 +166,7 @@ class Conditions:
 
     def curvature(self, q: Array, phi: Array) -> Array:
         """Second derivatives (d, k, k) of the dependent coordinates by the independent ones, at q (n,)."""
-        along = np.array(q) + 1j * STEP * phi.T
-        change = np.imag(self.measures.rows(along)) / STEP  # of the rows, along each independent coordinate
-        bent = np.moveaxis(change @ phi, 0, -1)
+        bent = phi.T @ self.measures.bent_rows(q) @ phi
         slope = self.measures.rows(q)[:, np.array(self.dependent, dtype=int)]
         return -np.linalg.solve(slope, bent.reshape(len(slope), -1)).reshape(bent.shape)
 

@@ -192,7 +192,8 @@ class SectionMeasures(Measures):
             spin: Any = tuple(unit[..., k, None, None] * reach for k in range(3))
             grown: Any = tuple(change[..., k, None] * reach for k in range(3))
             bent.append(field.inward(tangents, NONE, add(cross(spin, angle), grown)))
-        return np.stack(bent, axis=-3)
+        shape = (*q.shape[:-1], q.shape[-1], q.shape[-1])
+        return np.stack([np.broadcast_to(part, shape) for part in bent], axis=-3)
 
     def drift_at(self, state: Tangents, q: Array, qd: Array) -> Array:
         """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""

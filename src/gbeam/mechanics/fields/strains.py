@@ -247,7 +247,7 @@ class StrainField:
         """Generalised forces (..., n) of the forces and moments that the sections at the nodes carry, base axes."""
         inward = (*turned_back(tangents.rotation, force), *turned_back(tangents.rotation, moment))
         parts = [part @ self.strains[k] for k, part in enumerate(inward) if self.shaped[k] and not absent(part)]
-        return sum(parts[1:], start=parts[0])
+        return sum(parts[1:], start=parts[0]) if parts else np.zeros(self.size)
 
     def generalised_forces(self, q: Array, push: Vector, turn: Vector = NONE) -> Array:
         """Generalised forces (..., n) of forces and moments on the points, base axes, by components (..., p)."""
