@@ -49,10 +49,35 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
             drawing.savefig(folder / f"f16_{name}.png", dpi=150)
         film(study, folder / "f16.gif", frames)
         held().savefig(folder / "held_at_both_ends.png", dpi=150)
+        heated().savefig(folder / "heated.png", dpi=150)
         rails().savefig(folder / "board_on_rails.png", dpi=150)
     tracking, tip = study.responses["centrifuge"].plot("tracking"), study.plot("tip")
     tracking[0].figure.savefig(folder / "f16_tracking.png", dpi=150)
     tip[0].figure.savefig(folder / "f16_tip.png", dpi=150)
+
+
+def heated() -> Figure:
+    """Lowest frequency of a strip between clamps and between pins as it warms."""
+    strip = gb.Section.rectangle(width=0.02, thickness=0.004)
+    metal = gb.Material(2700, 70e9, poissons_ratio=0.33, expansion=23e-6)
+    pin = gb.Support(0.0, ["x", "y", "z", "rx", "rz"])
+    drawing = Figure(figsize=(6.4, 3.0), layout="constrained")
+    axes = drawing.subplots()
+    for words, supports, warmest, colour in (
+        ("between clamps", [gb.Support(0.6, ["x", "z", "ry"])], 6.361, FLIGHT),
+        ("between pins", [pin, gb.Support(0.6, ["x", "z"])], 1.589, MACHINE),
+    ):
+        rises = warmest - (warmest + 4.0) * np.linspace(1.0, 0.0, 25) ** 2
+        frequency = []
+        for rise in rises:
+            warm = gb.Temperature(293.15 + rise, reference=293.15)
+            beam = gb.Beam(0.6, strip, metal, supports=supports, temperature=warm)
+            modes = gb.modes(gb.assemble(beam, "FOAM", axial=1, z=5))
+            frequency.append(modes.frequency[0])
+        axes.plot(20 + rises, frequency, color=colour, lw=1.6, label=words)
+    axes.set(xlabel="temperature, °C", ylabel="lowest frequency, Hz", ylim=(0, None))
+    axes.legend(frameon=False)
+    return drawing
 
 
 def held() -> Figure:
