@@ -92,8 +92,8 @@ class Holding:
                     dampers.append(damper)
         self.yielding, self.springs, self.dampers = vstack(loads, format="csr"), np.array(springs), np.array(dampers)
 
-    def left(self, matrix: Any) -> Any:
-        """Express a sparse matrix (u, u), or loads (u, m), by the motions that are left: Nᵀ A N, or Nᵀ f."""
+    def condense(self, matrix: Any) -> Any:
+        """Condense a sparse matrix (u, u), or loads (u, m), to the motions that supports leave: Nᵀ A N, or Nᵀ f."""
         from scipy.sparse import issparse
 
         if not self.taken:
@@ -105,7 +105,7 @@ class Holding:
         """Loads (f, s) on what is left whose static answers join to the `lifted` motions, under a stiffness (u, u)."""
         return np.asarray(-(self.basis.T @ (stiffness @ self.lifted)))
 
-    def everywhere(self, shapes: Floats, answers: Floats) -> Floats:
+    def expand(self, shapes: Floats, answers: Floats) -> Floats:
         """Motions (u, n + s) of all unknowns: shapes (f, n) of what is left, and lifted motions with their answers (f,
         s).
         """
@@ -180,7 +180,7 @@ def held_at_points(
     holding, c = Holding(places, structure.size), structure.coefficients
     left, stiffness = holding.basis.toarray(), c.stiffness + holding.stiffness.toarray()
     answers = np.linalg.solve(left.T @ stiffness @ left, holding.static_loads(stiffness))
-    motions_of_all = holding.everywhere(np.eye(left.shape[1]), answers)
+    motions_of_all = holding.expand(np.eye(left.shape[1]), answers)
     sprung = replace(structure, coefficients=replace(c, stiffness=stiffness))
     held, free = sprung.turned(left), sprung.turned(motions_of_all)
     if damping_ratio is not None:

@@ -269,13 +269,13 @@ class ImportedModel(Value):
         holding = Holding(places_held, int(free.sum()))
         stiffness = self.stiffness[free][:, free] + holding.stiffness
         reduction = reduce(
-            holding.left(stiffness),
-            holding.left(self.mass[free][:, free]),
-            np.concatenate([holding.left(loads[free]), holding.left(holding.yielding.T.toarray())], axis=1),
+            holding.condense(stiffness),
+            holding.condense(self.mass[free][:, free]),
+            np.concatenate([holding.condense(loads[free]), holding.condense(holding.yielding.T.toarray())], axis=1),
             modes,
             apart=holding.static_loads(stiffness),
         )
-        motions, total = holding.everywhere(reduction.shapes, reduction.apart), len(reduction.stiffness)
+        motions, total = holding.expand(reduction.shapes, reduction.apart), len(reduction.stiffness)
         lifting = motions[:, total:].T @ (stiffness @ motions[:, total:])
         every_shape = np.zeros((len(free), motions.shape[1]))
         every_shape[free] = motions

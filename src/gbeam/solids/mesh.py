@@ -286,15 +286,15 @@ class SolidMesh(Mesh):
             stiffness = stiffness + holding.stiffness
         left = linked.narrowed(holding.basis) if holding.taken else linked
         reduced = reduce(
-            holding.left(stiffness),
+            holding.condense(stiffness),
             left.condensed(kron(mass, eye_array(3), format="csr")),
-            np.concatenate([left.condensed(loads), holding.left(holding.yielding.T.toarray())], axis=1),
+            np.concatenate([left.condensed(loads), holding.condense(holding.yielding.T.toarray())], axis=1),
             modes,
             # Links would have to turn by more than their linear map.
             None if linked.tied else partial(bending, self, left, modes, named.displacements),
             holding.static_loads(stiffness),
         )
-        motions = holding.everywhere(reduced.shapes, reduced.apart)
+        motions = holding.expand(reduced.shapes, reduced.apart)
         total = len(reduced.stiffness)
         lifting = motions[:, total:].T @ (stiffness @ motions[:, total:])
         del stiffness
