@@ -501,3 +501,50 @@ def test_a_rod_that_only_stretches_is_held_at_both_ends(kind: str) -> None:
     loads = gb.static(rod, acceleration=(100.0, 0.0, 0.0)).loads
     assert loads is not None and loads.support_force is not None
     assert loads.support_force[0, 0, 0] == pytest.approx(100.0 * LINE_MASS * LENGTH / 2, rel=1e-6)
+
+
+def toggle(thrust: float, length: float, rise: float, axial: float, bending: float) -> tuple[float, float]:
+    """Load and sinking of the apex of a shallow frame of two members, clamped at its feet, by the functions of
+    beam-columns: a member under a thrust N with k² = N/EI bends as kx − sin kx − tan(kl/2) (1 − cos kx), shortens by
+    βw − ½∫y'² dx = Nl/EA, and carries Nβ + Nkw/(2 tan(kl/2) − kl).
+    """
+    k, slope = np.sqrt(thrust / bending), rise / length
+    x = np.linspace(0.0, length, 2001)
+    tangent = np.tan(k * length / 2)
+    angle = k * ((1 - np.cos(k * x)) - tangent * np.sin(k * x)) / (k * length - 2 * tangent)
+    bent = np.trapezoid(angle**2, x)
+    root = slope**2 - 2 * bent * thrust * length / axial
+    sinking = (slope - np.sqrt(root)) / bent if root > 0 else np.nan
+    return 2 * thrust * (slope + k * sinking / (2 * tangent - k * length)), sinking
+
+
+@pytest.mark.parametrize("kind", ["FOAM", "exact"])
+def test_williams_toggle_frame_sinks_until_it_snaps(kind: str) -> None:
+    """International Journal of Mechanical Sciences 6, 1964: EA 1.885e6 lb, EI 9.27e3 lb in², 12.943 in and 0.386 in."""
+    inch, pound = 0.0254, 4.4482216152605
+    length, rise, axial, bending = 12.943 * inch, 0.386 * inch, 1.885e6 * pound, 9.27e3 * pound * inch**2
+    thrusts = np.linspace(10.0, 1.5 * np.pi**2 * bending / length**2, 4000)
+    curve = np.array([toggle(thrust, length, rise, axial, bending) for thrust in thrusts])
+    known = ~np.isnan(curve[:, 0])
+    limit = curve[known, 0].max()
+    thickness = np.sqrt(12 * bending / axial)
+    section = gb.Section.rectangle(axial / MODULUS / thickness, thickness)
+    metal = gb.Material(DENSITY, MODULUS, poissons_ratio=0.0)
+    line = gb.Line.of_points([[0, 0, 0], [length, 0, rise], [2 * length, 0, 0]], smooth=False)
+    still = gb.Flight(z=0.0).base(0.0)
+
+    def frame(share: float) -> gb.Structure:
+        push = gb.Load(at="apex", force=(0.0, 0.0, -share * limit))
+        apex, clamp = gb.Point("apex", at=line.length / 2), gb.Support("tip", ["x", "z", "ry"])
+        held = gb.Beam(line.length, section, metal, supports=[clamp], line=line, loads=[push], points=[apex])
+        return gb.assemble(held, kind, axial=2, z=6)  # type: ignore[arg-type]
+
+    for share in (0.3, 0.9):
+        model = frame(share)
+        k = int(np.argmin(np.abs(model.stations - line.length / 2)))
+        sunk = -model.displacement(gb.solve_equilibrium(model, still).q)[k, 2]
+        rising = curve[known][: int(np.argmax(curve[known, 0]))]
+        assert sunk == pytest.approx(np.interp(share * limit, rising[:, 0], rising[:, 1]), rel=0.02)
+    with pytest.raises(gb.ComputationError, match="no relative equilibrium beyond 0.9"):
+        gb.solve_equilibrium(frame(1.02), still)
+    assert limit / pound == pytest.approx(33.9, rel=0.01)
