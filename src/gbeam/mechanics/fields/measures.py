@@ -111,7 +111,9 @@ class PolynomialMeasures(Measures):
 @record
 class SectionMeasures(Measures):
     """Measures of sections of a strain field: each of a section, by its number among the `sections`, in a direction
-    from 0 to 5. At rest these are at the places `rest` (k, 3) m, with the axes (k, 3, 3) in columns.
+    from 0 to 5. At rest the nodes' tangents are `rest` (3, G), and the sections' `axes` (k, 3, 3) in columns.
+
+    Displacements are sums of what the tangents differ from rest, so that the places' own rounding is not in them.
     """
 
     sections: StrainField
@@ -126,7 +128,8 @@ class SectionMeasures(Measures):
         sections = field.sections(first + np.array(stations, dtype=int))
         numbered = tuple((stations.index(station), direction) for station, direction in which)
         still = np.zeros(field.size)
-        return cls(sections, sections.positions(still), sections.rotation(still), numbered)
+        tangents = joined(namespace(sections.strains), sections.tangents(still).t, sections.cumulative.shape[1:])
+        return cls(sections, tangents.T, sections.rotation(still), numbered)
 
     def state(self, q: Array) -> Tangents:
         """Tangents at the sections."""
@@ -134,8 +137,8 @@ class SectionMeasures(Measures):
 
     def values_at(self, state: Tangents, q: Array) -> Array:
         """Measures (..., m) by the tangents at coordinates (..., n)."""
-        place = mapped(state.t, self.sections.cumulative)
-        moved = joined(namespace(q), place, (*q.shape[:-1], len(self.rest))) - self.rest
+        drawn = add(state.t, tuple(-part for part in self.rest))
+        moved = joined(namespace(q), mapped(drawn, self.sections.cumulative), (*q.shape[:-1], len(self.axes)))
         angle = moved
         if any(direction > 2 for _, direction in self.which):
             angle = rotation_vectors(self._rotation(state, q))
@@ -143,7 +146,7 @@ class SectionMeasures(Measures):
 
     def rows_at(self, state: Tangents, q: Array) -> Array:
         """Derivatives (..., m, n) of the measures by the coordinates (..., n): what unit loads on them do."""
-        xp, count = namespace(q), len(self.rest)
+        xp, count = namespace(q), len(self.axes)
         force = np.zeros((3, len(self.which), count))
         turning = [(k, section, direction - 3) for k, (section, direction) in enumerate(self.which) if direction > 2]
         for k, (section, direction) in enumerate(self.which):
@@ -164,7 +167,7 @@ class SectionMeasures(Measures):
 
     def bent_rows(self, q: Array) -> Array:
         """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
-        field, count = self.sections, len(self.rest)
+        field, count = self.sections, len(self.axes)
         tangents = field.tangents(q[..., None, :], points=True)  # components (..., 1, G)
         fixed = Tangents(tangents.rotation, tangents.t)
         columns = field.columns(fixed)
@@ -199,7 +202,7 @@ class SectionMeasures(Measures):
         """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
         xp = namespace(q, qd)
         moving = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=state)
-        shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.rest))
+        shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.axes))
         vectors = moving.tdd, moving.turn, moving.turnd
         change, w, alpha = (joined(xp, mapped(each, self.sections.cumulative), shape) for each in vectors)
         vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(state, q)))
@@ -209,7 +212,7 @@ class SectionMeasures(Measures):
 
     def _rotation(self, tangents: Tangents, q: Array) -> Array:
         """Rotations (..., k, 3, 3) of the sections from rest."""
-        shape = (*q.shape[:-1], len(self.rest))
+        shape = (*q.shape[:-1], len(self.axes))
         axes = namespace(q).stack([joined(namespace(q), row, shape) for row in tangents.at_points], axis=-2)
         return axes @ namespace(self.axes).swapaxes(self.axes, -1, -2)
 
