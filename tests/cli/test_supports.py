@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 
+import gbeam as gb
+
 from ..files import opened
 
 Call = Callable[..., Any]
@@ -44,3 +46,12 @@ def test_what_a_board_cannot_stand_on_is_told_at_its_place(change: str, words: s
     answer = gbeam("check", BOARD, "--set", change)
     assert (answer.status == 0) == (not words) and words in answer.err
     assert not words or "bodies.board.supports" in answer.err
+
+
+def test_what_supports_of_a_mesh_hold_is_said_before_a_run() -> None:
+    described = gb.describe(gb.read_scenario(BOARD))
+    assert described.bodies["board"].supports == {
+        "plug": "holds x z",
+        "left_rail": "holds y z",
+        "right_rail": "holds z, spring y",
+    }

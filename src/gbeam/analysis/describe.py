@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,6 @@ from gbeam.results.description import (
     JointDescription,
     MassOnBeam,
 )
-from gbeam.structure.beam import Beam
 
 MODES = 6  # natural frequencies at most
 
@@ -124,6 +124,8 @@ def _body(system: System, name: str) -> BodyDescription:
     frequencies, modes = body.rest
     described |= {"kind": body.kind, "coordinates": body.size}
     described["frequency"] = np.asarray(frequencies)[: min(MODES, body.resolved)] / (2 * np.pi)
+    if body.grip is not None and body.grip.names:
+        described["supports"] = _joined(zip(body.grip.names, body.grip.words, strict=True))
     if body.recovery is not None:
         described["clamps"] = body.recovery.clamps
     if body.source is not None:
@@ -132,7 +134,7 @@ def _body(system: System, name: str) -> BodyDescription:
         groups = np.repeat(FAMILIES, body.counts)
         described |= {
             "length": float(beam.length),
-            "supports": _supports(beam),
+            "supports": _joined((f"{1e3 * support.place:.4g} mm", support.words) for support in beam.supports),
             "masses": tuple(MassOnBeam(mass.at, mass.mass) for mass in beam.masses),
             "counts": {way: n for way, n in zip(FAMILIES, counts, strict=True) if n or way in FAMILIES[:3]},
             "direction": tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
@@ -140,12 +142,11 @@ def _body(system: System, name: str) -> BodyDescription:
     return BodyDescription(**described)
 
 
-def _supports(beam: Beam) -> dict[str, str]:
-    """Say what a beam's supports hold, by their positions."""
+def _joined(supports: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Join words on what supports hold by the places of these."""
     words = dict[str, str]()
-    for support in beam.supports:
-        place = f"{1e3 * support.place:.4g} mm"
-        words[place] = f"{words[place]}; {support.words}" if place in words else support.words
+    for place, held in supports:
+        words[place] = f"{words[place]}; {held}" if place in words else held
     return words
 
 

@@ -143,7 +143,8 @@ class Holding:
             dependents=tuple(range(n, count)),
             held=tuple(self.taken),
             sprung=tuple(self.sprung),
-            names=tuple(str(each.support.at) for each in self.places),
+            names=tuple(place.support.name for place in self.places),
+            words=tuple(place.support.words for place in self.places),
             places=Places(
                 np.array([each.centre for each in self.places]),
                 np.stack([np.asarray(each.moved @ motions) for each in self.places]),

@@ -35,12 +35,11 @@ from gbeam.results.parts import judged_point
 class Grip:
     """Grip of supports on a structure, and the structure that they hold.
 
-    Its coordinates q (m,) are those of the structure, `basis` (m, n) times them: conditions `rows` (k, m) times q are
-    zero, and the `dependents` of q follow from the others. Springs and dampers act along `yielding` (j, m) rows. The
-    conditions and springs act on the stations and in the directions, 0 to 5, of `held` and `sprung`; where supports
-    have `names`, on these in place of stations, at their `places`. They are `curved` where the rows change with q, as
-    those of a beam that shortens as it bends. Not `rooted`, the structure has no other hold. What bends beside what is
-    held pulls on conditions by ½ q · `second` (k, m, m) q.
+    Its coordinates q (m,) are `basis` (m, n) times those of the structure. Conditions are zero, `rows` (k, m) times q,
+    by which the `dependents` of q follow; they are `curved` where the rows change with q. Springs and dampers act along
+    `yielding` (j, m) rows. All act on stations in the directions, 0 to 5, of `held` and `sprung`; where supports have
+    `names`, and `words` on what they hold, on these at their `places`. What is not `rooted` has no other hold. What
+    bends beside what is held pulls on conditions by ½ q · `second` (k, m, m) q.
     """
 
     free: Structure
@@ -54,6 +53,7 @@ class Grip:
     sprung: tuple[tuple[int, int], ...] = static()
     curved: bool = static(default=False)
     names: tuple[str, ...] = static(default=())
+    words: tuple[str, ...] = static(default=())
     places: Places | None = None
     second: Array | None = None
     rooted: bool = static(default=True)
@@ -265,8 +265,8 @@ class Structure:
         if not (is_jax(c.mass) or positive_definite(c.mass)):
             fix = "give the particles mass, or leave out the coordinates that move none"
             raise InputError("mass", "leaves a motion of the coordinates without mass", fix)
-        words = {"damping_ratio": damping_ratio, "points": points, "kind": kind, "warnings": warnings}
-        return linear_structure(c, mass, places, places[chosen], length=length, turns=turns, **words)
+        words = {"damping_ratio": damping_ratio, "points": points, "kind": kind, "warnings": warnings, "turns": turns}
+        return linear_structure(c, mass, places, places[chosen], length=length, **words)
 
     @property
     def size(self) -> int:

@@ -188,7 +188,7 @@ class BodyDescription(Part):
     coordinates: int = fact("number of its own coordinates: none of a rigid body")
     points: tuple[str, ...] = fact("names of its points")
     clamps: Mapping[str, str] = fact("nodes that each group of a mesh's clamp holds, by name", default_factory=dict)
-    supports: Mapping[str, str] = fact("what the supports of a beam hold, by their positions", default_factory=dict)
+    supports: Mapping[str, str] = fact("what supports hold, by their positions or names", default_factory=dict)
     length: float | None = fact("length of a beam", "m", optional=True, default=None)
     masses: tuple[MassOnBeam, ...] = rows("masses on a beam", "mass", default=())
     counts: Mapping[str, int] = fact(
