@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.arrays.namespace import holds_jax, is_traced
 from gbeam.errors import InputError
 from gbeam.guards.checks import implausible
+from gbeam.mechanics.fields.products import quadratic
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.structure import Structure
 from gbeam.motion.protocol import Motion, implausible_values, times
@@ -325,11 +326,10 @@ def stretched(structure: Structure, q: Any) -> Iterator[str]:
     if grip is None or grip.second is None:
         return
     held, c = np.array(grip.dependents), structure.coefficients
-    whole = np.reshape(q, (-1, structure.size)) @ grip.basis.T
-    reactions = np.einsum("kij,ti,tj->tk", grip.second / 2, whole, whole)
+    coordinates = np.reshape(q, (-1, structure.size))
+    reactions = quadratic(grip.second, coordinates @ grip.basis.T)
     flexibility = np.linalg.pinv(grip.free.coefficients.stiffness[np.ix_(held, held)], hermitian=True)
     stretch = np.einsum("tj,jk,tk->t", reactions, flexibility, reactions) / 2
-    coordinates = np.reshape(q, (-1, structure.size))
     energy = 4 * stretch.max() / max(float((coordinates @ c.stiffness * coordinates).sum(axis=1).max()), 1e-300)
     if energy > NOTICED:
         yield (

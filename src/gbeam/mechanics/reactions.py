@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
+from gbeam.mechanics.fields.products import quadratic
 from gbeam.mechanics.structure import Grip, Structure
 from gbeam.mechanics.tree.body_terms import terms_of
 from gbeam.mechanics.tree.frames import Frame
@@ -89,7 +90,7 @@ def reactions_of(
         rows = grip.conditions.measures.rows(whole) if grip.curved else grip.rows
         rigid = xp.linalg.solve(xp.swapaxes(rows[..., held], -1, -2), demanded[:, held, None])[..., 0]
         if grip.second is not None:
-            rigid = rigid + xp.einsum("kij,ti,tj->tk", grip.second / 2, whole, whole)
+            rigid = rigid + quadratic(grip.second, whole)
     if grip.curved and grip.sprung:
         drawn, sprung_rows = grip.measures(grip.sprung).values_and_rows(whole)
         drawn_rate = (sprung_rows @ rate[..., None])[..., 0]

@@ -107,7 +107,7 @@ class Theory(NamedTuple):
 
 
 def _untruncated(structure: Structure) -> Structure:
-    """The same structure, and what its supports hold, without truncation."""
+    """Return a structure, and what its supports hold, without truncation."""
     grip = structure.grip
     if grip is not None:
         grip = replace(grip, free=_untruncated(grip.free))

@@ -29,15 +29,17 @@ CLOSE = 1e-14  # of a length or rad: a smaller correction is rounding
 DIFFERENCE = 1e-4  # m or rad: step of the rows' second difference along a motion
 
 
-def null_basis(rows: Array, dependents: Sequence[int]) -> Array:
+def null_basis(rows: Array, dependents: Sequence[int], inverse: Array | None = None) -> Array:
     """Basis Φ (..., n, k) of coordinates that conditions with rows (..., m, n) leave: those that are independent, and
-    what the `dependents` follow to.
+    what the `dependents` follow to, by the `inverse` (..., m, m) of their columns, where it is known.
     """
     unit, held = np.eye(rows.shape[-1]), np.array(dependents, dtype=int)
     kept = np.delete(unit, held, axis=1)
     if not len(held):
         return kept
-    return kept - unit[:, held] @ namespace(rows).linalg.solve(rows[..., held], rows @ kept)
+    if inverse is None:
+        return kept - unit[:, held] @ namespace(rows).linalg.solve(rows[..., held], rows @ kept)
+    return kept - unit[:, held] @ (inverse @ (rows @ kept))
 
 
 @record
@@ -113,13 +115,13 @@ class Conditions:
             if stepped is not None:
                 return stepped
         q, held = self.lifted(p), np.array(self.dependent, dtype=int)
-        state, unit = self.measures.state(q), np.eye(self.size)
-        rows, kept = self.measures.rows_at(state, q), unit[:, self.independent]
+        state = self.measures.state(q)
+        rows = self.measures.rows_at(state, q)
         inverse = namespace(rows).linalg.inv(rows[..., held])
-        phi = kept - unit[:, held] @ (inverse @ (rows @ kept))
+        phi = null_basis(rows, self.dependent, inverse)
         qd, qdd = ((phi @ rates[..., None])[..., 0] for rates in (pd, pdd))
         fallen = (inverse @ self.measures.drift_at(state, q, qd)[..., None])[..., 0]
-        return q, qd, qdd - fallen @ unit[held], phi
+        return q, qd, qdd - fallen @ np.eye(self.size)[held], phi
 
     def _stepped(self, p: Array, pd: Array, pdd: Array) -> tuple[Array, Array, Array, Array] | None:
         """Motion as :meth:`moving` returns it, for complex steps of one real motion; else None."""
@@ -183,11 +185,6 @@ class HeldField:
         """Number of coordinates."""
         return self.conditions.size - len(self.conditions.dependent)
 
-    @property
-    def cumulative(self) -> Array:
-        """Weights that integrate from the root to each point."""
-        return self.free.cumulative
-
     def __getitem__(self, at: Any) -> HeldField:
         """The field at some of the points."""
         return replace(self, free=self.free[at])
@@ -217,10 +214,6 @@ class HeldField:
         """Rotation matrices R_BS (..., p, 3, 3) of the sections `at` some points, of all unless given."""
         return self.free.rotation(self.conditions.lifted(q), *at)
 
-    def components(self, q: Array, qd: Array, qdd: Array) -> tuple[Vector, Vector, Vector]:
-        """Places, velocities and accelerations of the points relative to the base axes, by components (..., p)."""
-        return self.free.components(*self.conditions.motion(q, qd, qdd))
-
     def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
         """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
         return self.free.paths(*self.conditions.motion(q, qd, qdd))
@@ -228,10 +221,6 @@ class HeldField:
     def poses(self, q: Array, qd: Array, qdd: Array, at: slice) -> tuple[tuple[Array, Array, Array], Array]:
         """Paths (..., p, 3) of all points, and rotations (..., k, 3, 3) of the sections `at` k of them, in one pass."""
         return self.free.poses(*self.conditions.motion(q, qd, qdd), at)
-
-    def turning(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
-        """Rotations (..., p, 3, 3) of the points' sections, their angular velocities and accelerations, base axes."""
-        return self.free.turning(*self.conditions.motion(q, qd, qdd))
 
     def generalised_forces(self, q: Array, push: Vector, *turn: Vector) -> Array:
         """Generalised forces (..., n) of forces, and moments, on the points, base axes, by components (..., p)."""

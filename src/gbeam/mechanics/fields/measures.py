@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -28,28 +28,16 @@ def components(which: Sequence[tuple[int, int]], moved: Array, turned: Array) ->
 class Measures:
     """Measures of m displacements and rotations of sections, in axes of the root, by coordinates (..., n).
 
-    What several answers at the same coordinates share is their `state`.
+    What several answers at the same coordinates share is their `state`. By it `values_at` are the measures (..., m),
+    `rows_at` their derivatives (..., m, n), and `drift_at` their second rates (..., m) where q does not accelerate.
+    Their second derivatives (..., m, n, n) at real coordinates are `bent_rows`.
     """
 
-    def state(self, q: Array) -> Any:
-        """State of the sections at coordinates (..., n), for the answers below."""
-        raise NotImplementedError
-
-    def values_at(self, state: Any, q: Array) -> Array:
-        """Measures (..., m) by the state at coordinates (..., n)."""
-        raise NotImplementedError
-
-    def rows_at(self, state: Any, q: Array) -> Array:
-        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
-        raise NotImplementedError
-
-    def drift_at(self, state: Any, q: Array, qd: Array) -> Array:
-        """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
-        raise NotImplementedError
-
-    def bent_rows(self, q: Array) -> Array:
-        """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
-        raise NotImplementedError
+    state: Callable[[Array], Any]
+    values_at: Callable[[Any, Array], Array]
+    rows_at: Callable[[Any, Array], Array]
+    drift_at: Callable[[Any, Array, Array], Array]
+    bent_rows: Callable[[Array], Array]
 
     def values_and_rows(self, q: Array) -> tuple[Array, Array]:
         """Measures (..., m), and their derivatives (..., m, n), at coordinates (..., n)."""

@@ -30,3 +30,8 @@ def times(tensor: Array, q: Array) -> Array:
     """T_{...ij} q_j of a constant tensor, (..., its first axes, i)."""
     flat = q @ tensor.reshape(math.prod(tensor.shape[:-1]), tensor.shape[-1]).T  # -1 would fail without coordinates
     return flat.reshape(*q.shape[:-1], *tensor.shape[:-1])
+
+
+def quadratic(tensor: Array, q: Array) -> Array:
+    """Halves of quadratic forms, ½ q T_k q (..., k), of a constant tensor (k, n, n)."""
+    return (times(tensor, q) @ q[..., None])[..., 0] / 2
