@@ -21,6 +21,7 @@ from .analysis.response.settings import ResponseSettings as ResponseSettings
 from .analysis.response.simulation import simulate as simulate
 from .analysis.steady.campbell import campbell as campbell
 from .analysis.steady.equilibrium import solve_equilibrium as solve_equilibrium
+from .analysis.steady.equilibrium_path import equilibrium_path as equilibrium_path
 from .analysis.steady.modal import modes as modes
 from .analysis.steady.stability import buckling_acceleration as buckling_acceleration
 from .analysis.steady.stability import critical_load as critical_load

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gbeam.analysis.case import Case
     from gbeam.mechanics.tree.system import System
     from gbeam.results.comparison import MachinePlan
-    from gbeam.results.equilibrium import Critical, Rest
+    from gbeam.results.equilibrium import Critical, EquilibriumPath, Rest
     from gbeam.results.modal import Campbell, Modes
     from gbeam.results.placement import Placement
     from gbeam.results.study import Study
@@ -32,7 +32,7 @@ Options = TypedDict(
     "Options",
     {
         "gyroscopic": bool,
-        "vary": Varied,
+        "vary": Varied | Literal["motion"],
         "turning": str | None,
         "from": float | str | None,
         "to": float | str | None,
@@ -212,7 +212,7 @@ def _subject(case: Case, needs: Needs) -> System:
         return case.system
     if needs.shapes:
         length = case.beam.length
-        case = case.remade(stations=[length * i / (STATIONS - 1) for i in range(STATIONS)])
+        case = case.remade(stations=[length * (i / (STATIONS - 1)) for i in range(STATIONS)])
     if needs.errors:
         return case.system
     bodies = {
@@ -353,6 +353,41 @@ def critical_speed(
         return replace(stability.critical_speed(structure, turning=turning, name=name, **moved), motion=name)
 
     return sufficient(case, ask, lambda critical: [critical.errors])[1]
+
+
+@question(
+    "path",
+    "Where a beam or a system rests as its loads or its motion grow, also where they have to fall: snap-through.",
+    differentiable=False,
+    usual=("critical[0].factor",),
+)
+def path(
+    case: Case,
+    motion: str | None = None,
+    at: float | None = None,
+    needs: Needs = Needs(),
+    *,
+    vary: Annotated[
+        Literal["loads", "motion"], "What grows: all loads, or the motion as it is at one time, by one factor."
+    ] = "loads",
+    to: Annotated[float, "Factor at which the path ends; 1 for what is varied as it is.", "ratio"] = 1.0,
+    progress: Callable[[str, float], None] | None = None,
+) -> EquilibriumPath:
+    """Equilibria under what is varied times a factor from none to `to`, by arc length beyond limit points."""
+    from gbeam.analysis.automatic import sufficient
+    from gbeam.analysis.steady.equilibrium_path import equilibrium_path
+
+    if not to > 0:
+        raise InputError("to", f"is {to:g}", "give a value above zero, where the path ends")
+    name = motion_of(case.environments, motion)
+    base, time, errors = prepared(case, name), _time(case, name, at), needs.errors or case.automatic
+
+    def ask(case: Case) -> EquilibriumPath:
+        structure = _subject(case, replace(needs, errors=errors))
+        options: dict[str, Any] = {"vary": vary, "upper": to, "errors": errors, "name": name}
+        return equilibrium_path(structure, base, time, **options, progress=progress)
+
+    return sufficient(case, ask, lambda path: [path.errors, *(point.errors for point in path.critical)])[1]
 
 
 @question("plan", "Plan the axis motions of a centrifuge within its limits; needs no beam.", motion=None, deforms=False)

@@ -14,7 +14,7 @@ from gbeam.results.body_response import BodyResponse
 from gbeam.results.cases import PROBABILITY, Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.description import Description, RecordSummary
-from gbeam.results.equilibrium import Critical, CriticalMap, Rest
+from gbeam.results.equilibrium import Critical, CriticalMap, EquilibriumPath, Rest
 from gbeam.results.machine import AxesResult
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
@@ -32,6 +32,7 @@ _OF: dict[type[Figured[Any]], tuple[Callable[..., Figure], ...]] = {
     Modes: (steady.modes,),
     Campbell: (steady.campbell,),
     CriticalMap: (steady.critical_map,),
+    EquilibriumPath: (steady.path,),
     StateSpace: (steady.poles,),
     Placement: (imitation.placement,),
     Fit: (studies.fit,),

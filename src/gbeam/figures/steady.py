@@ -34,7 +34,7 @@ from gbeam.figures.description import (
     support_note,
     words_and_unit,
 )
-from gbeam.results.equilibrium import BodyRest, Critical, CriticalMap, Rest
+from gbeam.results.equilibrium import BRANCH_POINT, BodyRest, Critical, CriticalMap, EquilibriumPath, Rest
 from gbeam.results.errors import direction_words
 from gbeam.results.modal import Campbell, Modes, near_multiples
 from gbeam.results.result import Floats
@@ -222,6 +222,33 @@ def critical(result: Critical, title: str = "") -> Figure:
     frame = " in the turning frame" if result.frame == "turning" else ""
     panel = Panel(f"frequency{frame}, Hz", tuple(lines), x=quantity, marks=marks, spans=spans, zero=True, height=2.0)
     return Figure(title, of_motion(result.motion, result.reason), (panel,), error_note({"": error}))
+
+
+def path(result: EquilibriumPath, title: str = "") -> Figure:
+    """Describe the factor over the displacement that is largest: dashed where it would not stay."""
+    point, axis = result.most_moved
+    moved = result.displacement[:, point, axis]
+    scale, unit = scale_of("m", moved)
+    way = 1.0 if moved[np.abs(moved).argmax()] > 0 else -1.0  # to which it moves, to the right
+    scale *= way
+    above = 0.03 * float(np.ptp(result.factor))
+    # Where stability changes, at a critical point, both lines meet.
+    kept = result.stable | np.append(False, result.stable[:-1]) | np.append(result.stable[1:], False)
+    lines = [
+        Line(scale * moved, np.where(kept, result.factor, np.nan), "stable", colour=0),
+        Line(scale * moved, np.where(result.stable, np.nan, result.factor), "not stable", colour=0, dash="dashed"),
+    ]
+    texts = []
+    for kind in dict.fromkeys(critical.kind for critical in result.critical):
+        alike = [critical for critical in result.critical if critical.kind == kind]
+        x = scale * np.array([critical.displacement[point, axis] for critical in alike])
+        y = np.array([critical.factor for critical in alike])
+        lines.append(Line(x, y, f"{kind}s", colour=REFERENCE if kind == BRANCH_POINT else 1, marks="rings"))
+        texts += [(float(at), float(factor) + above, f"{factor:.4g}") for at, factor in zip(x, y, strict=True)]
+    quantity = f"displacement of {result.points[point]} along {'−' if way < 0 else ''}{'xyz'[axis]}, {unit}"
+    panel = Panel(f"factor of the {result.quantity}", tuple(lines), x=quantity, zero=True, height=2.4, texts=tuple(texts))
+    subject = of_motion(result.motion, f"equilibria under growing {result.quantity}, {result.model}, t = {result.time:.4g} s")
+    return Figure(title, subject, (panel,), error_note({"": result.errors.total}))
 
 
 def critical_map(critical: CriticalMap, title: str = "") -> Figure:

@@ -187,7 +187,8 @@ def hold(
     # What bends shortens along x: of polynomials of a straight beam the conditions along x alone are of second order.
     bent = beam.line is not None or any(condition.direction == "x" for condition in every)
     curved = order is None or (order > 1 and bent)
-    slopes, angles = field.sections(slice(first_station, None)).jacobians(np.zeros(len(stiffness)))
+    everywhere, turns = field.sections(slice(None)).jacobians(np.zeros(len(stiffness)))
+    slopes, angles = everywhere[first_station:], turns[first_station:]
     places = tuple((int(np.argmin(np.abs(at - condition.at))), condition.number) for condition in every)
     parted = places[: len(conditions)], places[len(conditions) :]
     rows = components(places, slopes, angles)
@@ -201,7 +202,7 @@ def hold(
     stiffness = stiffness + sprung.T @ (spring[:, None] * sprung)
     dashpots = sprung.T @ (damper[:, None] * sprung) + root_dashpots(beam, len(stiffness))
     if dependents is None:
-        sizes = np.ones(len(stiffness)) if is_jax(stiffness) else np.diag(stiffness)  # the choice is one of rounding
+        sizes = (np.square(everywhere) + np.square(beam.length * turns)).sum(axis=(0, 1))
         dependents = chosen_dependents(conditions, held, sizes, shapes)
     basis = null_basis(held, dependents)
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)

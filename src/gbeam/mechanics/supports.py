@@ -231,10 +231,12 @@ def _new(rule: Quadrature, weight: Floats, family: int, plain: Family, statics: 
 
 
 def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, shapes: int) -> tuple[int, ...]:
-    """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest by unit energy.
+    """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest for how far
+    they move the beam. `sizes` (n,) are the squares of that motion, of rotations times the length.
 
-    `sizes` (n,) are the coordinates' stiffnesses; the first `shapes` of them are of shapes. Raise InputError where a
-    condition says nothing that those before do not say.
+    That is a stretch where a condition concerns one: as an arch snaps through, the bending that moves its end along x
+    does not any more. The first `shapes` of the coordinates are of shapes. Raise InputError where a condition says
+    nothing that those before do not say.
     """
     scaled = rows[:, :shapes] / np.sqrt(sizes[:shapes])
     for k, condition in enumerate(conditions):

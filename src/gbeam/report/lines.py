@@ -16,7 +16,7 @@ _MODULES = {
     "cases": ("Sweep",),
     "machine": ("MachinePlan", "Comparison"),
     "searches": ("Sensitivity", "Fit", "Optimum", "ShapedCommand", "Placement"),
-    "steady": ("Rest", "Modes", "Campbell", "Critical", "CriticalMap", "StateSpace"),
+    "steady": ("Rest", "Modes", "Campbell", "Critical", "CriticalMap", "EquilibriumPath", "StateSpace"),
     "study": ("Study", "ModelStudy"),
 }
 _TITLED = ("Study", "MachinePlan", "ModelStudy")  # in a terminal

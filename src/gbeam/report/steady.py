@@ -257,6 +257,25 @@ def critical(facts: Facts) -> Blocks:
     yield Section("", (pairs(rows), *frame_sentence(facts)), detail=True)
 
 
+def equilibrium_path(facts: Facts) -> Blocks:
+    """Report of an equilibrium path: the points at which stability is lost or regained, and the path itself."""
+    motion = f"motion {facts['motion']}: " if facts["motion"] else ""
+    note = f"; {facts['error_note']}" if facts.get("error_note") else ""
+    for point in facts["critical"]:
+        words = f"{point['kind']} at {number(point['factor'])} times the {facts['quantity']}"
+        yield Sentence(f"{motion}{words}{_error_clause(point['errors'])}{note}", "verdict")
+    if not facts["critical"]:
+        end = number(facts["factor"][-1])
+        yield Sentence(
+            f"{motion}it stays stable up to {end} times the {facts['quantity']}{_error_clause(facts['errors'])}{note}", "verdict"
+        )
+    yield Items(tuple(filter(None, [facts["message"]])), "bad")
+    moved = zip(facts["points"], *(facts["moved"][axis] for axis in "xyz"), strict=True)
+    cells: Columns = {"point": "0"} | {f"{axis}, mm": f"{k}" for k, axis in enumerate("xyz", 1)}
+    yield table(moved, cells, f"Displacement at {number(facts['factor'][-1])} times the {facts['quantity']}, axes of the ground")
+    yield Section("Figure", (FIGURES,))
+
+
 def _error_clause(errors: Facts) -> str:
     """Clause on the estimated error of a critical value; empty where there is none."""
     if errors.get("total") is not None:

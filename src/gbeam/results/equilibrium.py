@@ -29,7 +29,7 @@ from gbeam.results.errors import (
 from gbeam.results.facts import at_place
 from gbeam.results.one_body import RestingBody
 from gbeam.results.parts import Base, Loads, Outline
-from gbeam.results.result import Decided, Figured, Floats, Part, brief
+from gbeam.results.result import Decided, Figured, Flags, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 from gbeam.results.system import Assembly, Placed, most_moved
 
@@ -206,6 +206,68 @@ class Critical(Decided, Figured[Literal["critical"]]):
     def __repr__(self) -> str:
         value = f"none up to {self.searched_to:.6g}" if self.value is None else f"{self.value:.6g}"
         return self._with_warnings(f"Critical {self.quantity} ({self.model}): {value} {self.unit}", self.reason)
+
+
+LIMIT_POINT, BRANCH_POINT = "limit point", "branch point"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CriticalPoint(Part):
+    """Point of an equilibrium path at which stability is lost, or regained."""
+
+    kind: str = fact("limit point, at which it snaps under dead loads, or branch point, at which it buckles")
+    factor: float = fact("factor of the loads or the motion")
+    displacement: Floats = entry("m", "displacement of the point", "point axis", frame="ground")
+    errors: ErrorEstimate = part("errors of the factor", name="error_", default_factory=ErrorEstimate)
+
+    def __repr__(self) -> str:
+        known = math.isfinite(self.errors.total)
+        error = f", estimated error {percent(self.errors.total)}" if known else ""
+        return f"{self.kind} at a factor of {self.factor:.4g}{error}"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class EquilibriumPath(Decided, Figured[Literal["path"]]):
+    """Equilibria of a system under its loads, or a motion, times a factor, also those that it leaves by a snap."""
+
+    motion: str = fact("name of the motion", note="empty where there is none")
+    time: float = fact("time at which loads, drives and motion are frozen", "s")
+    model: str = fact("kind of the model")
+    quantity: str = fact("quantity that is multiplied by the factor", note="loads or motion")
+    searched_to: float = fact("factor that was asked for")
+    points: tuple[str, ...] = labels("name of the point", "point", key="points")
+    factor: Floats = entry("", "factor of the quantity along the path", "step", role="coordinate")
+    displacement: Floats = entry(
+        "m", "displacement of the point from where the factor is zero", "step point axis", key=None, frame="ground"
+    )
+    q: Floats = internal("", "coordinates: m and rad of joints, their own of flexible bodies", "step coordinate")
+    stable: Flags = entry("", "whether it would stay there", "step", flags=("unstable", "stable"))
+    critical: tuple[CriticalPoint, ...] = rows(
+        "points at which stability is lost, or regained", "critical_point", name="critical_", default=()
+    )
+    errors: ErrorEstimate = part(
+        "largest distance from richer models' paths, in factor and displacement, as a fraction of their largest",
+        name="error_",
+        default_factory=ErrorEstimate,
+    )
+    error_note: str = fact(UNKNOWN, optional=True, default="")
+
+    @declared("m", "displacement of the point at the end of the path", "point axis", name=None, key="moved")
+    def end(self) -> Floats:
+        return self.displacement[-1]
+
+    @property
+    def most_moved(self) -> tuple[int, int]:
+        """Number of the point and of the axis along which it moves farthest."""
+        point, axis = np.unravel_index(np.abs(self.displacement).max(axis=0).argmax(), self.displacement.shape[1:])
+        return int(point), int(axis)
+
+    def __repr__(self) -> str:
+        lost = [str(point) for point in self.critical] or [f"no critical point up to {self.factor[-1]:.4g}"]
+        lines = [f"EquilibriumPath ({self.model}): {len(self.factor)} equilibria under growing {self.quantity}", *lost]
+        if math.isfinite(self.errors.total):
+            lines.append(f"estimated error of the path {percent(self.errors.total)}")
+        return self._with_warnings(*lines, *filter(None, [self.message]))
 
 
 @dataclass(frozen=True, repr=False, eq=False)

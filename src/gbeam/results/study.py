@@ -12,7 +12,7 @@ from gbeam.results.cases import Sensitivity, Sweep
 from gbeam.results.comparison import Comparison, MachinePlan
 from gbeam.results.criteria import NOT_ACCEPTED, NOT_DECIDED, Judged, state_of
 from gbeam.results.declared import declared, fact, internal, quantity, rows
-from gbeam.results.equilibrium import Critical, CriticalMap, Rest
+from gbeam.results.equilibrium import Critical, CriticalMap, EquilibriumPath, Rest
 from gbeam.results.facts import ANY, Entry, json_of, tree_of
 from gbeam.results.modal import Campbell, Modes
 from gbeam.results.placement import Placement
@@ -276,6 +276,7 @@ KINDS: dict[str, type[Result]] = {
         Campbell,
         Critical,
         CriticalMap,
+        EquilibriumPath,
         StateSpace,
         MachinePlan,
         Placement,

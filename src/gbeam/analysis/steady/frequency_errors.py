@@ -79,11 +79,13 @@ class More(NamedTuple):
 class RicherModels:
     """Richer models that judge a steady state's: with more shapes, the exact one, thick beams, and coarser meshes."""
 
-    def __init__(self, state: SteadySystem) -> None:
-        """Make the richer models. `one_model` is true where no body has another model than its own."""
+    def __init__(self, state: SteadySystem, *, near: bool = True) -> None:
+        """Make the richer models, of which thick beams may be linear where a state, and all that is asked, is `near`
+        the straight one. `one_model` is true where no body has another model than its own.
+        """
         system = state.system
         bodies, rough = judged_bodies(system), coarser(system)
-        self.theories = theories_of(system, straight=state.bent(bodies) <= STRAIGHT)
+        self.theories = theories_of(system, straight=near and state.bent(bodies) <= STRAIGHT)
         self.beams = {name: bodies[name] for name in self.theories}
         self.exact = _enriched(state, exact=True)
         self.one_model = all(body.richer is not None and body.exact for body in bodies.values())

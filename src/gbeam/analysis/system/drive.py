@@ -101,6 +101,14 @@ def loaded(drive: Drive, value: float) -> Drive:
     return replace(drive, factor=value)
 
 
+def shaken(drive: Drive, value: float) -> Drive:
+    """Return drives whose motion is frozen, its accelerations times a factor, its rates times the root of this."""
+    assert drive.motion is not None
+    base, turned = drive.motion.base(np.asarray(float(drive.time))), np.sqrt(max(value, 0.0))
+    frozen = Base(value * base.a_WO_B, turned * base.w_WB_B, value * base.alpha_WB_B)
+    return replace(drive, motion=None, base=frozen)
+
+
 def pushed(drive: Drive, value: float) -> Drive:
     """Return drives whose ground is accelerated along its x axis, m/s²."""
     return replace(drive, base=Base(np.array([value, 0.0, 0.0]), np.zeros(3), np.zeros(3)))

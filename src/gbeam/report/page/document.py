@@ -38,6 +38,7 @@ VERBS = {  # of kinds that have a page of their own
     "Campbell": "campbell",
     "Critical": "critical-speed",
     "CriticalMap": "critical-speed --masses",
+    "EquilibriumPath": "path",
     "Placement": "place",
     "Sweep": "sweep",
     "Fit": "fit",

@@ -1,0 +1,116 @@
+"""Errors of equilibrium paths, by paths of richer models."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from gbeam.analysis.accuracy.estimate import LIMIT, error_warning, percent
+from gbeam.analysis.steady.frequency_errors import RicherModels
+from gbeam.analysis.system.load_path import FollowedPath, Loading, follow
+from gbeam.arrays.types import Floats
+from gbeam.errors import ComputationError
+from gbeam.mechanics.tree.system import System
+from gbeam.results.equilibrium import BRANCH_POINT
+from gbeam.results.errors import ErrorEstimate
+
+FARTHER = 1.05  # of a path's length, to which richer models are followed
+SEEN = 0.05  # share of its size by which a richer model's path, read by a spline, may bend within a step
+FINE = 16  # points of a richer model's path for each of its own, between which a path is compared with it
+
+
+def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[ErrorEstimate], tuple[str, ...]]:
+    """Errors of a path and of its critical points by paths of richer models, and warnings where they exceed 1 %.
+
+    NaN, with a warning, where a richer model's path was not followed as far.
+    """
+    loading, unknown = followed.loading, [ErrorEstimate() for _ in followed.critical]
+    richer = RicherModels(loading.start, near=False)
+    end = FARTHER * followed.points[-1].length
+
+    def path_of(system: System) -> Trace:
+        """Path of a richer model."""
+        other = Loading.of(system, loading.drive, loading.varied)
+        return Trace.of(follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN))
+
+    try:
+        own, exact = Trace.of(followed), path_of(richer.exact.model)
+        same = exact if richer.same is richer.exact else path_of(richer.same.model)
+        systems, plates = richer.systems_by_theory(loading.system) if richer.theories else ([], {})
+        different = systems if any(plate.any() for plate in plates.values()) else systems[:2]
+        models = [path_of(model) for model in different]
+        rough = None if richer.rough is None else path_of(richer.rough.model)
+    except (ComputationError, np.linalg.LinAlgError) as error:
+        return ErrorEstimate(), unknown, (f"the error of the path is not known: of a richer model {error}",)
+
+    def estimated(difference: Callable[[Trace, Trace], float]) -> ErrorEstimate:
+        """Errors by a measure of the difference of two paths."""
+        model = richer.model_share(difference(same, exact))
+        estimate = ErrorEstimate(0.0, difference(own, same), model, total=difference(own, exact))
+        if models:
+            slender, *thick = models
+            estimate = estimate.adding(beam_theory=max(difference(slender, other) for other in thick))
+        return estimate if rough is None else estimate.adding(mesh=difference(own, rough))
+
+    along = estimated(Trace.distance)
+    kinds = [kind for kind, _ in own.critical]
+    shares = [estimated(partial(Trace.difference_at, kind, kinds[:k].count(kind))) for k, kind in enumerate(kinds)]
+    doubts = list[str]()
+    worst = ErrorEstimate.from_largest([along, *shares])
+    if worst.total > LIMIT:
+        doubts.append(error_warning("the path", percent(worst.total), worst, ""))
+    first = min((factor for _, factor in own.critical), default=math.inf)
+    for model, other in [
+        ("the exact model", exact),
+        *(("a beam with shear and twist", thick) for thick in models[1:2]),
+    ]:
+        earlier = [factor for factor in other.factors(BRANCH_POINT) if factor < (1 - LIMIT) * first]
+        if earlier:
+            doubts.append(f"{model} leaves this path at a factor of {earlier[0]:.4g}, where it buckles sideways")
+            break
+    return along, shares, tuple(doubts)
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Load factors and displacements along a path that was followed, (s, 1 + 3 p), its length, and kinds and factors of
+    its critical points.
+    """
+
+    values: Floats
+    length: Floats
+    critical: tuple[tuple[str, float], ...]
+
+    @classmethod
+    def of(cls, followed: FollowedPath) -> Trace:
+        """Values along a path."""
+        factor, moved = [at.value for at in followed.points], followed.loading.moved(followed.points)
+        values = np.column_stack([factor, moved.reshape(len(moved), -1)])
+        length = np.array([at.length for at in followed.points])
+        return cls(values, length, tuple((kind, at.value) for kind, at in followed.critical))
+
+    def distance(self, other: Trace) -> float:
+        """Largest distance of its points from another path, as a share of its largest factor or displacement."""
+        from scipy.interpolate import CubicSpline
+
+        fine = np.interp(np.arange(FINE * len(other.length)) / FINE, np.arange(len(other.length)), other.length)
+        size = np.abs(self.values).max(axis=0)
+        size[1:] = size[1:].max()
+        curve = CubicSpline(other.length, other.values / size)(fine)
+        return float(max(np.linalg.norm(curve - point, axis=1).min() for point in self.values / size))
+
+    def factors(self, kind: str) -> list[float]:
+        """Load factors at critical points of a kind, in turn."""
+        return [factor for name, factor in self.critical if name == kind]
+
+    @staticmethod
+    def difference_at(kind: str, k: int, one: Trace, other: Trace) -> float:
+        """Relative difference of the factors at the k-th critical points of a kind of two paths; infinite where one has
+        fewer.
+        """
+        factors = one.factors(kind)[k:], other.factors(kind)[k:]
+        return abs(factors[0][0] / factors[1][0] - 1) if all(factors) else math.inf

@@ -1,0 +1,145 @@
+"""Curves of equilibria as a parameter varies, followed by arc length beyond limit points (Riks 1979; Crisfield 1981).
+
+The equations are r(y, v) = 0 for coordinates y and a parameter v. Length along a curve is that of y alone, in a metric
+W. Where v turns back the curve has a limit point: K = ∂r/∂y is singular there, but K with ∂r/∂v beside it and the
+curve's direction below is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from gbeam.arrays.types import Floats
+from gbeam.errors import ComputationError
+
+ITERATIONS = 12  # of Newton's method at a point
+CLOSE = 1e-10  # of the curve's size: a smaller correction is none
+SHORTEST = 1e-6  # of the first step
+LOCATED = 1e-9  # of a step: tolerance of a point that is searched for
+
+
+class CurvePoint(NamedTuple):
+    """Point of a curve: y (n,) and v, their derivatives by the length along the curve, and this length."""
+
+    y: Floats
+    value: float
+    course: Floats
+    rate: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Equations r(y, v), which give r (n,), K (n, n) and ∂r/∂v (n,), and the metric W (n, n) of coordinates.
+
+    `reach` is a value of the parameter that counts as large. A step along the tangent that ends farther from the curve
+    than a share `bent` of its size is shortened.
+    """
+
+    equations: Callable[[Floats, float], tuple[Floats, Floats, Floats]]
+    metric: Floats
+    reach: float
+    bent: float
+
+    def begin(self, y: Floats, value: float, *, forward: bool = True) -> CurvePoint:
+        """Point at coordinates y, a solution, from which the parameter grows, or falls where not `forward`."""
+        _, k, pull = self.equations(y, value)
+        course = np.linalg.solve(k, -pull)
+        size = self._size(course)
+        if not size > 0:
+            raise ComputationError("not converged", "the loads move nothing")
+        sign = 1.0 if forward else -1.0
+        return CurvePoint(y, value, sign * course / size, sign / size, 0.0)
+
+    def ahead(self, point: CurvePoint, step: float) -> CurvePoint | None:
+        """Point of the curve in the plane across its tangent a step ahead; None where there is none nearby."""
+        across = self.metric @ point.course
+        y, value = point.y + step * point.course, point.value + step * point.rate
+        for _ in range(ITERATIONS):
+            residual, k, pull = self.equations(y, value)
+            bordered = np.block([[k, pull[:, None]], [across, np.zeros(1)]])
+            gap = across @ (y - point.y) - step
+            try:
+                both = np.linalg.solve(bordered, np.stack([-np.append(residual, gap), np.append(0 * y, 1.0)], axis=1))
+            except np.linalg.LinAlgError:
+                return None
+            change, tangent = both.T
+            if not np.isfinite(change).all():
+                return None
+            y, value = y + change[:-1], value + float(change[-1])
+            if self._size(change[:-1]) <= CLOSE * step and abs(change[-1]) <= CLOSE * self.reach:
+                size = self._size(tangent[:-1])
+                length = point.length + self._size(y - point.y)
+                return CurvePoint(y, value, tangent[:-1] / size, float(tangent[-1]) / size, length)
+        return None
+
+    def follow(self, first: CurvePoint, step: float) -> Iterator[CurvePoint]:
+        """Points of the curve from the first on, as far apart as its bends let them be; ComputationError where it
+        ends.
+        """
+        point, shortest = first, SHORTEST * step
+        yield first
+        while True:
+            following = self.ahead(point, step)
+            departure = np.inf
+            if following is not None:
+                aside = self._size(following.y - point.y - step * point.course)
+                extent = self._size(following.y - first.y)
+                departure = aside / extent + abs(following.value - point.value - step * point.rate) / self.reach
+            if following is not None and departure <= self.bent:
+                point = following
+                yield point
+            elif step <= shortest:
+                raise ComputationError("not converged", f"the curve was not followed beyond {point.value:.4g}")
+            # The departure grows with the square of the step.
+            step *= float(np.clip(np.sqrt(self.bent / 2 / max(departure, 1e-12)), 0.25, 2.0))
+
+    def interpolated(
+        self, point: CurvePoint, following: CurvePoint, measure: Callable[[CurvePoint], float]
+    ) -> CurvePoint:
+        """Point between two at which a measure is zero, whose signs at the two differ, on the cubic through both.
+
+        At a branch point equations are singular also with the curve's direction below, and a correction is lost.
+        """
+        from scipy.interpolate import CubicHermiteSpline
+        from scipy.optimize import brentq
+
+        ends = point, following
+        values, slopes = (
+            np.stack([np.append(end.y, end.value) for end in ends]),
+            np.stack([np.append(end.course, end.rate) for end in ends]),
+        )
+        cubic = CubicHermiteSpline([end.length for end in ends], values, slopes)
+        course = cubic.derivative()
+
+        def at(length: float) -> CurvePoint:
+            """Point of the cubic."""
+            both, slope = cubic(length), course(length)
+            return CurvePoint(both[:-1], float(both[-1]), slope[:-1], float(slope[-1]), length)
+
+        return at(brentq(lambda length: measure(at(length)), point.length, following.length, rtol=LOCATED))
+
+    def between(self, point: CurvePoint, following: CurvePoint, measure: Callable[[CurvePoint], float]) -> CurvePoint:
+        """Point between two at which a measure is zero, whose signs at the two differ, by Brent's method."""
+        from scipy.optimize import brentq
+
+        span = float(self.metric @ point.course @ (following.y - point.y))
+        ends = {0.0: point, span: following}
+
+        def measured(step: float) -> float:
+            """The measure a step ahead of the first point."""
+            tried = ends.get(step) or self.ahead(point, step)
+            if tried is None:
+                raise ComputationError("not converged", f"the curve was lost near {point.value:.4g}")
+            return measure(tried)
+
+        step = brentq(measured, 0.0, span, xtol=LOCATED * span, rtol=LOCATED)
+        return self.ahead(point, step) or following
+
+    def _size(self, y: Floats) -> float:
+        """Length of a vector of coordinates (n,)."""
+        return float(np.sqrt(y @ self.metric @ y))
