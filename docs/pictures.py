@@ -51,9 +51,46 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
         held().savefig(folder / "held_at_both_ends.png", dpi=150)
         heated().savefig(folder / "heated.png", dpi=150)
         rails().savefig(folder / "board_on_rails.png", dpi=150)
+        snapping().savefig(folder / "snapping_strip.png", dpi=150)
     tracking, tip = study.responses["centrifuge"].plot("tracking"), study.plot("tip")
     tracking[0].figure.savefig(folder / "f16_tracking.png", dpi=150)
     tip[0].figure.savefig(folder / "f16_tip.png", dpi=150)
+
+
+def snapping() -> Figure:
+    """Equilibria of a shallow strip under growing multiples of a turn."""
+    case = gb.read_scenario(EXAMPLE.parent / "snapping_strip.toml")
+    path = gb.equilibrium_path(
+        case.subject,
+        case.motions["turn"],
+        0.5,
+        vary="motion",
+        upper=2.5,
+        errors=False,
+    )
+    sunk = -1e3 * path.displacement[:, path.points.index("beam.contact"), 2]
+    load = 8 * path.factor
+    drawing = Figure(figsize=(6.4, 3.0), layout="constrained")
+    axes = drawing.subplots()
+    first, second = (
+        int(np.argmin(abs(load - 8 * each.factor))) for each in path.critical
+    )
+    for part, dash in (
+        (slice(None, first + 1), "-"),
+        (slice(first, second + 1), "--"),
+        (slice(second, None), "-"),
+    ):
+        axes.plot(sunk[part], load[part], dash, color=MACHINE, lw=1.6)
+    for k, words in ((first, "snaps at"), (second, "snaps back at")):
+        axes.annotate(
+            f"{words} {load[k]:.1f} g",
+            (sunk[k], load[k]),
+            xytext=(0, 7),
+            textcoords="offset points",
+            ha="center",
+        )
+    axes.set(xlabel="the contact sinks by, mm", ylabel="load, g", ylim=(0, None))
+    return drawing
 
 
 def heated() -> Figure:

@@ -227,6 +227,10 @@ class Samples:
             ),
             "compare_models": ((self.brief,), {"kinds": ("FOAM",), "progress": None, "point": None}),
             "constant": ((1.0,), {}),
+            "equilibrium_path": (
+                (self.structure, self.flight, 0.2),
+                {"vary": "motion", "upper": 0.5, "errors": False, "name": "", "progress": None},
+            ),
             "critical_load": ((self.column, base), {"time": 0.0, "motion": None, "upper": None, "progress": None}),
             "critical_speed": (
                 (self.structure, self.hub),

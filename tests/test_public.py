@@ -92,7 +92,8 @@ def test_words_to_choose_from_are_those_that_are_registered() -> None:
     options: dict[str, Any] = {}
     for question in QUESTIONS.values():
         for name, each in question.options.items():
-            options[name] = each.type | str if each.kind else each.type
+            kind = each.type | str if each.kind else each.type
+            options[name] = options[name] | kind if name in options else kind
     dimensions = [name for shape in SHAPES.values() for name in shape.required + shape.optional]
     assert get_type_hints(Options) == options
     assert list(Dimensions.__annotations__) == list(dict.fromkeys(dimensions))

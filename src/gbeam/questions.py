@@ -27,12 +27,13 @@ if TYPE_CHECKING:
     from gbeam.results.study import Study
 
 Varied = Literal["rate", "loads", "acceleration"]
+Grown = Literal["loads", "motion"]
 # Options of all questions by name, as studies take them; quantities are numbers in SI, or texts.
 Options = TypedDict(
     "Options",
     {
         "gyroscopic": bool,
-        "vary": Varied | Literal["motion"],
+        "vary": Varied | Grown,
         "turning": str | None,
         "from": float | str | None,
         "to": float | str | None,
@@ -367,9 +368,7 @@ def path(
     at: float | None = None,
     needs: Needs = Needs(),
     *,
-    vary: Annotated[
-        Literal["loads", "motion"], "What grows: all loads, or the motion as it is at one time, by one factor."
-    ] = "loads",
+    vary: Annotated[Grown, "What grows: all loads, or the motion as it is at one time, by one factor."] = "loads",
     to: Annotated[float, "Factor at which the path ends; 1 for what is varied as it is.", "ratio"] = 1.0,
     progress: Callable[[str, float], None] | None = None,
 ) -> EquilibriumPath:

@@ -127,6 +127,11 @@ def _critical_speed(scenario: Scenario) -> Any:
     return answer(scenario.case(scenario.kind.turned()), "critical-speed", to=1.0)
 
 
+@asked("path")
+def _path(scenario: Scenario) -> Any:
+    return answer(scenario.alone, "path", vary="motion")
+
+
 @asked("linearize")
 def _linearize(scenario: Scenario) -> Any:
     case = scenario.alone

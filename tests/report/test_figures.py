@@ -82,6 +82,7 @@ def _results(study: gb.Study) -> dict[str, list[Result]]:
             gb.critical_load(_column(follower=True)),
             gb.buckling_acceleration(structure),
         ],
+        "path": [gb.equilibrium_path(structure, gb.Flight(z=20.0), vary="motion")],
         "map": [gb.critical_speed_map(BEAM, gb.Model("TLAM", y=2, z=2), hub, [0.1], [0.1, 0.3])],
         "plan": [_sparse(gb.plan("", machine))],
         "fit": [fit, replace(modal, columns=(column,))],

@@ -60,6 +60,7 @@ def every() -> dict[str, Any]:
         "modes": gb.modes(structure, hub),
         "campbell": gb.campbell(structure, hub, speeds=np.linspace(0, 20, 3)),
         "critical": gb.critical_speed(structure, hub, upper=30.0),
+        "path": gb.equilibrium_path(structure, flight, vary="motion"),
         "critical map": gb.critical_speed_map(BEAM, gb.Model("FOAM", 0, 1, 1), hub, [0.1], [0.1, 0.3], 30.0),
         "system": gb.linearize(structure, hub),
         "plan": MachinePlan(

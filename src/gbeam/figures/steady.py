@@ -246,8 +246,12 @@ def path(result: EquilibriumPath, title: str = "") -> Figure:
         lines.append(Line(x, y, f"{kind}s", colour=REFERENCE if kind == BRANCH_POINT else 1, marks="rings"))
         texts += [(float(at), float(factor) + above, f"{factor:.4g}") for at, factor in zip(x, y, strict=True)]
     quantity = f"displacement of {result.points[point]} along {'−' if way < 0 else ''}{'xyz'[axis]}, {unit}"
-    panel = Panel(f"factor of the {result.quantity}", tuple(lines), x=quantity, zero=True, height=2.4, texts=tuple(texts))
-    subject = of_motion(result.motion, f"equilibria under growing {result.quantity}, {result.model}, t = {result.time:.4g} s")
+    panel = Panel(
+        f"factor of the {result.quantity}", tuple(lines), x=quantity, zero=True, height=2.4, texts=tuple(texts)
+    )
+    subject = of_motion(
+        result.motion, f"equilibria under growing {result.quantity}, {result.model}, t = {result.time:.4g} s"
+    )
     return Figure(title, subject, (panel,), error_note({"": result.errors.total}))
 
 

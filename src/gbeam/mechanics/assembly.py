@@ -43,6 +43,7 @@ from gbeam.mechanics.supports import (
     refuse_shapeless,
     rigid_conditions,
     static_counts,
+    strain_sizes,
     supported_shapes,
     turned,
     yielding_conditions,
@@ -158,12 +159,13 @@ def assembled(
         return replace(free, coefficients=c.damped(c.damping + root_dashpots(beam, c.size)))
     first_station = len(rule.node) + len(beam.masses) + sum(load.at is not None for load in beam.loads)
     return hold(
-        beam, field, stiffness, heat, build, at, first_station, sum(counts), dependents, MODEL_KINDS[kind].order
+        beam, rule, field, stiffness, heat, build, at, first_station, sum(counts), dependents, MODEL_KINDS[kind].order
     )
 
 
 def hold(
     beam: Beam,
+    rule: Quadrature,
     field: Field,
     stiffness: Array,
     heat: Array | None,
@@ -176,11 +178,11 @@ def hold(
 ) -> Structure:
     """Hold a beam at its supports beyond the root, in `at` (s,) m, the stations.
 
-    `field`, `stiffness` (n, n) and `heat` (n,) are those without supports, of `shapes` shapes and then the root's
-    springs; `build` makes a structure of a field, a stiffness, a damping, by default that of the modes, a heat and
-    indices that are taken.
-    Those of `dependents` are, or some that suit, as many as there are rigid conditions. The places of the field are
-    polynomials that end at an `order`; None is without end.
+    The points of its `field` begin with the nodes of its `rule`. `field`, `stiffness` (n, n) and `heat` (n,) are those
+    without supports, of `shapes` shapes and then the root's springs. `build` makes a structure of a field, a stiffness,
+    a damping, by default that of the modes, a heat and indices that are taken. Those of `dependents` are, or some that
+    suit, as many as there are rigid conditions. The places of the field are polynomials that end at an `order`; None is
+    without end.
     """
     conditions, yielding = rigid_conditions(beam), yielding_conditions(beam)
     every = [*conditions, *yielding]
@@ -202,7 +204,7 @@ def hold(
     stiffness = stiffness + sprung.T @ (spring[:, None] * sprung)
     dashpots = sprung.T @ (damper[:, None] * sprung) + root_dashpots(beam, len(stiffness))
     if dependents is None:
-        sizes = (np.square(everywhere) + np.square(beam.length * turns)).sum(axis=(0, 1))
+        sizes = strain_sizes(beam, rule, everywhere, turns)
         dependents = chosen_dependents(conditions, held, sizes, shapes)
     basis = null_basis(held, dependents)
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)

@@ -27,6 +27,7 @@ from gbeam.structure.supports import DIRECTIONS
 FAMILY = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 2, "rz": 1}  # that moves or turns sections in a direction
 NEW = 1e-3  # of a static shape's length in energy: with less of it than that it is nearly one of the others
 ALIKE = 1e-9  # of a condition's length: less of it is nothing that the other conditions do not say
+THICK = 0.2  # radius of gyration, as a part of the length, by which sizes of stretch and bending are compared
 
 
 class Condition(NamedTuple):
@@ -230,13 +231,27 @@ def _new(rule: Quadrature, weight: Floats, family: int, plain: Family, statics: 
     return new
 
 
-def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, shapes: int) -> tuple[int, ...]:
-    """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest for how far
-    they move the beam. `sizes` (n,) are the squares of that motion, of rotations times the length.
+def strain_sizes(beam: Beam, rule: Quadrature, slopes: Floats, angles: Floats) -> Floats:
+    """Squared sizes (n,) of unit coordinates by their strains: energies of a beam whose section is a part THICK of its
+    length thick.
 
-    That is a stretch where a condition concerns one: as an arch snaps through, the bending that moves its end along x
-    does not any more. The first `shapes` of the coordinates are of shapes. Raise InputError where a condition says
-    nothing that those before do not say.
+    Of a slender beam bending has so little energy that it would hold the end of a shallow arch along x, which it does
+    not move any more as the arch snaps through. `slopes` and `angles` (p, 3, n) are the motions of its points, which
+    begin with the nodes of the rule.
+    """
+    nodes, (_, axes) = len(rule.node), beam.at_rest(rule.node)
+    angle = angles[:nodes]
+    tangent = np.broadcast_to(axes[:, :, 0, None], angle.shape)
+    stretch = np.gradient(slopes[:nodes], rule.node, axis=0) - np.cross(angle, tangent, axis=1)
+    bend = THICK * beam.length * np.gradient(angle, rule.node, axis=0)
+    return np.asarray(np.einsum("g,gan->n", rule.weight, stretch**2 + bend**2))
+
+
+def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, shapes: int) -> tuple[int, ...]:
+    """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest for their size.
+
+    `sizes` (n,) are those of :func:`strain_sizes`; the first `shapes` of the coordinates are of shapes. Raise
+    InputError where a condition says nothing that those before do not say.
     """
     scaled = rows[:, :shapes] / np.sqrt(sizes[:shapes])
     for k, condition in enumerate(conditions):

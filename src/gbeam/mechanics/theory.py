@@ -326,7 +326,9 @@ class _Parts:
         if grip is None:
             return build(field, stiffness, None, heat, ())
         stations, shapes = self.structure.stations, strains.shape[1]
-        return hold(self.beam, field, stiffness, heat, build, stations, self.first_station, shapes, grip.dependents)
+        return hold(
+            self.beam, self.rule, field, stiffness, heat, build, stations, self.first_station, shapes, grip.dependents
+        )
 
     def _build(
         self,

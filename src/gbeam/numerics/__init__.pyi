@@ -3,6 +3,7 @@
 from .balance import answered as answered
 from .balance import unheld as unheld
 from .bspline import Grid as Grid
+from .continuation import Curve as Curve
 from .eigen import positive_definite as positive_definite
 from .minimise import coarse as coarse
 from .minimise import minimise as minimise

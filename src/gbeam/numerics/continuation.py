@@ -48,10 +48,10 @@ class Curve:
     def begin(self, y: Floats, value: float, *, forward: bool = True) -> CurvePoint:
         """Point at coordinates y, a solution, from which the parameter grows, or falls where not `forward`."""
         _, k, pull = self.equations(y, value)
-        course = np.linalg.solve(k, -pull)
+        course: Floats = np.asarray(np.linalg.solve(k, -pull), dtype=float)
         size = self._size(course)
         if not size > 0:
-            raise ComputationError("not converged", "the loads move nothing")
+            raise ComputationError("not converged", "what grows moves nothing: critical-speed says where the equilibrium is lost")
         sign = 1.0 if forward else -1.0
         return CurvePoint(y, value, sign * course / size, sign / size, 0.0)
 

@@ -265,14 +265,18 @@ def equilibrium_path(facts: Facts) -> Blocks:
         words = f"{point['kind']} at {number(point['factor'])} times the {facts['quantity']}"
         yield Sentence(f"{motion}{words}{_error_clause(point['errors'])}{note}", "verdict")
     if not facts["critical"]:
-        end = number(facts["factor"][-1])
+        factor = number(facts["path"][-1]["factor"])
         yield Sentence(
-            f"{motion}it stays stable up to {end} times the {facts['quantity']}{_error_clause(facts['errors'])}{note}", "verdict"
+            f"{motion}stable up to {factor} times the {facts['quantity']}{_error_clause(facts['errors'])}{note}",
+            "verdict",
         )
     yield Items(tuple(filter(None, [facts["message"]])), "bad")
-    moved = zip(facts["points"], *(facts["moved"][axis] for axis in "xyz"), strict=True)
-    cells: Columns = {"point": "0"} | {f"{axis}, mm": f"{k}" for k, axis in enumerate("xyz", 1)}
-    yield table(moved, cells, f"Displacement at {number(facts['factor'][-1])} times the {facts['quantity']}, axes of the ground")
+    end = facts["path"][-1]
+    moved = zip(facts["points"], *(end["displacement"][axis] for axis in "xyz"), strict=True)
+    cells: Columns = {"point": "0", "x, mm": "1", "y, mm": "2", "z, mm": "3"}
+    yield table(
+        moved, cells, f"Displacement at {number(end['factor'])} times the {facts['quantity']}, axes of the ground"
+    )
     yield Section("Figure", (FIGURES,))
 
 

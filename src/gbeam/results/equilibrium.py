@@ -230,6 +230,8 @@ class CriticalPoint(Part):
 class EquilibriumPath(Decided, Figured[Literal["path"]]):
     """Equilibria of a system under its loads, or a motion, times a factor, also those that it leaves by a snap."""
 
+    json_rows: ClassVar[dict[str, str]] = {"step": "path"}
+
     motion: str = fact("name of the motion", note="empty where there is none")
     time: float = fact("time at which loads, drives and motion are frozen", "s")
     model: str = fact("kind of the model")
@@ -238,7 +240,7 @@ class EquilibriumPath(Decided, Figured[Literal["path"]]):
     points: tuple[str, ...] = labels("name of the point", "point", key="points")
     factor: Floats = entry("", "factor of the quantity along the path", "step", role="coordinate")
     displacement: Floats = entry(
-        "m", "displacement of the point from where the factor is zero", "step point axis", key=None, frame="ground"
+        "m", "displacement of the point from where the factor is zero", "step point axis", frame="ground"
     )
     q: Floats = internal("", "coordinates: m and rad of joints, their own of flexible bodies", "step coordinate")
     stable: Flags = entry("", "whether it would stay there", "step", flags=("unstable", "stable"))
@@ -251,10 +253,6 @@ class EquilibriumPath(Decided, Figured[Literal["path"]]):
         default_factory=ErrorEstimate,
     )
     error_note: str = fact(UNKNOWN, optional=True, default="")
-
-    @declared("m", "displacement of the point at the end of the path", "point axis", name=None, key="moved")
-    def end(self) -> Floats:
-        return self.displacement[-1]
 
     @property
     def most_moved(self) -> tuple[int, int]:

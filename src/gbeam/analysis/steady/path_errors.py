@@ -20,7 +20,7 @@ from gbeam.results.errors import ErrorEstimate
 
 FARTHER = 1.05  # of a path's length, to which richer models are followed
 SEEN = 0.05  # share of its size by which a richer model's path, read by a spline, may bend within a step
-FINE = 16  # points of a richer model's path for each of its own, between which a path is compared with it
+FINE = 16  # points of a richer model's path for each of its path, between which a path is compared with it
 
 
 def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[ErrorEstimate], tuple[str, ...]]:
@@ -38,7 +38,7 @@ def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[Er
         return Trace.of(follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN))
 
     try:
-        own, exact = Trace.of(followed), path_of(richer.exact.model)
+        path, exact = Trace.of(followed), path_of(richer.exact.model)
         same = exact if richer.same is richer.exact else path_of(richer.same.model)
         systems, plates = richer.systems_by_theory(loading.system) if richer.theories else ([], {})
         different = systems if any(plate.any() for plate in plates.values()) else systems[:2]
@@ -50,20 +50,20 @@ def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[Er
     def estimated(difference: Callable[[Trace, Trace], float]) -> ErrorEstimate:
         """Errors by a measure of the difference of two paths."""
         model = richer.model_share(difference(same, exact))
-        estimate = ErrorEstimate(0.0, difference(own, same), model, total=difference(own, exact))
+        estimate = ErrorEstimate(0.0, difference(path, same), model, total=difference(path, exact))
         if models:
             slender, *thick = models
             estimate = estimate.adding(beam_theory=max(difference(slender, other) for other in thick))
-        return estimate if rough is None else estimate.adding(mesh=difference(own, rough))
+        return estimate if rough is None else estimate.adding(mesh=difference(path, rough))
 
     along = estimated(Trace.distance)
-    kinds = [kind for kind, _ in own.critical]
+    kinds = [kind for kind, _ in path.critical]
     shares = [estimated(partial(Trace.difference_at, kind, kinds[:k].count(kind))) for k, kind in enumerate(kinds)]
     doubts = list[str]()
     worst = ErrorEstimate.from_largest([along, *shares])
     if worst.total > LIMIT:
         doubts.append(error_warning("the path", percent(worst.total), worst, ""))
-    first = min((factor for _, factor in own.critical), default=math.inf)
+    first = min((factor for _, factor in path.critical), default=math.inf)
     for model, other in [
         ("the exact model", exact),
         *(("a beam with shear and twist", thick) for thick in models[1:2]),
@@ -97,11 +97,18 @@ class Trace:
         """Largest distance of its points from another path, as a share of its largest factor or displacement."""
         from scipy.interpolate import CubicSpline
 
-        fine = np.interp(np.arange(FINE * len(other.length)) / FINE, np.arange(len(other.length)), other.length)
+        count = len(other.length)
+        fine = np.interp(np.linspace(0, count - 1, FINE * (count - 1) + 1), np.arange(count), other.length)
         size = np.abs(self.values).max(axis=0)
         size[1:] = size[1:].max()
         curve = CubicSpline(other.length, other.values / size)(fine)
-        return float(max(np.linalg.norm(curve - point, axis=1).min() for point in self.values / size))
+        chord = np.diff(curve, axis=0)
+        farthest = 0.0
+        for point in self.values / size:
+            along = ((point - curve[:-1]) * chord).sum(axis=1) / (chord**2).sum(axis=1)
+            nearest = curve[:-1] + np.clip(along, 0.0, 1.0)[:, None] * chord
+            farthest = max(farthest, float(np.linalg.norm(nearest - point, axis=1).min()))
+        return farthest
 
     def factors(self, kind: str) -> list[float]:
         """Load factors at critical points of a kind, in turn."""
@@ -109,8 +116,9 @@ class Trace:
 
     @staticmethod
     def difference_at(kind: str, k: int, one: Trace, other: Trace) -> float:
-        """Relative difference of the factors at the k-th critical points of a kind of two paths; infinite where one has
-        fewer.
+        """Difference of the factors at the k-th critical points of a kind of two paths, as a share of the first path's
+        largest; infinite where one has fewer.
         """
         factors = one.factors(kind)[k:], other.factors(kind)[k:]
-        return abs(factors[0][0] / factors[1][0] - 1) if all(factors) else math.inf
+        largest = max(abs(factor) for _, factor in one.critical)
+        return abs(factors[0][0] - factors[1][0]) / largest if all(factors) else math.inf

@@ -118,14 +118,14 @@ def follow(
         if left(following) < 0:
             following = curve.between(before, following, left)
         margin = loading.state(following).margin
-        found = None
+        critical_point = None
         if before.rate * following.rate < 0:
-            found = LIMIT_POINT, curve.between(before, following, lambda at: at.rate)
+            critical_point = LIMIT_POINT, curve.between(before, following, lambda at: at.rate)
         elif margins[-1] * margin < 0:
-            found = BRANCH_POINT, curve.interpolated(before, following, lambda at: loading.state(at).margin)
-        if found is not None:
-            critical.append(found)
-            points.append(found[1])
+            critical_point = BRANCH_POINT, curve.interpolated(before, following, lambda at: loading.state(at).margin)
+        if critical_point is not None:
+            critical.append(critical_point)
+            points.append(critical_point[1])
             margins.append(0.0)
         points.append(following)
         margins.append(margin)
