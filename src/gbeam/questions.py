@@ -258,7 +258,7 @@ def static(case: Case, motion: str | None = None, at: float | None = None, needs
     from gbeam.analysis.steady.static import static
 
     needs = replace(needs, errors=needs.errors or case.automatic)
-    if all(body.work is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
+    if all(body.history is None for body in case.system.flexible.values()):  # else the loads of a beam bend it
         case.require_motion()
     names = list(case.environments) if motion is None else [motion_of(case.environments, motion)]
     bases = {name: prepared(case, name) for name in names}

@@ -131,7 +131,7 @@ def test_a_scenario_says_temperatures_as_people_do(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("text", "change", "problem"), [
     ('"25 degC"', '"-300 degC"', "beam.temperature.value: is -26.85"),
     ('"25 degC"', '"25 deg"', "beam.temperature.value"),
-    (', expansion = "23e-6 1/K"', "", "material.expansion: is missing, and the beam has a temperature"),
+    (', expansion = "23e-6 1/K"', "", "material.expansion: is missing, and the body has a temperature"),
     ("axial = 1, ", "", "temperature: stretches the beam, and the model has no shapes along it"),
 ])  # fmt: skip
 def test_what_cannot_be_heated_is_refused(tmp_path: Path, text: str, change: str, problem: str) -> None:

@@ -324,6 +324,7 @@ def _structure(
         history=history,
         work=work,
         load_values=None if history is None else history(np.zeros(())),
+        heated=work is not None and work.heat is not None,
         damping_ratio=ratio,
         warnings=implausible_beam(beam, (counts[1] > 0, counts[2] > 0)),
         source=None if is_jax(c.mass) else source,

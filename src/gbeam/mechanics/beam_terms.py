@@ -91,7 +91,7 @@ def load_history(beam: Beam) -> LoadHistory | None:
 
     profiles = [tuple(map(profile, load.acting)) for load in beam.loads]
     if beam.temperature is not None:
-        profiles.append((beam.temperature.rise, profile(None)))
+        profiles.append(beam.temperature.profiles)
     return LoadHistory(tuple(profiles)) if profiles else None
 
 

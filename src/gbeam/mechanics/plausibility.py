@@ -393,7 +393,7 @@ def _warn_of_edgewise_bending(structure: Structure, motion: Any, base: Any, wher
 def _largest_loads(structure: Structure, span: tuple[float, float]) -> Any:
     """Largest sizes of the components of each load over a span of time, (loads, 6), without its temperature."""
     history: Any = structure.history
-    if structure.work is not None and structure.work.heat is not None:
+    if structure.heated:
         history = replace(history, profiles=history.profiles[:-1])
     if not history.profiles:
         return np.zeros((0, 6))

@@ -33,7 +33,10 @@ class Sections:
 
 
 class Recovery(Protocol):
-    """Results that a specimen's responses have beside its coordinates, such as the stress of a solid."""
+    """Results that a specimen's responses have beside its coordinates, such as the stress of a solid.
+
+    They are linear in n + h causes, coordinates and the rise of the temperature, K, h being 1 where it has one.
+    """
 
     @property
     def envelope(self) -> Array:
@@ -45,20 +48,22 @@ class Recovery(Protocol):
         """Nodes that each group of a mesh's clamp holds, in words, by its name."""
         ...
 
-    def parts(self, time: Array, base: Any, q: Array, *, motion: str, model: str, environment: str) -> dict[str, Any]:
-        """Fields of a response, by name, from its times (t,), base motion (t, 3) and coordinates (t, n)."""
+    def parts(
+        self, time: Array, base: Any, causes: Array, *, motion: str, model: str, environment: str
+    ) -> dict[str, Any]:
+        """Fields of a response, by name, from its times (t,), base motion (t, 3) and causes (t, n + h)."""
         ...
 
     def in_modes(self, modes: Array) -> Any:
         """Surface for pictures of modes (k, n) in its coordinates."""
         ...
 
-    def felt(self, q: Array) -> Array:
-        """Stress at coordinates (t, n) where it is largest, (t, c) Pa."""
+    def felt(self, causes: Array) -> Array:
+        """Stress by causes (t, n + h) where it is largest, (t, c) Pa."""
         ...
 
     def strain(self, point: str, along: Any) -> Array:
-        """Normal strain at a named point in a direction of its axes, by unit coordinates, (n,)."""
+        """Normal strain at a named point in a direction of its axes, by a unit of each cause, (n + h,)."""
         ...
 
 

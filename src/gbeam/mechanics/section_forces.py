@@ -19,6 +19,7 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, is_jax, namespace
 from gbeam.arrays.tree import each_leaf
+from gbeam.mechanics.causes import loads_at
 from gbeam.mechanics.fields.held import HeldField
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.fields.vectors import cross, joined, skew, split
@@ -65,7 +66,7 @@ def section_forces(
     if structure.sections is None:
         return add_hub_torques(_end_loads(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
     xp = namespace(q, base.a_WO_B)
-    applied = None if structure.history is None else structure.history(time)
+    applied = loads_at(structure, time)
     reactions = reactions_of(structure, base, q, qd, qdd, applied, hung)
     if reactions is not None:
         hung = reactions.with_hung(hung)
@@ -119,7 +120,7 @@ def _end_loads(
 ) -> Loads:
     """Loads at the root of a structure without sections, and at its tip, which carries nothing; without stress."""
     xp = namespace(q, base.a_WO_B)
-    applied = None if structure.history is None else structure.history(time)
+    applied = loads_at(structure, time)
     root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
     wrench = terms_of(structure).demanded(q, qd, qdd, root, applied)[1]
     demanded = [wrench.force, wrench.moment]

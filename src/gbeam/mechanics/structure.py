@@ -124,6 +124,8 @@ class Structure:
         Where they act on the field.
     load_values : (loads, 6) or None
         Components of the loads that static, modes and stability see: those of time zero, see :meth:`at_time`.
+    heated : bool
+        True if the last of the loads is the rise of its temperature, K, in the first component.
     damping_ratio : float, sequence of float or None
         Modal, of the modes at rest; None where none is given: then there is no damping, and no response either.
     warnings : tuple of str
@@ -177,6 +179,7 @@ class Structure:
     history: LoadHistory | None = None
     work: LoadWork | None = None
     load_values: Array | None = None
+    heated: bool = static(default=False)
     damping_ratio: Any = None
     warnings: tuple[str, ...] = static(default=())
     source: Source | None = static(default=None)

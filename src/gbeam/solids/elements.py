@@ -10,6 +10,7 @@ import numpy as np
 
 from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Flags, Floats, Indices
+from gbeam.numerics.sparse import add_to_rows
 from gbeam.solids.shape_functions import KINDS, jacobians, shape_functions
 from gbeam.solids.shells import FACTOR, shell_strains
 
@@ -27,7 +28,9 @@ TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # place of each component 
 
 @dataclass(frozen=True, eq=False)
 class Block(Value):
-    """Elements of one kind and one material: nodes (e, k), their numbers (e,) in the file, the material's name."""
+    """Elements of one kind and one material: nodes (e, k), their numbers (e,) in the file, the material's name, and its
+    strain `expansion` (3, 3) by a kelvin, zero where the mesh has no temperature.
+    """
 
     kind: str
     nodes: Indices
@@ -35,11 +38,12 @@ class Block(Value):
     material: str
     density: float
     elasticity: Floats
+    expansion: Floats
 
 
 class Part(NamedTuple):
     """Elements of a block at the q points of a rule: nodes (e, k), volumes (e, q), gradients (e, q, k, 3) of the shape
-    functions, and elasticity (..., 6, 6).
+    functions, elasticity (..., 6, 6), and displacements (e, k, 3) by a kelvin of nodes that are free to expand.
 
     Shells have strains (e, q, 6, k, 3) `assumed` per displacement, in place of those of the gradients.
     """
@@ -50,20 +54,32 @@ class Part(NamedTuple):
     gradients: Floats
     assumed: Floats | None
     elasticity: Floats
+    expanded: Floats
 
-    def slopes(self, u: Floats) -> Floats:
-        """Slopes (e, q, 3, 3, m) of displacements (k, 3, m) of all nodes: the axis along which, then the component."""
+    def hindered(self, u: Floats, rise: Floats | None) -> Floats:
+        """Displacements (e, k, 3, m) of the elements' nodes beyond free expansion, by those (k, 3, m) of all nodes."""
+        moved = u[self.nodes]
+        return moved if rise is None else moved - np.multiply.outer(self.expanded, rise)
+
+    def slopes(self, u: Floats, rise: Floats | None = None) -> Floats:
+        """Slopes (e, q, 3, 3, m) of displacements (k, 3, m) of all nodes: the axis along which, then the component.
+
+        Those of free expansion by a `rise` (m,) of the temperature, K, are left out of them.
+        """
         (e, q, k, _), m = self.gradients.shape, u.shape[-1]
         along = self.gradients.swapaxes(2, 3).reshape(e, 3 * q, k)
-        return (along @ u[self.nodes].reshape(e, k, 3 * m)).reshape(e, q, 3, 3, m)
+        return (along @ self.hindered(u, rise).reshape(e, k, 3 * m)).reshape(e, q, 3, 3, m)
 
-    def stress(self, u: Floats, slopes: Floats | None = None) -> Floats:
-        """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, whose `slopes` may be known."""
+    def stress(self, u: Floats, slopes: Floats | None = None, rise: Floats | None = None) -> Floats:
+        """Stresses (e, q, 6, m) under displacements (k, 3, m) of all nodes, whose `slopes` may be known, and under a
+        `rise` (m,) of the temperature, K.
+        """
         if self.assumed is not None:
             e, q, _, k, _ = self.assumed.shape
-            strained = self.assumed.reshape(e, q * 6, 3 * k) @ u[self.nodes].reshape(e, 3 * k, u.shape[-1])
+            moved = self.hindered(u, rise).reshape(e, 3 * k, u.shape[-1])
+            strained = self.assumed.reshape(e, q * 6, 3 * k) @ moved
             return np.asarray(self.elasticity @ strained.reshape(e, q, 6, u.shape[-1]))
-        slopes = self.slopes(u) if slopes is None else slopes
+        slopes = self.slopes(u, rise) if slopes is None else slopes
         law = (self.elasticity @ STRAIN.reshape(6, 9)).reshape(6, 3, 3).swapaxes(1, 2).reshape(6, 9)  # of slopes
         return np.asarray(law @ slopes.reshape(*slopes.shape[:2], 9, slopes.shape[-1]))
 
@@ -96,7 +112,8 @@ def chunks(points: Floats, blocks: Sequence[Block], degree: str, most: int = CHU
             if KINDS[block.kind].shell:
                 shear = np.sqrt(FACTOR) if degree == "stiffness" else 0.0
                 assumed, elasticity = shell_strains(points, nodes, block.kind, elasticity, rule, shear)
-            yield Part(block, nodes, np.linalg.det(base) * weights, gradients, assumed, elasticity)
+            volume, expanded = np.linalg.det(base) * weights, points[nodes] @ block.expansion
+            yield Part(block, nodes, volume, gradients, assumed, elasticity, expanded)
 
 
 def _assembled(size: int, blocks: Sequence[Block], width: int, parts: Iterable[Floats]) -> Any:
@@ -158,23 +175,35 @@ def mass_matrix(points: Floats, blocks: Sequence[Block]) -> Any:
     return _assembled(len(points), blocks, 1, parts())
 
 
-def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats, shapes: Floats) -> Floats:
-    """Geometric stiffness, to first order, of static displacements (k, 3, m) in `shapes` (k, 3, n).
+def geometric_stiffness(
+    points: Floats,
+    blocks: Sequence[Block],
+    static: Floats,
+    shapes: Floats,
+    *,
+    rise: float = 0.0,
+    strained: bool = True,
+) -> Floats:
+    """Geometric stiffness, to first order, of static displacements (k, 3, m) in `shapes` (k, 3, n), at a `rise` of the
+    temperature, K.
 
     It has two halves, (2, m, n, n). With Green's strain the first is the static stress in the squares of the shapes'
     slopes, and the second the stress of the shapes in their slopes as the static displacement turns them.
-    :func:`coupled` joins them.
+    :func:`coupled` joins them. Unless the body is `strained`, slopes are those of rotations alone: then what stretches
+    it evenly, as heat does, adds no stiffness against that stretch.
     """
     m, n = static.shape[-1], shapes.shape[-1]
     stressed, turned = np.zeros((2, m, n, n))
     for part in chunks(points, blocks, "stiffness", FEW):
         weights = part.volume.ravel()[:, None, None, None]
-        slopes, moved = part.slopes(shapes), part.slopes(static)
+        slopes, moved = part.slopes(shapes), part.slopes(static, rise * np.ones(m))
         shape_stress = part.stress(shapes, slopes).reshape(len(weights), 6, -1)[:, TENSOR] * weights
-        static_stress = part.stress(static, moved).reshape(len(weights), 6, -1)[:, TENSOR] * weights
+        static_stress = part.stress(static, moved, rise * np.ones(m)).reshape(len(weights), 6, -1)[:, TENSOR] * weights
         # Arrays of points, axes, components and shapes, flat in all but one of these.
-        tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
         across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
+        if not strained:
+            slopes, moved = (np.asarray((each - each.swapaxes(2, 3)) / 2) for each in (slopes, moved))
+        tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
         # Load by load in one piece each: products of small matrices that lie apart take four times as long.
         pulls = np.moveaxis(static_stress.reshape(-1, 3, 3, m), -1, 0).copy()
         turns = np.moveaxis(moved.reshape(-1, 3, 3, m), -1, 0).copy()
@@ -182,6 +211,21 @@ def geometric_stiffness(points: Floats, blocks: Sequence[Block], static: Floats,
             stressed[load] += tall.T @ (pulls[load] @ wide).reshape(-1, n)
             turned[load] += shape_stress.reshape(-1, n).T @ (turns[load] @ across).reshape(-1, n)
     return np.stack([stressed / 2, turned])
+
+
+def thermal_forces(points: Floats, blocks: Sequence[Block], swelling: Floats) -> Floats:
+    """Forces (3 k,) on the nodes by which a temperature 1 K above the reference strains the mesh, beyond the `swelling`
+    (k, 3) of its nodes that it brings: ∫ Bᵀ D (α − B s) dV.
+    """
+    forces = np.zeros((len(points), 3))
+    for part in chunks(points, blocks, "stiffness"):
+        stress = -part.stress(swelling[..., None], rise=np.ones(1))[..., 0] * part.volume[..., None]
+        if part.assumed is None:
+            of_elements = np.einsum("eqkb,eqbc->ekc", part.gradients, stress[..., TENSOR], optimize=True)
+        else:
+            of_elements = np.einsum("eqvkc,eqv->ekc", part.assumed, stress, optimize=True)
+        add_to_rows(forces, part.nodes.ravel(), of_elements.reshape(-1, 3))
+    return forces.ravel()
 
 
 def coupled(halves: Floats, stiffness: Floats) -> Floats:

@@ -11,6 +11,7 @@ from gbeam.arrays.types import Flags, Floats, Indices, Numbers
 from gbeam.solids.elements import Block, masses
 from gbeam.solids.held import HeldPlace
 from gbeam.solids.links import Links
+from gbeam.structure.temperature import Temperature
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,7 @@ class Mesh(Value):
     turns: dict[str, Numbers] = field(default_factory=dict)
     clamps: dict[str, int] = field(default_factory=dict)
     supports: tuple[HeldPlace, ...] = ()
+    temperature: Temperature | None = None
 
     @property
     def mass(self) -> float:

@@ -35,6 +35,7 @@ from gbeam.mechanics.tree.rigid_body import RigidBody
 from gbeam.solids.bending import bending
 from gbeam.solids.elements import coupled, geometric_stiffness, mass_matrix, stiffness_matrix
 from gbeam.solids.geometry import Mesh
+from gbeam.solids.heat import Heat
 from gbeam.solids.linked import Linked
 from gbeam.solids.links import WAYS, LinkSpring
 from gbeam.solids.model import SolidModel, attach_coarser, hardly_coarser
@@ -44,6 +45,7 @@ from gbeam.solids.stations import Stations
 from gbeam.solids.stress import NodalStress
 from gbeam.structure.material import Material, Orthotropic
 from gbeam.structure.supports import Support
+from gbeam.structure.temperature import Temperature
 
 LOCKED = "the error of the mesh is not known: meshes whose elements lock differ by less than they are wrong"
 
@@ -88,6 +90,8 @@ class SolidMesh(Mesh):
         Numbers of nodes that each group of the clamp holds, by its name.
     supports : tuple of HeldPlace
         Places that supports hold.
+    temperature : Temperature or None
+        Its temperature over time.
 
     Examples
     --------
@@ -174,6 +178,11 @@ class SolidMesh(Mesh):
             "which is held, a point, or an interface or rigid link by its mean motion. A node that the clamp or an "
             "earlier support holds in a direction is that one's",
         ] = (),
+        temperature: Annotated[
+            Temperature | None,
+            "temperature, the same in all of the mesh: { value, reference }; it needs the expansion of every material. "
+            "The base, and rigid links, do not expand",
+        ] = None,
         origin: Annotated[PositionVector, "the root in the mesh, whose acceleration the motion gives: [x, y, z]"] = (
             0.0,
             0.0,
@@ -215,8 +224,8 @@ class SolidMesh(Mesh):
         return read_solid(
             cls, source, materials=materials, clamp=clamp, unit=unit, thickness=thickness, element_size=element_size,
             points=points or {}, point_masses=point_masses or {}, interfaces=interfaces or {}, links=links or {},
-            carried=carried or {}, springs=springs or {}, supports=supports, origin=origin, turn=turn, scale=scale,
-            mass_unit=mass_unit,
+            carried=carried or {}, springs=springs or {}, supports=supports, temperature=temperature,
+            origin=origin, turn=turn, scale=scale, mass_unit=mass_unit,
         )  # fmt: skip
 
     def __repr__(self) -> str:
@@ -243,9 +252,10 @@ class SolidMesh(Mesh):
     ) -> SolidModel:
         """Reduce the solid to its lowest modes and its static answers to unit inertial loads.
 
-        Besides the modes there are up to twelve static answers to even accelerations and rotations of the base, and six
-        of each interface to forces and moments there (attachment modes: a reduction by Craig and Bampton about the
-        clamp). So steady loads of these kinds deform the solid as all of its elements would.
+        Besides the modes there are up to twelve static answers to even accelerations and rotations of the base, six of
+        each interface to forces and moments there (attachment modes: a reduction by Craig and Bampton about the clamp),
+        and one to a rise of the temperature. So steady loads of these kinds deform the solid as all of its elements
+        would.
 
         Returns
         -------
@@ -276,8 +286,9 @@ class SolidMesh(Mesh):
         mass = (linked.widened(mass_matrix(self.points, self.blocks), 1) + diags_array(linked.masses)).tocsr()
         # Body forces −1, −x, −y and −z along x, then along y, then along z.
         loads = inertial_loads(mass @ linear_fields(linked.points))
-        named = Stations.from_mesh(self)
-        loads = np.concatenate([loads, linked.widened_loads(named.forces)], axis=1)
+        named, heat = Stations.from_mesh(self), Heat.from_mesh(self)
+        heating = linked.widened_loads(heat.forces)
+        loads = np.concatenate([loads, linked.widened_loads(named.forces), heating], axis=1)
         stiffness = linked.elastic(stiffness_matrix(self.points, self.blocks))
         tied, stiffness = linked.tied_rows(stiffness), linked.condensed_stiffness(stiffness)
         places = [linked.held(i, place) for i, place in enumerate(self.supports)]
@@ -302,26 +313,34 @@ class SolidMesh(Mesh):
         shapes = everywhere[:count, :, :total]
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(named.centres)) for axis in range(3)]
-        stressed = [*range(12), *pushed]
-        halves = geometric_stiffness(self.points, self.blocks, static[:count, :, stressed], everywhere[:count])
+        cold, hot = [*range(12), *pushed], [*range(loads.shape[1] - heat.number, loads.shape[1])]
+        stressed, by_heat = [*cold, *hot], len(cold)
+        by_loads = geometric_stiffness(self.points, self.blocks, static[:count, :, cold], everywhere[:count])
+        by_rise = heat.geometric_stiffness(self, static[:count, :, hot], everywhere[:count])
+        halves = np.concatenate([by_loads, by_rise], axis=1)
         halves += left.geometric_stiffness(
             tied, mass, loads[:, stressed], reduced.static[:, stressed], reduced, linked.rotations(motions[:, total:])
         )
         lifted = everywhere[:count, :, total:]
-        pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes).sum(axis=0) if lifted.size else None
+        pulls = None
+        if lifted.size:
+            pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes, strained=False).sum(axis=0)
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
         locked = coarser is not None and bool(locking(self))
         doubts = () if coarser is None else (*hardly_coarser(coarser.mesh, self), *[LOCKED] * locked)
-        nodal, length = NodalStress.from_shapes(self, shapes), float(np.linalg.norm(linked.points, axis=1).max())
+        nodal = NodalStress.from_shapes(self, shapes, heat.swelling)
+        length = float(np.linalg.norm(linked.points, axis=1).max())
+        heated = motions.T @ linked.condensed(heating)
 
         def moving(chosen: Any, stiffness: Floats, fields: Floats, damping_ratio: Any) -> Structure:
             """Structure in the chosen of all motions, with its geometric stiffness by the loads' `fields`."""
             masses, *paths = particles_of(linked.points, everywhere[..., chosen], mass)
             inertial = fields[:12].reshape(3, 4, *stiffness.shape)
             stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
-            stations, turns = named.expansion(everywhere[:count, :, chosen], fields[12:])
+            stations, turns = named.expansion(everywhere[:count, :, chosen], fields[12:by_heat])
+            terms = heat.terms(heated[chosen], fields[by_heat:])
             return linear_structure(
-                coefficients(masses, Places(*paths), stiffness, geometric=stress),
+                coefficients(masses, Places(*paths), stiffness, geometric=stress, loads=terms),
                 masses,
                 Places(*paths),
                 stations,
@@ -339,7 +358,7 @@ class SolidMesh(Mesh):
             stiffness = reduced.stiffness[:n, :n]
             fields = coupled(halves[..., :n, :n], stiffness)
             structure = moving(slice(n), stiffness, fields, damping_ratio)
-            structure = replace(structure, recovery=replace(nodal, size=n))
+            structure = replace(heat.apply(structure), recovery=replace(nodal, size=n))
             if not holding.places:
                 return structure
             chosen = np.r_[:n, total : everywhere.shape[2]]

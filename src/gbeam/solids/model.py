@@ -10,6 +10,7 @@ from gbeam.arrays.tree import Value
 from gbeam.arrays.types import Floats, Indices
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
+from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
 from gbeam.results.equilibrium import Rest
@@ -113,9 +114,10 @@ class SolidModel(Value):
             problem = f"is of {bent.model}, with {q.shape[1]} coordinates"
             raise InputError("answer", problem, f"give one of this {self.structure.kind} with {self.structure.size}")
         time = np.atleast_1d(np.asarray(answer.time, dtype=float))
+        causes = causes_of(self.structure, q, loads_at(self.structure, time))
         name = answer.name if isinstance(answer, Response) else answer.motion
         origin = {"motion": name, "model": bent.model, "warnings": answer.warnings, "provenance": answer.provenance}
-        return solid_stress(self._nodal, time, q, **origin)
+        return solid_stress(self._nodal, time, causes, **origin)
 
 
 def attach_coarser(coarser: SolidModel, finer: Structure) -> Structure:
@@ -134,6 +136,9 @@ def attach_coarser(coarser: SolidModel, finer: Structure) -> Structure:
     if structure.size < n or coarser.structure.resolved < finer.resolved:
         problem = f"has {coarser.structure.resolved} modes, and the mesh {finer.resolved}"
         raise InputError("coarser", problem, "give it as many, or more nodes")
+    if structure.heated != finer.heated:
+        words = "a temperature, and the mesh none" if structure.heated else "no temperature, and the mesh one"
+        raise InputError("coarser", f"has {words}", "give it the same")
     for noun, have, want in (
         ("points", structure.points, finer.points),
         ("materials", tuple(dict.fromkeys(rough.material)), tuple(dict.fromkeys(fine.material))),

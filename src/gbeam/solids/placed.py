@@ -103,8 +103,10 @@ class Placed:
         on_side = arms @ (place - middles[points[0]]) > MIDDLE * (arms**2).sum(axis=1)
         return int(points[on_side.argmax()])
 
-    def blocks(self, materials: Any) -> tuple[Block, ...]:
-        """Blocks of elements of each kind and material, one for all or by groups, with axes turned like the mesh."""
+    def blocks(self, materials: Any, *, heated: bool) -> tuple[Block, ...]:
+        """Blocks of elements of each kind and material, one for all or by groups, with axes turned like the mesh, and
+        with their expansions if the mesh is `heated`.
+        """
         owner = assigned(self.mesh, "materials", materials, (part.block for part in self.elements))
         without = sum(int((owner[part.block][part.which] < 0).sum()) for part in self.elements)
         if without:
@@ -117,6 +119,7 @@ class Placed:
             try:
                 turned = replace(material, axes=np.asarray(material.axes) @ self.rotation.T) if has_axes else material
                 elasticity = turned.elasticity
+                expansion = np.asarray(turned.thermal_strain) if heated else np.zeros((3, 3))
             except InputError as error:
                 raise error.within(where) from None
             for (i, which, kind, _, thickness), nodes in zip(self.elements, self.points_of, strict=True):
@@ -124,8 +127,8 @@ class Placed:
                 if thickness is not None and has_axes:
                     refuse_oblique(where, self.points, nodes[chosen], kind, turned.axes)
                 if chosen.any():
-                    element_numbers, density = numbers[i][which[chosen]], float(material.density)
-                    blocks.append(Block(kind, nodes[chosen], element_numbers, names[name], density, elasticity))
+                    which, density = numbers[i][which[chosen]], float(material.density)
+                    blocks.append(Block(kind, nodes[chosen], which, names[name], density, elasticity, expansion))
         return tuple(blocks)
 
 

@@ -25,6 +25,7 @@ from gbeam.solids.plausibility import doubts_of, refuse_folded, refuse_loose, re
 from gbeam.structure.attachments import TIP
 from gbeam.structure.material import Material, Orthotropic
 from gbeam.structure.supports import Support
+from gbeam.structure.temperature import Temperature
 
 M = TypeVar("M", bound=Mesh)
 
@@ -45,6 +46,7 @@ def read_solid(
     carried: Mapping[str, RigidBody],
     springs: Mapping[str, LinkSpring],
     supports: Sequence[Support],
+    temperature: Temperature | None,
     origin: Numbers,
     turn: Numbers,
     scale: Numbers,
@@ -68,7 +70,7 @@ def read_solid(
     tip = named.pop(TIP, None)
     stations = named | {TIP: _free_tip(placed, clamped, held) if tip is None else tip}
     weights = _spread(placed, stations, point_masses) + lumped
-    blocks = placed.blocks(materials)
+    blocks = placed.blocks(materials, heated=temperature is not None)
     by_group = materials if isinstance(materials, Mapping) else {"": materials}
     names = shared_names(by_group)
     kinds = {names[name]: material for name, material in by_group.items()}
@@ -88,6 +90,7 @@ def read_solid(
         turns={name: tuple(place.turn) for name, place in points.items() if isinstance(place, Place)},
         clamps={name: len(np.unique(placed.numbers[nodes])) for name, nodes in clamps.items()},
         supports=held,
+        temperature=temperature,
     )
     refuse_folded(solid)
     refuse_twice(solid)

@@ -329,7 +329,9 @@ class RigidSpecimen(Value):
         """Nothing: it is held by its root, not by nodes."""
         return {}
 
-    def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
+    def parts(
+        self, time: Floats, base: Any, causes: Floats, *, motion: str, model: str, environment: str
+    ) -> dict[str, Any]:
         """Return the loads of a response of the :attr:`structure`, by the name of its field.
 
         Parameters
@@ -338,7 +340,7 @@ class RigidSpecimen(Value):
             s.
         base : Base
             Of the root, (t, 3).
-        q : (t, 0)
+        causes : (t, 0)
             Coordinates, of which it has none.
         motion, model, environment : str
             Names of the response's.
@@ -354,15 +356,15 @@ class RigidSpecimen(Value):
             Coordinates.
         """
 
-    def felt(self, q: Floats) -> Floats:
+    def felt(self, causes: Floats) -> Floats:
         """Return no number: the stress of a rigid body is not known.
 
         Parameters
         ----------
-        q : (t, 0)
+        causes : (t, 0)
             Coordinates.
         """
-        return np.full((len(q), 1), np.nan)
+        return np.full((len(causes), 1), np.nan)
 
     def strain(self, point: str, along: Any) -> Floats:
         """Refuse a strain, which a rigid body has none of.

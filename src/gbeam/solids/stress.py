@@ -38,10 +38,11 @@ class NodalStress(Value):
     """Stresses of a mesh by the first `size` of n coordinates: displacements `every_shape` (k, 3, n) of its nodes and
     stresses `every_table` (p, 6, n) per unit coordinate.
 
-    A pair is a node and a material of its elements; `known` (p,) is its number, material · nodes + node. `felt_at` are
-    the pairs that some coordinate stresses most. Once a coarser mesh was `compared`, `singular` (p,) flags those where
-    stress grows without limit as a mesh gets finer; where these would be too many, `excess` is the number of their
-    nodes, and none is flagged.
+    Its causes are these coordinates and h = 0 or 1 rise of the temperature, K, by whose unit nodes move by `swelling`
+    (k, 3, h), while the coordinates are held, and stresses change by `heat` (p, 6, h). A pair is a node and a material
+    of its elements; `known` (p,) is its number, material · nodes + node. `felt_at` are the pairs that some coordinate
+    stresses most. Once a coarser mesh was `compared`, `singular` (p,) flags those where stress grows without limit as a
+    mesh gets finer; where these would be too many, `excess` is the number of their nodes, and none is flagged.
     """
 
     mesh: Mesh
@@ -52,31 +53,37 @@ class NodalStress(Value):
     size: int
     felt_at: Indices
     singular: Flags
+    swelling: Floats
+    heat: Floats
     compared: bool = False
     excess: int = 0
 
     @classmethod
-    def from_shapes(cls, mesh: Mesh, shapes: Floats) -> Self:
-        """Compute the stresses in shapes (k, 3, n) of the nodes.
+    def from_shapes(cls, mesh: Mesh, shapes: Floats, swelling: Floats | None = None) -> Self:
+        """Compute the stresses in shapes (k, 3, n) of the nodes, and by heat with a `swelling` (k, 3, h).
 
         They are extrapolated to the nodes in each element, and averaged over the elements of one material.
         """
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
         known = np.unique(np.concatenate(pairs))
-        no_flags = np.zeros(len(known), dtype=bool)
-        empty = cls(mesh, shapes, hull(mesh.points), known, np.empty((0, 6, n)), n, known[:0], no_flags)
-        total, shared = np.zeros((len(known), 6, n)), np.zeros(len(known))
+        no_flags, swelling = np.zeros(len(known), dtype=bool), np.zeros((count, 3, 0)) if swelling is None else swelling
+        nothing = np.empty((0, 6, n))
+        empty = cls(mesh, shapes, hull(mesh.points), known, nothing, n, known[:0], no_flags, swelling, nothing)
+        causes = n + swelling.shape[-1]
+        total, shared = np.zeros((len(known), 6, causes)), np.zeros(len(known))
         for element_pairs, stresses in empty.elements(mesh.blocks):
-            pair, stress = element_pairs.ravel(), stresses.reshape(-1, 6, n)
+            pair, stress = element_pairs.ravel(), stresses.reshape(-1, 6, causes)
             add_to_rows(total, pair, stress)
             add_to_rows(shared, pair, np.ones(len(pair)))
-        whole = replace(empty, every_table=total / shared[:, None, None])
+        every_table, heat = np.split(total / shared[:, None, None], [n], axis=-1)
+        whole = replace(empty, every_table=every_table, heat=heat)
         return replace(whole, felt_at=whole.most_stressed(np.arange(len(known))))
 
     def most_stressed(self, pairs: Indices) -> Indices:
-        """Pairs, among `pairs`, at which the von Mises stress of some coordinate is largest."""
-        sizes = von_mises(np.moveaxis(self.every_table[pairs], 1, 2))
+        """Pairs, among `pairs`, at which the von Mises stress of some coordinate, or by heat, is largest."""
+        every = np.concatenate([self.every_table[pairs], self.heat[pairs]], axis=-1)
+        sizes = von_mises(np.moveaxis(every, 1, 2))
         return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 
     @property
@@ -86,8 +93,17 @@ class NodalStress(Value):
 
     @property
     def table(self) -> Floats:
-        """Stresses at the pairs by unit coordinates, (p, 6, n)."""
-        return self.every_table[..., : self.size]
+        """Stresses at all pairs by a unit of each cause, (p, 6, n + h)."""
+        return self.stresses(slice(None))
+
+    def stresses(self, pairs: Any) -> Floats:
+        """Stresses at pairs, of an index, slice or array, by a unit of each cause, (..., 6, n + h)."""
+        return np.concatenate([self.every_table[pairs][..., : self.size], self.heat[pairs]], axis=-1)
+
+    @property
+    def moved(self) -> Floats:
+        """Displacements of the nodes by a unit of each cause, (k, 3, n + h)."""
+        return np.concatenate([self.shapes, self.swelling], axis=-1)
 
     @property
     def node(self) -> Indices:
@@ -107,7 +123,7 @@ class NodalStress(Value):
         return [names[i] for i in self.known // len(self.mesh.points)]
 
     def strain(self, point: str, along: Any) -> Floats:
-        """Normal strain (n,) at a named point per unit coordinate, in a direction of the point's axes."""
+        """Normal strain (n + h,) at a named point by a unit of each cause, in a direction of the point's axes."""
         if point not in self.mesh.named_points:
             raise InputError("at", f"is {point!r}", f"choose from {', '.join(self.mesh.named_points)}")
         x, y, z = self.mesh.axes(point) @ np.asarray(along, dtype=float) / np.linalg.norm(along)
@@ -126,64 +142,70 @@ class NodalStress(Value):
         return np.asarray(order[np.unique(self.node[order], return_index=True)[1]])
 
     def strained(self, pairs: Indices) -> Floats:
-        """Mean strains (6, n) at pairs per unit coordinate, with twice the tensor's shear. They follow from the
+        """Mean strains (6, n + h) at pairs by a unit of each cause, with twice the tensor's shear. They follow from the
         stresses by the elasticity of each material.
         """
-        materials, total = self.material, np.zeros(self.table.shape[1:])
+        materials, table = self.material, self.stresses(pairs)
+        total = np.zeros(table.shape[1:])
         for name in {materials[pair] for pair in pairs}:
             elasticity = next(block.elasticity for block in self.mesh.blocks if block.material == name)
-            alike = [pair for pair in pairs if materials[pair] == name]
-            total += np.linalg.solve(elasticity, self.table[alike].sum(axis=0))
+            alike = np.array([materials[pair] == name for pair in pairs])
+            total += np.linalg.solve(elasticity, table[alike].sum(axis=0))
         return np.asarray(total / len(pairs))
 
-    def parts(self, time: Floats, base: Any, q: Floats, *, motion: str, model: str, environment: str) -> dict[str, Any]:
-        """Fields of a response to coordinates q (t, n): the stress, and the surface in motion at some of the times."""
+    def parts(
+        self, time: Floats, base: Any, causes: Floats, *, motion: str, model: str, environment: str
+    ) -> dict[str, Any]:
+        """Fields of a response by causes (t, n + h): the stress, and the surface in motion at some of the times."""
         shown = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
-        skin, sizes = self._skin(q[shown])
+        skin, sizes = self._skin(causes[shown])
         surface = Surface(**skin, time=time[shown], sizes=sizes)
-        return {"solid": solid_stress(self, time, q, motion=motion, model=model), "surface": surface}
+        return {"solid": solid_stress(self, time, causes, motion=motion, model=model), "surface": surface}
 
     def in_modes(self, modes: Complex) -> SurfaceModes:
         """The surface as it moves in modes (k, n)."""
-        skin, sizes = self._skin(np.concatenate([modes.real, modes.imag]))
+        skin, sizes = self._skin(np.pad(np.concatenate([modes.real, modes.imag]), ((0, 0), (0, self.heat.shape[-1]))))
         return SurfaceModes(**skin, sizes=sizes[: len(modes)] + 1j * sizes[len(modes) :])
 
     def _skin(self, q: Floats) -> tuple[dict[str, Any], Floats]:
-        """Fields of the surface with its s principal shapes under coordinates q (t, n), and their sizes (t, s).
+        """Fields of the surface with its s principal shapes under causes q (t, n + h), and their sizes (t, s).
 
-        The shapes are those of a singular value decomposition, in which coordinates count by the stress that they make.
+        The shapes are those of a singular value decomposition, in which causes count by the stress that they make.
         """
         vertices, triangles = surface_of(self.mesh)
         count = len(self.mesh.points)
         # At a vertex of two materials the first.
         first = np.full(count, -1)
         first[self.node[::-1]] = np.arange(len(self.known))[::-1]
-        stress = self.table[first[vertices]]
+        stress, moved = self.stresses(first[vertices]), self.moved[vertices]
         size = np.sqrt((stress**2).sum(axis=(0, 1)))
         left, sizes, right = np.linalg.svd(q * size, full_matrices=False)
         kept = max(1, int((sizes > ENOUGH * sizes[0]).sum()))
-        mixed = (right[:kept] / np.where(size > 0, size, np.inf)).T  # coordinates of unit shapes
+        mixed = (right[:kept] / np.where(size > 0, size, np.inf)).T  # causes of unit shapes
         skin = {
             "vertices": self.mesh.points[vertices],
             "triangles": triangles,
-            "shapes": np.moveaxis(self.shapes[vertices] @ mixed, -1, 0),
+            "shapes": np.moveaxis(moved @ mixed, -1, 0),
             "stress": np.moveaxis(stress @ mixed, -1, 0),
             "judged": ~self.singular[first[vertices]],
         }
         return skin, left[:, :kept] * sizes[:kept]
 
     def elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
-        """Yield pairs (e, k) at the nodes of some blocks' elements, and unit coordinates' stresses there, (e, k, 6,
-        n).
+        """Yield pairs (e, k) at the nodes of some blocks' elements, and stresses there by a unit of each cause, (e, k,
+        6, n + h).
         """
-        names, count = _materials(self.mesh), len(self.mesh.points)
+        names, count, moved = _materials(self.mesh), len(self.mesh.points), self.moved
+        rise = np.repeat([0.0, 1.0], [self.size, moved.shape[-1] - self.size])
         for part in chunks(self.mesh.points, blocks, "stress"):
             pair = np.searchsorted(self.known, names.index(part.block.material) * count + part.nodes)
-            outward, stress = extrapolation(part.block.kind), part.stress(self.shapes)
+            outward, stress = extrapolation(part.block.kind), part.stress(moved, rise=rise)
             yield pair, np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
 
     def spread(self, pair: int, q: Floats) -> float:
-        """Range of von Mises stress at q (n,) among the elements that share a pair, as a fraction of their mean's."""
+        """Range of von Mises stress by causes q (n + h,) among the elements that share a pair, as a share of the
+        mean's.
+        """
         number, node = divmod(int(self.known[pair]), len(self.mesh.points))
         material = _materials(self.mesh)[number]
         around = [
@@ -192,12 +214,12 @@ class NodalStress(Value):
             if block.material == material
         ]
         parts = [stress[pairs == pair] @ q for pairs, stress in self.elements(around)]
-        mean = float(von_mises(self.table[pair] @ q))
+        mean = float(von_mises(self.stresses(pair) @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
-    def felt(self, q: Floats) -> Floats:
-        """Stress components (t, c) over time at the pairs `felt_at`."""
-        return np.asarray(np.tensordot(q, self.table[self.felt_at], (1, 2)).reshape(len(q), -1))
+    def felt(self, causes: Floats) -> Floats:
+        """Stress components (t, c) over time at the pairs `felt_at`, by causes (t, n + h)."""
+        return np.asarray(np.tensordot(causes, self.stresses(self.felt_at), (1, 2)).reshape(len(causes), -1))
 
     def histories(self, q: Floats) -> tuple[Floats, Indices, Floats]:
         """Largest von Mises stress of every pair over time, (p,), the time at which, (p,), and the largest of all pairs
@@ -328,10 +350,10 @@ def critical_plane_stress(stress: Floats) -> Floats:
 
 
 def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> SolidStress:
-    """Return the stress at coordinates (t, n) at times (t,), with the fields `about` its origin."""
+    """Return the stress by causes (t, n + h) at times (t,), with the fields `about` its origin."""
     from scipy.spatial import cKDTree
 
-    mesh, node_of, materials = nodal.mesh, nodal.node, nodal.material
+    mesh, node_of, materials, table = nodal.mesh, nodal.node, nodal.material, nodal.table
     largest, when, over = nodal.histories(q)
     strengths = np.array([mesh.strengths.get(name, np.inf) for name in materials])
     exponents = np.array([mesh.exponents.get(name, np.nan) for name in materials])
@@ -344,7 +366,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         t, node, strength = int(when[pair]), int(node_of[pair]), float(strengths[pair])
         return StressAt(
             von_mises=float(largest[pair]),
-            principal=principal(nodal.table[pair] @ q[t]),
+            principal=principal(table[pair] @ q[t]),
             time=float(time[t]),
             place=mesh.points[node],
             node=int(mesh.numbers[node]),
@@ -361,7 +383,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         singular = {"singular": stress_at(top), "singular_nodes": len(nodes), "singular_depth": float(depth)}
     names = mesh.named_points
     chosen = [nodal.pairs_at(name, largest) for name in names]
-    tables = np.stack([[nodal.table[pairs].mean(axis=0), nodal.strained(pairs)] for pairs in chosen], axis=1)
+    tables = np.stack([[table[pairs].mean(axis=0), nodal.strained(pairs)] for pairs in chosen], axis=1)
     stress, strain = np.einsum("kpvn,tn->ktpv", tables, q, optimize=True)
     axes = [mesh.axes(name) for name in names]
     stresses = [turned(tensor, to) for tensor, to in zip(stress.swapaxes(0, 1), axes, strict=True)]
@@ -383,7 +405,7 @@ def solid_stress(nodal: NodalStress, time: Floats, q: Floats, **about: Any) -> S
         point_strain=np.stack(strains, axis=1),
         materials=tuple(kinds),
         exponents=exponents[foremost],
-        material_normal=np.stack([critical_plane_stress(q @ nodal.table[pair].T) for pair in foremost], axis=1),
+        material_normal=np.stack([critical_plane_stress(q @ table[pair].T) for pair in foremost], axis=1),
         point_normal=np.stack([critical_plane_stress(tensor) for tensor in stress.swapaxes(0, 1)], axis=1),
         point_exponent=exponents[[pairs[0] for pairs in chosen]],
         nodes=mesh.points,

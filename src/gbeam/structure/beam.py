@@ -136,9 +136,8 @@ class Beam(Value):
         if self.temperature is not None:
             if self.material is None:
                 raise InputError("temperature", "is given beside a section by matrices", "leave it out")
-            if self.material.expansion is None:
-                problem = "is missing, and the beam has a temperature"
-                raise InputError("material.expansion", problem, 'give it, such as "23e-6 1/K"')
+            with placing_within("material"):
+                _ = self.material.thermal_strain
         self._hold()
         ratios = self.damping_ratio
         if ratios is None or holds_jax(ratios):

@@ -68,6 +68,13 @@ class Material(Value):
             raise InputError("poissons_ratio", f"is {ratio:g}", fix)
 
     @property
+    def thermal_strain(self) -> Any:
+        """Strain (3, 3) by a kelvin; an InputError where the expansion is missing."""
+        if self.expansion is None:
+            raise _no_expansion("expansion", '"23e-6 1/K"')
+        return self.expansion * np.eye(3)
+
+    @property
     def ratio(self) -> Any:
         """Poisson's ratio, 0.3 where it is not given."""
         return ASSUMED_RATIO if self.poissons_ratio is None else self.poissons_ratio
@@ -94,6 +101,11 @@ class Material(Value):
         elasticity = np.diag([2 * shear] * 3 + [shear] * 3)
         elasticity[:3, :3] += 2 * shear * ratio / (1 - 2 * ratio)
         return elasticity
+
+
+def _no_expansion(name: str, such: str) -> InputError:
+    """Error about the key `name` of a material without expansion."""
+    return InputError(name, "is missing, and the body has a temperature", f"give it, such as {such}")
 
 
 def isotropic(material: Material) -> Any:
@@ -134,13 +146,17 @@ class Orthotropic(Value):
     axes: Annotated[
         Annotated[ArrayLike, Quantity("ratio"), Shape((2, 3))], "directions of its axes 1 and 2, in axes of the mesh"
     ] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    expansions: Annotated[
+        Annotated[Numbers, Quantity("expansion"), Shape((3,))] | None,
+        "strains along its axes 1, 2 and 3 by a kelvin; of bodies that have a temperature",
+    ] = None
     yield_strength: ClassVar[None] = None
     fatigue_exponent: ClassVar[float] = FATIGUE_EXPONENT
 
     def __post_init__(self) -> None:
         """Refuse axes that are not perpendicular, and moduli and ratios with which a strain has no energy."""
-        for name in ("youngs_moduli", "poissons_ratios", "shear_moduli"):
-            if len(getattr(self, name)) != 3:
+        for name in ("youngs_moduli", "poissons_ratios", "shear_moduli", "expansions"):
+            if getattr(self, name) is not None and len(getattr(self, name)) != 3:
                 raise InputError(name, f"has {len(getattr(self, name))} values", "give three")
         axes = np.asarray(self.axes, dtype=float)
         lengths = np.linalg.norm(axes, axis=1) if axes.shape == (2, 3) else np.zeros(2)
@@ -163,10 +179,22 @@ class Orthotropic(Value):
         return compliance
 
     @property
+    def _columns(self) -> Any:
+        """Directions (3, 3) of its axes, in columns."""
+        first, second = (axis / np.linalg.norm(axis) for axis in np.asarray(self.axes, dtype=float))
+        return np.stack([first, second, np.cross(first, second)], axis=1)
+
+    @property
+    def thermal_strain(self) -> Any:
+        """Strain (3, 3) by a kelvin, base axes; an InputError where the expansions are missing."""
+        if self.expansions is None:
+            raise _no_expansion("expansions", '["16e-6 1/K", "16e-6 1/K", "55e-6 1/K"]')
+        return (self._columns * np.asarray(self.expansions)) @ self._columns.T
+
+    @property
     def elasticity(self) -> Any:
         """Stresses (6, 6) Pa of unit strains xx, yy, zz, yz, xz, xy, base axes, with twice the tensor's shear."""
-        first, second = (axis / np.linalg.norm(axis) for axis in np.asarray(self.axes, dtype=float))
-        turned = np.stack([first, second, np.cross(first, second)], axis=1)
+        turned = self._columns
         pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
         voigt = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
         tensor = np.linalg.inv(self._compliance)[voigt[:, :, None, None], voigt]

@@ -12,6 +12,7 @@ from gbeam.arrays.tree import Value, record
 from gbeam.arrays.types import Floats
 from gbeam.guards.arguments import typed
 from gbeam.guards.quantities import Quantity
+from gbeam.motion.profiles.piecewise import constant
 from gbeam.motion.profiles.profile import Profile
 
 
@@ -49,9 +50,9 @@ class Temperature(Value):
     ]
 
     @property
-    def rise(self) -> Rise:
-        """Rise above the reference over time."""
-        return Rise(self.value, self.reference)
+    def profiles(self) -> tuple[Rise, Any]:
+        """Rise above the reference over time and zeros, in place of the force and moment of a load."""
+        return Rise(self.value, self.reference), constant(np.zeros(3))
 
 
 @record

@@ -22,6 +22,7 @@ from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import replace_stations
+from gbeam.mechanics.causes import causes_of
 from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.reactions import demanded_with_supports
 from gbeam.mechanics.recovery import Sections
@@ -86,9 +87,9 @@ class Outputs:
 
     They are displacement and absolute acceleration of the tip, root moment, strains, displacement and acceleration of
     other `points` (numbers of stations), and a free hub's angle and rate. Strains of beams are section forces times
-    `strains` (gauges, 6) at the sections `at`, those of solids are coordinates times `shares` (gauges, n). u has the
-    torque on a free hub, or the base's acceleration, angular velocity and angular acceleration, and then the components
-    of the loads.
+    `strains` (gauges, 6) at the sections `at`, those of solids are their causes times `shares` (gauges, n + h). u has
+    the torque on a free hub, or the base's acceleration, angular velocity and angular acceleration, and then the
+    components of the loads.
     """
 
     structure: Structure
@@ -117,8 +118,7 @@ class Outputs:
     @property
     def idle(self) -> int:
         """Number of components of the loads that are no inputs: of a temperature, behind them, all but the first."""
-        work = self.structure.work
-        return 0 if work is None or work.heat is None else 5
+        return 5 * self.structure.heated
 
     def __call__(self, y: Array, yd: Array, ydd: Array, u: Array) -> Array:
         """Outputs (t, p) of states (t, n) and inputs (t, m)."""
@@ -133,7 +133,7 @@ class Outputs:
         moved = self.structure.displacement(q)
         # Accelerations are of the root and the stations, displacements of the stations alone.
         named = np.concatenate([moved[:, self.points], a[:, self.points + 1]], axis=-1).reshape(len(y), -1)
-        strains = strain, q @ self.shares.T
+        strains = strain, causes_of(self.structure, q, loads) @ self.shares.T
         return np.concatenate([moved[:, -1], a[:, -1], -moment[:, 0], *strains, named, y[:, :i], yd[:, :i]], axis=-1)
 
     def inputs(self, u: Array) -> Inputs:
@@ -199,12 +199,11 @@ def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
         signals = [Signal(f"base_{named_acceleration(motion)}_{i}", "m/s^2") for i in "xyz"]
         signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
     if structure.work is not None:
-        heated = structure.work.heat is not None
         counts = np.bincount(np.asarray(structure.work.load))
-        for k, per in enumerate("/m" if points > 1 else "" for points in counts[: len(counts) - heated]):
+        for k, per in enumerate("/m" if points > 1 else "" for points in counts[: len(counts) - structure.heated]):
             signals += [Signal(f"load_{k + 1}_force_{i}", f"N{per}") for i in "xyz"]
             signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{per}") for i in "xyz"]
-        signals += [Signal("temperature", "K")] * heated
+    signals += [Signal("temperature", "K")] * structure.heated
     return tuple(signals)
 
 
@@ -231,11 +230,12 @@ def points_of(structure: Structure) -> dict[str, int]:
 
 def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge]) -> Outputs:
     """Build the outputs of one body in a state of its system."""
-    measured, shares = structure.sections, np.zeros((0, structure.size))
+    measured, causes = structure.sections, structure.size + structure.heated
+    shares = np.zeros((0, causes))
     strains, at, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # rows of the sections: root and tip
     if measured is None:
         by_gauge = [_solid_gauge(structure, i, gauge) for i, gauge in enumerate(gauges)]
-        shares, gauges = np.array(by_gauge).reshape(-1, structure.size), ()
+        shares, gauges = np.array(by_gauge).reshape(-1, causes), ()
         mass, count = structure.mass, len(structure.stations)
         outboard_mass = np.concatenate([mass[None], np.zeros((count, len(mass)))])
         measured = Sections(None, outboard_mass, np.zeros((count + 1, 0)), np.eye(3))
@@ -297,7 +297,7 @@ def _beam_gauges(structure: Structure, gauges: Mapping[int, Gauge]) -> tuple[Flo
 
 
 def _solid_gauge(structure: Structure, i: int, gauge: Gauge) -> Floats:
-    """Strains (n,) at gauge number i on a solid per unit coordinate; InputError if the body is no mesh."""
+    """Strains (n + h,) at gauge number i on a solid by a unit of each cause; InputError if the body is no mesh."""
     if structure.recovery is None:
         fix = "leave them out: particles, matrices and modes have no strain"
         raise InputError("gauges", "are given of no beam and no mesh", fix)

@@ -156,9 +156,14 @@ def _causes(structure: Structure, excitation: Excitation, matrices: tuple[Array,
         f"its rate changes by {np.linalg.norm(alpha):.4g} rad/s²": symmetric(np.tensordot(alpha, c.k_al, 1)),
         f"the root is pushed with {np.linalg.norm(a):.4g} m/s²": np.tensordot(a, c.k_a, 1),
     }
-    if loads is not None and c.loads is not None and structure.work is not None:
-        points = np.bincount(structure.work.load)
+    if loads is not None and c.loads is not None:
+        points = np.zeros(0) if structure.work is None else np.bincount(structure.work.load)
         for k, (values, slope) in enumerate(zip(loads, c.loads.slope[:, :, 6:], strict=True)):
+            if structure.heated and k == len(loads) - 1:
+                rise = float(values[0])
+                words = f"its temperature is {abs(rise):.4g} K {'above' if rise > 0 else 'below'} its reference"
+                terms[words] = -rise * slope[0]
+                continue
             force, moment = np.linalg.norm(values[:3]), np.linalg.norm(values[3:])
             size = f"{force:.4g} N" if force > 0 else f"{moment:.4g} N m"
             words = f"beam.loads[{k}] acts with {size}{'/m' if points[k] > 1 else ''}"

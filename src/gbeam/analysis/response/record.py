@@ -22,6 +22,7 @@ from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.solution import reading_of
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats, Indices
+from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.fields.basis import FAMILIES
 from gbeam.mechanics.section_forces import accelerations, add_hub_torques
 from gbeam.mechanics.structure import Structure
@@ -159,7 +160,8 @@ class Histories:
         for name, body in judged_bodies(run.posed.system).items():
             response = bodies[name]
             assert response.loads is not None
-            out |= reading_of(name, body, response.q[flown], response.loads.select_times(flown))
+            time = self.time[self.kept][flown]
+            out |= reading_of(name, body, time, response.q[flown], response.loads.select_times(flown))
         return out
 
     def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
@@ -184,7 +186,8 @@ class Histories:
         if structure.recovery is None:
             return {}
         names = {"motion": self.name, "model": structure.kind, "environment": kind_of(motion)}
-        parts = structure.recovery.parts(self.time, state.base, state.q, **names)
+        causes = causes_of(structure, state.q, loads_at(structure, self.time))
+        parts = structure.recovery.parts(self.time, state.base, causes, **names)
         if "specimen" in parts:
             parts["specimen"] = replace(parts["specimen"], root=peaks.loads)
         if "solid" in parts and self.every < self.run.stride:

@@ -26,6 +26,7 @@ from gbeam.analysis.system.start import unknown_at_start
 from gbeam.arrays.namespace import holds_jax, is_jax, namespace
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory, masses
+from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import LinearBody
 from gbeam.mechanics.tree.equations import Inputs
@@ -172,7 +173,8 @@ class Run:
                 sides.append(loads.von_mises)  # under torsion alone the normal stresses are rounding
             stress = np.concatenate(sides, axis=1)[..., None]
             if body.recovery is not None:
-                stress = np.asarray(body.recovery.felt(state.q))
+                applied = loads_at(body, solution.trajectory.time)
+                stress = np.asarray(body.recovery.felt(causes_of(body, state.q, applied)))
             out.append(stress)
         return out
 

@@ -23,6 +23,7 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.section_forces import add_hub_torques
 from gbeam.mechanics.structure import Structure
@@ -192,7 +193,8 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
             loads = add_hub_torques(loads, subject.motion, base.alpha_WB_B)
         names = {"motion": name, "model": structure.kind, "environment": environment}
         recovery = structure.recovery
-        parts = {} if recovery is None else recovery.parts(time, base, q, **names)
+        causes = causes_of(structure, q, loads_at(structure, time))
+        parts = {} if recovery is None else recovery.parts(time, base, causes, **names)
         bodies[body] = BodyRest(
             model=structure.kind,
             base=each_leaf(itemgetter(0), base),

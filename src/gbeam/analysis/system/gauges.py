@@ -11,6 +11,7 @@ import numpy as np
 from gbeam.analysis.system.histories import carried
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats
+from gbeam.mechanics.causes import causes_of
 from gbeam.mechanics.reactions import demanded_with_supports
 from gbeam.mechanics.section_forces import sections
 from gbeam.mechanics.tree.bodies import Acting
@@ -22,7 +23,9 @@ from gbeam.mechanics.tree.system import System
 
 
 class Strained(NamedTuple):
-    """A gauge on a body: strains per unit coordinate (n,) or, at a `section`, per unit force and moment there (6,)."""
+    """A gauge on a body: strains by a unit of each cause (n + h,) or, at a `section`, per unit force and moment there
+    (6,).
+    """
 
     body: str
     share: Floats
@@ -32,7 +35,7 @@ class Strained(NamedTuple):
         """Reading (t,) of the gauge at states (t,) of the system's tree, with wrenches `acting` on its points."""
         k, body = system.order.index(self.body), system.flexible[self.body]
         if self.section is None:
-            return state.q[k][-1] @ self.share
+            return causes_of(body, state.q[k][-1], inputs.loads[k]) @ self.share
         assert body.sections is not None
         q, qd, qdd, base, hung = carried(system, state, self.body, acting)
         every = demanded_with_supports(body, base, q, qd, qdd, inputs.loads[k], hung)

@@ -26,6 +26,7 @@ from gbeam.analysis.system.histories import Carried, carried, deflections, held_
 from gbeam.analysis.system.richer import Directions
 from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory
+from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.enrichment import enrichment
 from gbeam.mechanics.plausibility import bend, bent_far, stretched, unstiffened
 from gbeam.mechanics.structure import Structure
@@ -97,7 +98,8 @@ class Solution:
         out: dict[Quantity, Floats] = {PLACE: places}
         for name, moved in states.items():
             body = self.system.flexible[name]
-            out |= reading_of(name, body, moved.q, loads_of(body, moved, self.trajectory.time))
+            time = self.trajectory.time
+            out |= reading_of(name, body, time, moved.q, loads_of(body, moved, time))
         return out
 
     def turning(self) -> Floats:
@@ -177,15 +179,20 @@ class Solution:
         return tuple(f"{name}: {warning}" for name, body_warnings in warnings for warning in body_warnings)
 
 
-def reading_of(name: str, body: Structure, q: Floats, loads: Loads) -> Reading:
-    """Quantities of one body, as :meth:`Solution.read` reads them, from its coordinates (t, n) and its loads."""
+def reading_of(name: str, body: Structure, time: Floats, q: Floats, loads: Loads) -> Reading:
+    """Quantities of one body, as :meth:`Solution.read` reads them, from its coordinates (t, n) and its loads at times
+    (t,), s.
+    """
+    stress = loads.stress.max(axis=1)
+    if body.recovery is not None:
+        stress = body.recovery.felt(causes_of(body, q, loads_at(body, time)))
     sheared = loads.stress if loads.von_mises is None else np.nan_to_num(loads.von_mises)
     force, moment = held_loads(loads)
     return {
         (name, DEFLECTION): deflections(body, q),
         (name, "force"): force,
         (name, "moment"): moment,
-        (name, "stress"): loads.stress.max(axis=1) if body.recovery is None else body.recovery.felt(q),
+        (name, "stress"): stress,
         (name, "sheared"): sheared.max(axis=1),
     }
 

@@ -64,6 +64,15 @@ class LoadTerms:
         by_coordinate = xp.reshape(flat @ slope, (*flat.shape[:-1], -1, n))
         return flat @ constant + (by_coordinate * q[..., None, :]).sum(axis=-1)
 
+    def turned(self, basis: Array) -> LoadTerms:
+        """Terms in coordinates p with q = basis p."""
+
+        def rows(part: Array) -> Array:
+            xp = namespace(part, basis)
+            return xp.concatenate([part[:, :, :6], xp.einsum("lcn...,nk->lck...", part[:, :, 6:], basis)], axis=2)
+
+        return LoadTerms(rows(self.constant), rows(self.slope @ basis))
+
 
 @record
 class Bending:
@@ -211,10 +220,11 @@ class Coefficients:
         return 0.5 * q @ self.stiffness @ q
 
     def turned(self, basis: Array) -> Coefficients:
-        """Coefficients in coordinates p with q = basis p, of a structure without loads."""
+        """Coefficients in coordinates p with q = basis p."""
         squares = ("mass", "damping", "stiffness", "gyroscopic", "k_ww", "k_al", "k_a")
         matrices = {name: basis.T @ getattr(self, name) @ basis for name in squares}
-        return replace(self, **matrices, **{name: getattr(self, name) @ basis for name in ("f_ww", "f_al", "f_a")})
+        forces = {name: getattr(self, name) @ basis for name in ("f_ww", "f_al", "f_a")}
+        return replace(self, **matrices, **forces, loads=self.loads and self.loads.turned(basis))
 
     def damped(self, damping: Array) -> Coefficients:
         """Replace the damping matrix."""
