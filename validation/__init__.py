@@ -21,6 +21,7 @@ MODULES: tuple[str, ...] = (
     "codes.calculix_bent",
     "codes.calculix_links",
     "codes.calculix_supports",
+    "codes.calculix_heat",
     "codes.scipy_place",
     "codes.exudyn_plane",
     "codes.exudyn_space",

@@ -302,3 +302,20 @@ def test_a_coarser_mesh_without_the_temperature_is_refused() -> None:
     with pytest.raises(gb.InputError, match=r"materials.expansions is missing, and the body has a temperature"):
         read(mesh, *PLANES, metal=board)
     assert replace(board, expansions=(1e-6, 2e-6, 3e-6)).thermal_strain == pytest.approx(np.diag([1e-6, 2e-6, 3e-6]))
+
+
+def test_a_frame_that_turns_where_it_is_heated_keeps_its_reaction_in_proportion() -> None:
+    """A knee between two feet: what expansion alone strains presses on no foot, however far the knee turns."""
+    pushes = []
+    for rise in (1e-3, 50.0):
+        keys: dict[str, Any] = dict(rise=rise, clamp="left")
+        mesh = block("hexahedron20", (6, 1, 6), (0.12, WIDTH, 0.12))
+        nodes, middle = mesh.cells[0].data, mesh.points[mesh.cells[0].data].mean(axis=1)
+        knee = nodes[(middle[:, 0] < 0.02) | (middle[:, 2] > 0.04)]
+        sets = {"left": np.flatnonzero(mesh.points[:, 2] == -0.06), "right": np.flatnonzero(mesh.points[:, 0] == 0.12)}
+        used = np.isin(np.arange(len(mesh.points)), knee)
+        sets = {name: points[used[points]] for name, points in sets.items()}
+        bent = meshio.Mesh(mesh.points, [("hexahedron20", knee)], point_sets=sets)
+        model = read(bent, gb.Support("right", ["x", "y", "z"]), **keys).reduced(modes=4, damping_ratio=0.0)
+        pushes.append(gb.static(model.structure).loads.support_force[0, 0] / rise)
+    assert pushes[1] == pytest.approx(pushes[0], rel=5e-3, abs=1e-6 * np.abs(pushes[0]).max())

@@ -225,7 +225,7 @@ def deck(steps: str, specimen: Specimen = BRACKET) -> str:
         number += 1
     lines += ["*NSET, NSET=FOOT", *(f"{i}" for i in held + 1), "*BOUNDARY", f"FOOT, 1, {6 if shell else 3}"]
     for name, metal in kinds.items():
-        lines += [f"*MATERIAL, NAME={name}", *elastic(metal), "*DENSITY", f"{metal.density}"]
+        lines += [f"*MATERIAL, NAME={name}", *elastic(metal), *expanding(metal), "*DENSITY", f"{metal.density}"]
         section = f"*{'SHELL' if shell else 'SOLID'} SECTION, ELSET={name}, MATERIAL={name}"
         if isinstance(metal, gb.Orthotropic):
             lines += [f"*ORIENTATION, NAME=O{name}", ", ".join(f"{each:.15g}" for each in np.ravel(metal.axes))]
@@ -242,6 +242,14 @@ def elastic(metal: gb.Material | gb.Orthotropic) -> list[str]:
     (v12, v23, v13), (g12, g23, g13) = metal.poissons_ratios, metal.shear_moduli
     first = ", ".join(map(str, (*metal.youngs_moduli, v12, v13, v23, g12, g13)))
     return ["*ELASTIC, TYPE=ENGINEERING CONSTANTS", first, f"{g23}"]
+
+
+def expanding(metal: gb.Material | gb.Orthotropic) -> list[str]:
+    """Lines of a material's expansion above a temperature of zero, if it has one."""
+    if isinstance(metal, gb.Orthotropic):
+        along = metal.expansions
+        return [] if along is None else ["*EXPANSION, TYPE=ORTHO, ZERO=0.", ", ".join(map(str, along))]
+    return [] if metal.expansion is None else ["*EXPANSION, ZERO=0.", f"{metal.expansion}"]
 
 
 def run(steps: str, kind: str, specimen: Specimen = BRACKET) -> str:

@@ -44,8 +44,8 @@ SUPPORTS = {
 
 
 @cache
-def frame(name: str) -> gb.SolidMesh:
-    """The frame in the plane of x and z, its feet on z = 0."""
+def portal() -> meshio.Mesh:
+    """Mesh of the frame in the plane of x and z, its feet on z = 0, mm."""
     counts = round(SPAN / 10), 2, round(HEIGHT / 10)
     points, cells = grid(counts, (SPAN, SIDE, HEIGHT))
     points[:, 2] += HEIGHT / 2
@@ -57,9 +57,14 @@ def frame(name: str) -> gb.SolidMesh:
     sets = {"left": np.flatnonzero(below & (points[:, 0] < SPAN / 2))}
     sets["right"] = np.flatnonzero(below & (points[:, 0] > SPAN / 2))
     sets["corner"] = np.flatnonzero(np.isclose(points, (SPAN, SIDE / 2, HEIGHT)).all(axis=1))
-    mesh = meshio.Mesh(points, {"hexahedron20": nodes.reshape(-1, 20)}, point_sets=sets)
+    return meshio.Mesh(points, {"hexahedron20": nodes.reshape(-1, 20)}, point_sets=sets)
+
+
+@cache
+def frame(name: str) -> gb.SolidMesh:
+    """The frame on its supports."""
     return gb.SolidMesh.read(
-        mesh, materials=STEEL, clamp="left", unit="mm", supports=[SUPPORTS[name]], points={"corner": "corner"}
+        portal(), materials=STEEL, clamp="left", unit="mm", supports=[SUPPORTS[name]], points={"corner": "corner"}
     )
 
 

@@ -200,10 +200,10 @@ def geometric_stiffness(
         shape_stress = part.stress(shapes, slopes).reshape(len(weights), 6, -1)[:, TENSOR] * weights
         static_stress = part.stress(static, moved, rise * np.ones(m)).reshape(len(weights), 6, -1)[:, TENSOR] * weights
         # Arrays of points, axes, components and shapes, flat in all but one of these.
-        across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
         if not strained:
             slopes, moved = (np.asarray((each - each.swapaxes(2, 3)) / 2) for each in (slopes, moved))
         tall, wide = slopes.reshape(-1, n), slopes.reshape(-1, 3, 3 * n)
+        across = np.ascontiguousarray(slopes.swapaxes(2, 3)).reshape(-1, 3, 3 * n)
         # Load by load in one piece each: products of small matrices that lie apart take four times as long.
         pulls = np.moveaxis(static_stress.reshape(-1, 3, 3, m), -1, 0).copy()
         turns = np.moveaxis(moved.reshape(-1, 3, 3, m), -1, 0).copy()

@@ -318,13 +318,16 @@ class SolidMesh(Mesh):
         by_loads = geometric_stiffness(self.points, self.blocks, static[:count, :, cold], everywhere[:count])
         by_rise = heat.geometric_stiffness(self, static[:count, :, hot], everywhere[:count])
         halves = np.concatenate([by_loads, by_rise], axis=1)
+        lifted, pulls = everywhere[:count, :, total:], None
+        if lifted.size:
+            # Along these the stress of the coordinates is in `pulls`, and that of the rise beside them is here.
+            beside = heat.geometric_stiffness(self, 0 * static[:count, :, hot], everywhere[:count])[0]
+            halves[0, by_heat:, total:] = beside[:, total:]
+            halves[0, by_heat:, :, total:] = beside[..., total:]
+            pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes, strained=False).sum(axis=0)
         halves += left.geometric_stiffness(
             tied, mass, loads[:, stressed], reduced.static[:, stressed], reduced, linked.rotations(motions[:, total:])
         )
-        lifted = everywhere[:count, :, total:]
-        pulls = None
-        if lifted.size:
-            pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes, strained=False).sum(axis=0)
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
         locked = coarser is not None and bool(locking(self))
         doubts = () if coarser is None else (*hardly_coarser(coarser.mesh, self), *[LOCKED] * locked)
