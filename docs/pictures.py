@@ -52,6 +52,7 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
         heated().savefig(folder / "heated.png", dpi=150)
         rails().savefig(folder / "board_on_rails.png", dpi=150)
         snapping().savefig(folder / "snapping_strip.png", dpi=150)
+        warming().savefig(folder / "board_warms_up.png", dpi=150)
     tracking, tip = study.responses["centrifuge"].plot("tracking"), study.plot("tip")
     tracking[0].figure.savefig(folder / "f16_tracking.png", dpi=150)
     tip[0].figure.savefig(folder / "f16_tip.png", dpi=150)
@@ -174,6 +175,45 @@ def rails() -> Figure:
         xlim=(response.time[0], response.time[-1]),
     )
     axes.legend()
+    return drawing
+
+
+def warming() -> Figure:
+    """Push of a rail on the board that warms up, and the frequency, by wedge lock."""
+    drawing = Figure(figsize=(7.2, 3.0), layout="constrained")
+    push, frequency = drawing.subplots(1, 2)
+    stiffness = "bodies.board.supports[2].stiffness.y"
+    for lock, colour in (
+        ("0.5 MN/m", "#009E73"),
+        ("2 MN/m", MACHINE),
+        ("10 MN/m", "#0072B2"),
+    ):
+        path = EXAMPLE.parent / "board_warms_up.toml"
+        scenario = gb.read_scenario(path, [f"{stiffness}={lock}"])
+        system, flight = scenario.system, scenario.motions["flight"]
+        time = np.linspace(0.0, 15.9, 54)
+        rests = [gb.static(system, flight, time=t) for t in time]
+        loads = [rest.bodies["board"].loads for rest in rests]
+        force = [load.support_force[0, 2, 1] for load in loads]
+        push.plot(time, np.abs(force), color=colour, lw=1.4, label=lock)
+        warm = np.linspace(2.0, 14.0, 9)
+        lowest = [gb.modes(system, time=t).frequency[0] for t in warm]
+        degrees = 20 + 35 * (warm - 2) / 12
+        frequency.plot(degrees, lowest, color=colour, lw=1.4, label=lock)
+    push.set(
+        xlabel="time, s",
+        ylabel="push of the right rail along y, N",
+        title="35 K in twelve seconds of the turn",
+        xlim=(0, 16),
+        ylim=(0, None),
+    )
+    frequency.set(
+        xlabel="temperature of the board, °C",
+        ylabel="lowest frequency, Hz",
+        title="Its lowest frequency",
+        ylim=(0, None),
+    )
+    frequency.legend(title="wedge lock", loc="lower left")
     return drawing
 
 

@@ -2,7 +2,7 @@
 processor, on four screws, or with edges that slide in rails up to a plug.
 
 Shells of eight nodes in the board's middle; `python examples/board.py` writes them again, and prints what hexahedra in
-their place would change. board.toml and board_on_rails.toml fly them.
+their place would change. board.toml, board_on_rails.toml and board_warms_up.toml fly them.
 """
 
 from __future__ import annotations

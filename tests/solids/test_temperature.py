@@ -319,3 +319,12 @@ def test_a_frame_that_turns_where_it_is_heated_keeps_its_reaction_in_proportion(
         model = read(bent, gb.Support("right", ["x", "y", "z"]), **keys).reduced(modes=4, damping_ratio=0.0)
         pushes.append(gb.static(model.structure).loads.support_force[0, 0] / rise)
     assert pushes[1] == pytest.approx(pushes[0], rel=5e-3, abs=1e-6 * np.abs(pushes[0]).max())
+
+
+def test_the_board_of_the_example_presses_on_its_lock_as_two_springs_say() -> None:
+    """α ΔT b / (1/k + b/EA): its stiffness across and that of the wedge lock."""
+    scenario = gb.read_scenario("examples/board_warms_up.toml")
+    rest = gb.static(scenario.system, time=15.0)
+    across, lock = 19e9 * 0.16 * 0.0016 / 0.1, 2e6
+    push = 17e-6 * 35.0 * 0.1 / (1 / lock + 1 / across)
+    assert rest.bodies["board"].loads.support_force[0, 2, 1] == pytest.approx(-push, rel=5e-3)
