@@ -26,6 +26,7 @@ TITLE = "CalculiX: a portal frame on supports"
 NEEDS = ("calculix-ccx", "numpy", "scipy", "meshio")
 COUNT, CLOSE, STATIC, MOVED = 8, 1e-6, 2e-5, 2e-3
 SPAN, HEIGHT, SIDE = 200.0, 120.0, 20.0  # mm
+FAR, CHANGED, PRINTED = 2000.0, 0.1, "*NODE PRINT, NSET=RIGHT, TOTALS=ONLY\nRF\n"
 SMALL = 1e-3  # of 1 g: gbeam's static answer has the stiffness of the load in it
 SPRINGS = {"x": 4e6, "z": 9e6}  # N/m
 FIRST = 900_000  # number of the first element that is no solid
@@ -118,6 +119,7 @@ def rows() -> Iterator[Row]:
             yield Row(words, f"mode {n + 1}", theirs[n], float(ours[n]), "Hz", CLOSE, source)
         for axis, load in zip("xyz", np.eye(3), strict=True):
             yield from at_rest(name, f"{words}, 1 g along {axis}", load, source)
+    yield from far("fixed", source)
     yield from pulled("sliding", source)
 
 
@@ -141,6 +143,19 @@ def at_rest(name: str, words: str, load: np.ndarray, source: str) -> Iterator[Ro
             known = where == "clamp" or axis not in SUPPORTS[name].stiffness
             if known and abs(held_by[i]) > 0.01 * largest:
                 yield Row(words, f"force {axis} of the {where}", held_by[i], mine[i], "N", STATIC, source)
+
+
+def far(name: str, source: str) -> Iterator[Row]:
+    """Change of a reaction by the deformation, under so many g along x that it is not small."""
+    steps = f"*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\nEALL, GRAV, {{}}, 1., 0., 0.\n{PRINTED}*END STEP\n"
+    load, changes = np.array([1.0, 0.0, 0.0]), []
+    for times in (SMALL, FAR):
+        theirs = reaction(name, computed(name, steps.format(times * G)), "RIGHT", -times * G * load)[0]
+        loads: Any = gb.static(model(name), acceleration=tuple(-times * G * load)).loads
+        changes.append(np.array([theirs[0], loads.support_force[0, 0, 0]]) / times)
+    theirs, mine = FAR * (changes[1] - changes[0])
+    words = f"{WORDS[name]}, {FAR:g} g along x"
+    yield Row(words, "change of the force x of the support by the deformation", theirs, mine, "N", CHANGED, source)
 
 
 def pulled(name: str, source: str) -> Iterator[Row]:

@@ -320,10 +320,10 @@ class SolidMesh(Mesh):
         halves = np.concatenate([by_loads, by_rise], axis=1)
         lifted, pulls = everywhere[:count, :, total:], None
         if lifted.size:
-            # Along these the stress of the coordinates is in `pulls`, and that of the rise beside them is here.
+            # Along these the stress of the coordinates is in `pulls`: loads add none, and a rise what is beside them.
             beside = heat.geometric_stiffness(self, 0 * static[:count, :, hot], everywhere[:count])[0]
-            halves[0, by_heat:, total:] = beside[:, total:]
-            halves[0, by_heat:, :, total:] = beside[..., total:]
+            beside = np.concatenate([np.zeros_like(by_loads[0]), beside])
+            halves[0, :, total:], halves[0, ..., total:] = beside[:, total:], beside[..., total:]
             pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes, strained=False).sum(axis=0)
         halves += left.geometric_stiffness(
             tied, mass, loads[:, stressed], reduced.static[:, stressed], reduced, linked.rotations(motions[:, total:])
