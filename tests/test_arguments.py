@@ -523,5 +523,5 @@ def test_the_keywords_of_a_response_are_its_settings() -> None:
     """Type checkers know the keywords: those of the settings, whose quantities may be texts."""
     hints = get_type_hints(gb.ResponseSettings)
     fields = {each.name: hints[each.name] for each in dataclass_fields(gb.ResponseSettings)}
-    read = {name for name in fields if kind_of_argument("ResponseSettings", name, {})}
+    read = {name for name in fields if kind_of_argument(gb.ResponseSettings, name, {})}
     assert get_type_hints(Settings) == {name: hint | str if name in read else hint for name, hint in fields.items()}

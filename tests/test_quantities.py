@@ -154,7 +154,7 @@ def test_no_number_loses_its_unit(samples: Samples, name: str, tmp_path: Path, m
             changed = list(args), dict(keywords)
             changed[isinstance(at, str)][at] = wrong  # type: ignore[index]
             argument = at if isinstance(at, str) else names[at]
-            kinds = kinds_in(value, kind_of_argument(name.rpartition(".")[2], argument, values))
+            kinds = kinds_in(value, kind_of_argument(function, argument, values))
             fitting = {WRITTEN, "angle" if how == "without dimension" else "length"}
             if kinds <= fitting and how not in ("unit", "array of objects"):
                 continue  # it is read: see below
@@ -233,7 +233,7 @@ def test_a_quantity_is_read_as_scenarios_read_it(samples: Samples, name: str, ho
     args, keywords = called_with(samples, name, instead)
     function = received(attrgetter(name)(gb))
     values = dict(zip(signature(function).parameters, args, strict=False)) | keywords
-    kinds = {each: kind_of_argument(name.rpartition(".")[2], each, values) for each in values}
+    kinds = {each: kind_of_argument(attrgetter(name)(gb), each, values) for each in values}
     said = {each: written(value, kinds[each], how) for each, value in values.items()}
     for each, kind in kinds.items():
         if kind == WRITTEN:  # the scenario reads its texts
@@ -266,7 +266,7 @@ def methods() -> dict[str, Callable[..., Any]]:
     for kind in [*classes, LoadDifference, Errors]:
         for name, method in inspect.getmembers(kind, of_gbeam):
             names = signature(method).parameters if inspect.isfunction(method) else ()
-            if any(kind_of_argument(name, each, {}) for each in names):
+            if any(kind_of_argument(method, each, {}) for each in names):
                 taken[f"{kind.__name__}.{name}"] = method
     return taken
 
@@ -278,7 +278,7 @@ def test_methods_read_quantities_too(samples: Samples, name: str) -> None:
     values = {each: ARGUMENTS[each] for each in signature(call).parameters if each not in ("motion", "beam", "model")}
     if name == "RigidSpecimen.loads":
         values["motion"] = samples.flight
-    kinds = {each: kind_of_argument(method, each, {}) for each in values}
+    kinds = {each: kind_of_argument(call, each, {}) for each in values}
     for how in ("text", "pint"):
         said = {each: written(value, kinds[each], how) for each, value in values.items()}
         assert Held(call(**said)) == Held(call(**values))
@@ -310,13 +310,12 @@ def test_units_of_arguments_are_those_of_the_documents(samples: Samples) -> None
     for name in classes:
         functions |= {f"{name}.{key}": each for key, each in inspect.getmembers(getattr(gb, name), of_gbeam)}
     for name, function in functions.items():
-        owner = name.rpartition(".")[2]
         args, keywords = called_with(samples, name) if name in every else ((), {})
         words = documented(function)
         values = dict(zip(signature(function).parameters, args, strict=False)) | keywords
         values = dict.fromkeys(words) | values | INSTEAD.get(name, {})
         for argument in words.keys() & signature(function).parameters.keys():
-            kinds = kind_of_argument(owner, argument, values)
+            kinds = kind_of_argument(function, argument, values)
             units = set(SAID.findall(words[argument]))
             if units and not kinds:
                 plain.add(f"{name}.{argument}")

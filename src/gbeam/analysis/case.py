@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import InitVar, dataclass, field, replace
-from typing import Any
+from typing import Annotated, Any
 
 from gbeam.analysis.one_body import OneBody, points_of, refuse_no_point, structure_of
 from gbeam.analysis.response.settings import ResponseSettings
@@ -13,6 +13,7 @@ from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import kinds
+from gbeam.guards.quantities import OfKind
 from gbeam.mechanics.assembly import model_of
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
@@ -110,7 +111,7 @@ class Case(OneBody, Value):
         response: ResponseSettings | None,
         tracks: Mapping[str, str] | None = None,
         *,
-        stations: Numbers = (),
+        stations: Annotated[Numbers, OfKind("length")] = (),
         accept: Mapping[str, Acceptance] | None = None,
         sensors: Mapping[str, Sensor] | None = None,
     ) -> Case:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed_methods
+from gbeam.guards.quantities import OfKind
 from gbeam.mechanics.assembly import assemble, model_of, stations_asked
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.structure import Structure
@@ -83,7 +84,13 @@ class OneBody:
         """Positions of output of the only beam besides its named points, m; InputError where there is no such beam."""
         return stations_asked(self.require_beam())
 
-    def remade(self, *, beam: Beam | None = None, model: Model | None = None, stations: Numbers | None = None) -> Self:
+    def remade(
+        self,
+        *,
+        beam: Beam | None = None,
+        model: Model | None = None,
+        stations: Annotated[Numbers | None, OfKind("length")] = None,
+    ) -> Self:
         """Return the case with another beam, model or stations in place of its only one's.
 
         Parameters

@@ -15,7 +15,6 @@ from .kinds import WRITTEN as WRITTEN
 from .kinds import Kinds as Kinds
 from .kinds import common_kind as common_kind
 from .kinds import element_kinds as element_kinds
-from .kinds import kind_of_argument as kind_of_argument
 from .limits import NESTING as NESTING
 from .limits import SCENARIO_BYTES as SCENARIO_BYTES
 from .limits import in_bytes as in_bytes
@@ -23,6 +22,7 @@ from .limits import refuse_large_file as refuse_large_file
 from .packing import digest as digest
 from .packing import read_packed as read_packed
 from .packing import write_packed as write_packed
+from .parameters import kind_of_argument as kind_of_argument
 from .processes import hold_lock as hold_lock
 from .processes import read_confined as read_confined
 from .units import NUMBER as NUMBER

@@ -11,9 +11,15 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_t
 
 from gbeam.arrays.namespace import has_unit, holds_jax, looks_at_traced
 from gbeam.errors import GbeamError, InputError
-from gbeam.guards.kinds import kind_of_argument, kinds
 from gbeam.guards.parameters import Parameter as Declared
-from gbeam.guards.parameters import alternatives, declares, parameters_of, resolved_hints, with_parameters
+from gbeam.guards.parameters import (
+    alternatives,
+    declares,
+    kind_of_argument,
+    parameters_of,
+    resolved_hints,
+    with_parameters,
+)
 from gbeam.guards.units import BEGINNING, in_si
 from gbeam.printable import shortened
 from gbeam.progress import Bar
@@ -71,25 +77,20 @@ def typed(function: F) -> F:
     """Decorate a function or class, so that it refuses arguments that do not fit its annotations.
 
     The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. Texts
-    with a unit and pint's quantities become SI where the argument has a kind of quantity (`gbeam.guards.kinds`);
-    elsewhere numbers with a unit are refused. Other texts for numbers, and fractions for whole numbers, are refused
-    only if the call fails: its own checks of values say more about them. ``progress=True`` becomes a Bar.
+    with a unit and pint's quantities become SI where the argument has a kind of quantity
+    (:func:`gbeam.guards.parameters.kind_of_argument`); elsewhere numbers with a unit are refused. Other texts for
+    numbers, and fractions for whole numbers, are refused only if the call fails: its own checks of values say more
+    about them. ``progress=True`` becomes a Bar.
 
     Numbers whose quantity is declared in the signature have its sign and range, and parameters that are declared with
     words are told in the docstring (`gbeam.guards.parameters`).
     """
     declared = parameters_of(function) if declares(function) else {}
     function.__doc__ = with_parameters(function.__doc__ or "", declared)
-    quantities = {
-        name: declaration.quantity
-        for name, declaration in declared.items()
-        if declaration.words or declaration.quantity is not None
-    }
-    kinds(**{name: "" if quantity is None else quantity.kind for name, quantity in quantities.items()})(function)
     if isinstance(function, type):
-        function.__init__ = _typed(function.__init__, declared)  # type: ignore[misc]
+        function.__init__ = _typed(function.__init__, function, declared)  # type: ignore[misc]
         return typed_methods(function)
-    return _typed(function, declared)
+    return _typed(function, function, declared)
 
 
 def typed_methods(cls: C) -> C:
@@ -100,16 +101,13 @@ def typed_methods(cls: C) -> C:
     for name, method in [*vars(cls).items()]:
         if not isinstance(method, types.FunctionType) or (name.startswith("_") and name != "__call__"):
             continue
-        code = method.__code__
-        names = code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount]
-        if not hasattr(method, "__wrapped__") and any(kind_of_argument(name, argument, {}) for argument in names):
-            setattr(cls, name, _typed(method, {}, method=True))
+        if not hasattr(method, "__wrapped__") and declares(method):
+            setattr(cls, name, _typed(method, method, {}, method=True))
     return cls
 
 
-def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) -> F:
-    owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    method_owner = owner if method else ""
+def _typed(function: F, declaring: Callable[..., Any], declared: Mapping[str, Declared], method: bool = False) -> F:
+    """The function, or constructor of the class `declaring`, with checks of its arguments."""
     kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
     parameters = signature(function).parameters.values()
     names = [parameter.name for parameter in parameters if parameter.kind in kinds]
@@ -124,11 +122,11 @@ def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) 
     generates = str(signature(function).return_annotation).startswith("Iterator")  # and shows its own bar
 
     def check(pairs: Iterable[tuple[str, Any]], texts: bool) -> None:
-        tests = _tests(function, texts, method_owner)
+        tests = _tests(function, texts, method)
         for name, value in pairs:
             refuse_units(name, value)
             if name in tests and not tests[name](value):
-                refused = _type_error(name, value, _hints(function, method_owner)[name], texts)
+                refused = _type_error(name, value, _hints(function, method)[name], texts)
                 refused.of_type = True
                 raise refused
 
@@ -141,7 +139,7 @@ def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) 
             with Bar() as bar:
                 return call(**dict(pairs) | {"progress": bar})
         if any(type(value) not in _NUMBERS for _, value in pairs):
-            read = functools.partial(_read, owner, dict(pairs))
+            read = functools.partial(_read, declaring, dict(pairs))
             args = (*map(read, names, args), *args[len(names) :])
             keywords = {name: read(name, value) for name, value in keywords.items()}
             pairs = (*name_arguments(args), *keywords.items())
@@ -157,7 +155,8 @@ def _typed(function: F, declared: Mapping[str, Declared], method: bool = False) 
             if not isinstance(error, GbeamError) and looks_at_traced(error):
                 name = next((name for name, value in pairs if _holds_jax(value)), pairs[0][0])
                 fix = "give numbers: JAX follows motions, structures, systems and simulate with a given step"
-                raise InputError(name, f"is traced by JAX, and {owner} looks at its numbers", fix) from error
+                problem = f"is traced by JAX, and {declaring.__name__} looks at its numbers"
+                raise InputError(name, problem, fix) from error
             raise
 
     return call  # type: ignore[return-value]
@@ -180,25 +179,28 @@ def _is_bare(value: Any) -> bool:
     return _NUMBERS.issuperset(map(type, listed)) or all(map(_is_bare, listed))
 
 
-def _read(owner: str, arguments: Mapping[str, Any], name: str, value: Any) -> Any:
+def _read(declaring: Callable[..., Any], arguments: Mapping[str, Any], name: str, value: Any) -> Any:
     """Return an argument with its texts with a unit, and quantities of pint, in SI."""
-    kinds = "" if _is_bare(value) else kind_of_argument(owner, name, arguments)
+    kinds = "" if _is_bare(value) else kind_of_argument(declaring, name, arguments)
     return in_si(name, value, kinds) if kinds else value
 
 
 @functools.cache
-def _tests(function: Callable[..., Any], texts: bool, method: str) -> dict[str, Test]:
+def _tests(function: Callable[..., Any], texts: bool, method: bool) -> dict[str, Test]:
     """Test of every annotated argument by name; with `texts` texts pass as numbers."""
     return {name: _test(hint, texts) for name, hint in _hints(function, method).items()}
 
 
 @functools.cache
-def _hints(function: Callable[..., Any], method: str) -> dict[str, Any]:
-    """Types of the arguments by name; names imported for type checkers only are Any, or numbers of a method."""
+def _hints(function: Callable[..., Any], method: bool) -> dict[str, Any]:
+    """Types of the arguments by name; names imported for type checkers only are Any, and so are numbers of a function.
+
+    Numbers of a method are those of NumPy's arrays.
+    """
     from numpy.typing import ArrayLike
 
     hints = resolved_hints(function)
-    numbers = {name for name in hints if hints[name] is Any and method and kind_of_argument(method, name, {})}
+    numbers = {name for name, hint in hints.items() if method and Any in alternatives(hint) and hint is not Any}
     return hints | dict.fromkeys(numbers, ArrayLike)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import unwrap
 from typing import Any, TypeVar
 
 from gbeam.constants import DEGREE, RPM, STANDARD_GRAVITY
@@ -86,54 +87,17 @@ Declared = Kinds | Callable[[Mapping[str, Any]], Kinds]
 WRITTEN = "as written"  # of a scenario's value, which has the kind of its place there
 PLAIN = "plain"  # of numbers that have no unit, such as the coordinates of a model
 
-_BY_KIND = {
-    PLAIN: "q qd",
-    "length": "arm at control_point diameter extreme_fibre_y extreme_fibre_z length offset positions radius stations "
-    "thickness tip_displacement wall width x",
-    "area": "area",
-    "second moment of area": "inertia_y inertia_z torsion_constant",
-    "mass": "mass",
-    "density": "density",
-    "moment of inertia": "inertia",
-    "pressure": "shear_moduli shear_modulus yield_strength youngs_moduli youngs_modulus",
-    "stiffness": "translation_x translation_y translation_z",
-    "rotational stiffness": "rotation_x rotation_y rotation_z",
-    "temperature": "reference",
-    "expansion": "expansion",
-    "torque": "torque",
-    "time": "duration end hold residual_from sample smoothing span spin_down spin_up start step t time widths",
-    "speed": "tip_velocity",
-    "acceleration": "acceleration gravity idle",
-    "angle": "angle setting_angle",
-    "angular rate": "rate rates speeds",
-    "power": "power",
-    "frequency": "frequency sample_rate",
-    "ratio": "damping_ratio fatigue_exponent poissons_ratio robust shear_coefficient_y shear_coefficient_z tolerance",
-}
-_BY_NAME = {name: kind for kind, names in _BY_KIND.items() for name in names.split()}
-# By function or class: kinds of arguments as their signatures declare them, or :func:`kinds`; "" where there is none.
-_BY_OWNER: dict[str, dict[str, Declared]] = {
-    "ImportedModel": {"nodes": "length", "mass": ""},
-    "box": {"size": "length", "centre": "length", "bolts": "length"},
-    "of_particles": {"r0": "length", "stations": ""},
-}
 T = TypeVar("T", bound=Callable[..., Any])
 
 
-def kinds(**declared: Declared) -> Callable[[T], T]:
-    """Declare kinds of arguments of a function or a class, by name, that are not those of every such name."""
+def kinds(**derived: Declared) -> Callable[[T], T]:
+    """Declare kinds of arguments that their annotations cannot say: by key, in order, or by the other arguments."""
 
-    def declare(thing: T) -> T:
-        _BY_OWNER.setdefault(thing.__name__, {}).update(declared)
-        return thing
+    def declare(declaring: T) -> T:
+        unwrap(declaring).__kinds__ = derived
+        return declaring
 
     return declare
-
-
-def kind_of_argument(owner: str, name: str, arguments: Mapping[str, Any]) -> Kinds:
-    """Return the kinds of quantity of an argument of a public function or class; empty if it has none."""
-    declared = _BY_OWNER.get(owner, {}).get(name, _BY_NAME.get(name, ""))
-    return declared(arguments) if callable(declared) else declared
 
 
 def element_kinds(kinds: Kinds, key: Any) -> Kinds:

@@ -7,15 +7,18 @@ import re
 import types
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from inspect import Parameter as Argument
 from inspect import cleandoc, signature, unwrap
 from textwrap import fill
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Union, Unpack, get_args, get_origin, get_type_hints
 
-from gbeam.guards.quantities import OfCoordinate, OneOrSome, Quantity, Rows, Shape
+from gbeam.guards.kinds import Kinds
+from gbeam.guards.quantities import OfCoordinate, OfKind, OneOrSome, Quantity, Rows, Shape
 
 SECTION = "Parameters\n----------\n"
 _FOLLOWING = re.compile(r"^(Returns|Yields|Attributes|Raises|Notes|See Also|References|Examples)\n-+$", re.MULTILINE)
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _WIDTH = 112
 _MANY = 6  # keys of a dictionary, of which more are not listed
 _NUMERIC = (float, int, Any)  # types of numbers
@@ -41,10 +44,10 @@ class Parameter:
 
     def check(self, value: Any) -> None:
         """Raise InputError unless a value that is a number, or numbers, has the quantity's sign and range."""
-        kinds = (kind for kind in alternatives(self.hint) if kind not in _NUMERIC)
-        if isinstance(value, tuple(kind for kind in kinds if isinstance(kind, type))):  # None, or a profile over time
+        if self.quantity is None:
             return
-        if self.quantity is not None:
+        kinds = (kind for kind in alternatives(self.hint) if kind not in _NUMERIC)
+        if not isinstance(value, tuple(kind for kind in kinds if isinstance(kind, type))):  # None, a profile over time
             self.quantity.check(self.name, value)
 
 
@@ -60,8 +63,50 @@ def parameters_of(declaring: Callable[..., Any]) -> dict[str, Parameter]:
 
 
 def declares(function: Callable[..., Any]) -> bool:
-    """True if an annotation of a class or function says more than a type, which takes no evaluating to see."""
-    return any("Annotated[" in str(annotation) for annotation in _annotated(function).__annotations__.values())
+    """True if an annotation of a class or function says more than a type. No annotation is evaluated to see this."""
+    annotated = _annotated(function)
+    names = unwrap(annotated).__globals__
+    for annotation in map(str, annotated.__annotations__.values()):
+        if "Annotated[" in annotation or any(_is_annotated(names.get(word)) for word in _WORD.findall(annotation)):
+            return True
+    return False
+
+
+def _is_annotated(hint: Any) -> bool:
+    return get_origin(hint) is Annotated
+
+
+def kind_of_argument(declaring: Callable[..., Any], name: str, arguments: Mapping[str, Any]) -> Kinds:
+    """Return the kinds of quantity of an argument of a class or function; empty if it has none.
+
+    They are those of its annotation, or of :func:`gbeam.guards.kinds.kinds`, which may follow from the other
+    `arguments`.
+    """
+    declaring = unwrap(declaring)
+    derived = getattr(declaring, "__kinds__", {})
+    if name not in derived:
+        return _annotated_kinds(declaring).get(name, "")
+    declared = derived[name]
+    return declared(arguments) if callable(declared) else declared
+
+
+@cache
+def _annotated_kinds(declaring: Callable[..., Any]) -> dict[str, str]:
+    """Kinds of the arguments of a class or function by name, as annotations say them, and of keywords unpacked."""
+    kinds: dict[str, str] = {}
+    for name, hint in resolved_hints(_annotated(declaring)).items():
+        kinds |= kinds_of_entries(*get_args(hint)) if get_origin(hint) is Unpack else {name: _kind(hint)}
+    return kinds
+
+
+def kinds_of_entries(typed_dict: type) -> dict[str, str]:
+    """Return the kinds of the entries of a TypedDict by name; empty where there is none."""
+    return {name: _kind(hint) for name, hint in get_type_hints(typed_dict, include_extras=True).items()}
+
+
+def _kind(hint: Any) -> str:
+    """Kind of quantity that a type says; empty if it says none."""
+    return next((mark.kind for mark in _annotations(hint) if isinstance(mark, (Quantity, OfKind))), "")
 
 
 def _annotated(declaring: Callable[..., Any]) -> Callable[..., Any]:

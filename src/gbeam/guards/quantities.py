@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from gbeam.arrays.namespace import is_jax
+from gbeam.arrays.namespace import Array, is_jax
 from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.checks import finite, positive, possible
-from gbeam.guards.kinds import KINDS
+from gbeam.guards.kinds import KINDS, PLAIN
 from gbeam.guards.limits import LARGEST, SMALLEST
 from gbeam.guards.units import BEGINNING, UnitError, quantity
 
@@ -146,6 +147,13 @@ class QuantityOrName(Quantity):
 
 
 @dataclass(frozen=True)
+class OfKind:
+    """Annotation of a number: only its kind of quantity. Its sign and range are checked by what takes it."""
+
+    kind: str  # a key of KINDS, or PLAIN
+
+
+@dataclass(frozen=True)
 class OfCoordinate:
     """Annotation of a value of a coordinate: its kinds of quantity, of a displacement and of an angle, and its sign."""
 
@@ -233,6 +241,12 @@ Stiffness = Annotated[float, Quantity("stiffness", "positive")]
 RotationalStiffness = Annotated[float, Quantity("rotational stiffness", "positive")]
 Damping = Annotated[float, Quantity("damping", "zero or more")]
 RotationalDamping = Annotated[float, Quantity("rotational damping", "zero or more")]
+
+# Of any sign; Times, Positions and Coordinates one or an array of them, NumPy's or JAX's.
+Seconds = Annotated[float, OfKind("time")]
+Times = Annotated[Any, OfKind("time")]
+Positions = Annotated[ArrayLike, OfKind("length")]
+Coordinates = Annotated[Array, OfKind(PLAIN)]
 
 # Vectors of three components; JAX's and NumPy's arrays are numbers, too.
 PositionVector = Annotated[Numbers, Quantity("length"), Shape((3,))]

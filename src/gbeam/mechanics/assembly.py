@@ -14,6 +14,7 @@ from gbeam.constants import ModelKind, Shapes
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.limits import NODES, refuse_more
+from gbeam.guards.quantities import Positions
 from gbeam.mechanics.beam_terms import (
     heat_of,
     load_history,
@@ -56,7 +57,7 @@ from gbeam.structure.beam import Beam
 def assemble(
     beam: Beam,
     model: Model | ModelKind,
-    stations: ArrayLike = (),
+    stations: Positions = (),
     *,
     axial: int = 0,
     y: int = 0,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from gbeam.arrays.tree import record, static
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import implausible, positive
+from gbeam.guards.quantities import Coordinates, OfKind, Seconds
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.held import HeldComplete, HeldInertia, Springs
 from gbeam.mechanics.equations.inertia import Inertia
@@ -202,14 +203,14 @@ class Structure:
     @typed
     def of_particles(
         cls,
-        mass: Array,
-        r0: Array,
+        mass: Annotated[Array, OfKind("mass")],
+        r0: Annotated[Array, OfKind("length")],
         first: Array,
         stiffness: Array,
         *,
         second: Array | None = None,
         geometric: Geometric | None = None,
-        damping_ratio: Any = 0.0,
+        damping_ratio: Annotated[Any, OfKind("ratio")] = 0.0,
         stations: Array | None = None,
         turns: Array | None = None,
         points: tuple[str, ...] = (),
@@ -326,7 +327,7 @@ class Structure:
         assert isinstance(self.inertia, Inertia)
         return Complete(self.inertia, self.coefficients.damping, self.coefficients.stiffness, self.work)
 
-    def linearise(self, q: Array) -> tuple[Coefficients, Array]:
+    def linearise(self, q: Coordinates) -> tuple[Coefficients, Array]:
         """Coefficients of the equations linearised at coordinates `q` (n,), and the elastic forces there, (n,)."""
         c = self.coefficients
         if self.linear:
@@ -373,7 +374,7 @@ class Structure:
         """Number of the lowest frequencies that are the specimen's, and not of static shapes."""
         return self.size if self.modes is None else self.modes
 
-    def at_time(self, time: float) -> Structure:
+    def at_time(self, time: Seconds) -> Structure:
         """Return the structure with its loads frozen at a `time`, s: as static, modes and stability take it."""
         if self.history is None:
             return self
@@ -427,15 +428,15 @@ class Structure:
         """Axes across the beam, 1 for y and 2 for z, along which no station moves."""
         return tuple(axis for axis in (1, 2) if not np.any(self.station_places.first[:, axis]))
 
-    def strain_energy(self, q: Array) -> Array:
+    def strain_energy(self, q: Coordinates) -> Array:
         """Strain energy at coordinates `q` (n,), J."""
         return self.equations.strain_energy(q)
 
-    def station_slopes(self, q: Array) -> Array:
+    def station_slopes(self, q: Coordinates) -> Array:
         """Derivatives of the stations' places with respect to coordinates `q` (n,), (s, 3, n)."""
         return self.output.slopes(q)
 
-    def twist_slopes(self, q: Array, chosen: Array | None = None) -> Array | None:
+    def twist_slopes(self, q: Coordinates, chosen: Array | None = None) -> Array | None:
         """Derivatives (s, n), by the coordinates at `q` (n,), of the angles of sections about the beam's axis.
 
         The sections are the stations, or the `chosen` points of the field. None of a model without twist.
@@ -446,11 +447,11 @@ class Structure:
         along, (_, angles) = field.rotation(q)[..., 0], field.jacobians(q)
         return namespace(angles).einsum("sa,san->sn", along, angles)
 
-    def displacement(self, q: Array) -> Array:
+    def displacement(self, q: Coordinates) -> Array:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""
         return self.output.positions(q) - self.station_places.r0
 
-    def station_displacement(self, q: Array, chosen: Any) -> Array:
+    def station_displacement(self, q: Coordinates, chosen: Any) -> Array:
         """Displacement of some stations relative to the base axes, (..., k, 3) m.
 
         Parameters
@@ -462,7 +463,7 @@ class Structure:
         """
         return self.output[chosen].positions(q) - self.station_places.r0[chosen]
 
-    def tip(self, q: Array) -> Array:
+    def tip(self, q: Coordinates) -> Array:
         """Displacement of the tip, the last station, likewise at coordinates `q` (..., n), (..., 3) m."""
         return self.station_displacement(q, slice(-1, None))[..., 0, :]
 

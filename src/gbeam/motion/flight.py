@@ -11,7 +11,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.quantities import Components, Quantity
+from gbeam.guards.quantities import Components, Quantity, Seconds, Times
 from gbeam.motion.profiles.combine import Turned, as_profile, merged_extent, vector
 from gbeam.motion.profiles.piecewise import PiecewiseLinear
 from gbeam.motion.profiles.profile import Profile, smoothed
@@ -124,7 +124,7 @@ class Flight:
         """False: the motion is prescribed."""
         return False
 
-    def base(self, t: Any) -> Base:
+    def base(self, t: Times) -> Base:
         """Motion of the base at times `t` (s, any shape)."""
         a_WO_B = self.acceleration(t)
         if self.rates is None:
@@ -132,21 +132,21 @@ class Flight:
             return Base(a_WO_B, zero, zero)
         return Base(a_WO_B, *self.rates.derivatives(t))
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         breaks = self.acceleration.corners(step)
         return breaks if self.rates is None else np.union1d(breaks, self.rates.corners(step))
 
     @typed
-    def over(self, start: float, end: float) -> Self:
+    def over(self, start: Seconds, end: Seconds) -> Self:
         """The flight itself, from `start` to `end` (s): it needs no preparation."""
         return self
 
-    def beyond(self, start: float, end: float) -> tuple[float, float]:
+    def beyond(self, start: Seconds, end: Seconds) -> tuple[float, float]:
         """Nothing before `start` or after `end` (s): a flight has no spin-up of its own."""
         return 0.0, 0.0
 
-    def part_of(self, start: float, end: float) -> tuple[float, float] | None:
+    def part_of(self, start: Seconds, end: Seconds) -> tuple[float, float] | None:
         """First and last time of the whole flight, s, if the times `start` to `end` are only a part; else None.
 
         The whole of a record is its file's. A part that lacks at most one interval of the record counts as the whole.

@@ -14,7 +14,7 @@ from gbeam.constants import Pointing
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
-from gbeam.guards.quantities import AccelerationVector, PositionVector, Quantity, RotationVector
+from gbeam.guards.quantities import AccelerationVector, PositionVector, Quantity, RotationVector, Seconds, Times
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.rigid import rotation_of, turn_of
@@ -238,12 +238,12 @@ class Hub:
         """Acceleration of free fall, (3,) m/s², in hub axes at hub angle zero; None without."""
         return self.mount.gravity
 
-    def base(self, t: Any) -> Base:
+    def base(self, t: Times) -> Base:
         """Motion of the base at times `t` (s, any shape): of a root at the radius (−rΩ², r dΩ/dt, 0), hub axes."""
         rate, acceleration = self._prescribed().derivatives(t)
         return self.mount.base(0.0 if self.mount.gravity is None else self.angle(t), rate, acceleration)
 
-    def angle(self, t: Any) -> Any:
+    def angle(self, t: Times) -> Any:
         """Angle of a hub with a prescribed rate at times `t` (s, any shape), rad.
 
         It is the closed integral of the rate where the profile has one; otherwise Gauss's rule goes on from the last
@@ -258,18 +258,18 @@ class Hub:
         last = xp.maximum(xp.searchsorted(xp.asarray(times), now, side="right") - 1, 0)
         return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], now)
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         driving = self.torque if self.rate is None else self.rate
         assert driving is not None
         return driving.corners(step)
 
     @typed
-    def over(self, start: float, end: float) -> Self:
+    def over(self, start: Seconds, end: Seconds) -> Self:
         """The hub itself, from `start` to `end` (s): it needs no preparation."""
         return self
 
-    def beyond(self, start: float, end: float) -> tuple[float, float]:
+    def beyond(self, start: Seconds, end: Seconds) -> tuple[float, float]:
         """Nothing before `start` or after `end` (s): a hub has no spin-up of its own."""
         return 0.0, 0.0
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gbeam.guards.arguments import typed_methods
+from gbeam.guards.quantities import Positions
 from gbeam.results.declared import declared, fact, internal, part, quantity
 from gbeam.results.result import Floats, Part
 
@@ -175,7 +175,7 @@ class LoadDifference(Part):
             share = np.where(self.max_gradient > 0, np.abs(self.gradient) / self.max_gradient, 0.0)
         return np.asarray(self.tip_bound * share)
 
-    def field(self, x: ArrayLike) -> Floats:
+    def field(self, x: Positions) -> Floats:
         """Δa at positions `x` (s,) m from the root, (t, s, 3) m/s²."""
         return self.gradient[:, None, :] * (np.asarray(x)[:, None] - self.control_point)
 

@@ -11,7 +11,7 @@ from gbeam.arrays.tree import Value
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive
-from gbeam.guards.quantities import Factor, Quantity, RotationVector, Shape
+from gbeam.guards.quantities import Factor, OfKind, Quantity, RotationVector, Seconds, Shape
 from gbeam.numerics.samples import displacement
 from gbeam.results.declared import INSIDE, labels, part, quantity
 from gbeam.results.parts import VectorPeaks
@@ -62,7 +62,7 @@ class Sensor(Value):
                 raise InputError("sensitivity", f"has the shape {matrix.shape}", "give 3 × 3 numbers")
 
     @typed
-    def reads(self, acceleration: Any, step: float) -> Floats:
+    def reads(self, acceleration: Annotated[Any, OfKind("acceleration")], step: Seconds) -> Floats:
         """Return what it reads of an acceleration over time, after having settled in the first.
 
         Parameters

@@ -16,7 +16,7 @@ from gbeam.arrays.types import Indices, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import vector
-from gbeam.guards.quantities import Quantity
+from gbeam.guards.quantities import OfKind, Quantity
 from gbeam.results.declared import INSIDE, declared, fact, internal, labels, part, quantity, rows
 from gbeam.results.errors import FRAME, Accelerated, FrequencyErrors, Noted, accelerated, acceleration_lines
 from gbeam.results.result import Complex, Figured, Floats, Part
@@ -64,7 +64,7 @@ class Gauge(Value):
     Gauge(at=0.01, z=0.002)
     """
 
-    at: float | str
+    at: Annotated[float | str, OfKind("length")]
     y: Annotated[float, Quantity("length")] = 0.0
     z: Annotated[float, Quantity("length")] = 0.0
     along: Numbers = (1.0, 0.0, 0.0)

@@ -16,7 +16,16 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice
 from gbeam.guards.limits import MODES
-from gbeam.guards.quantities import MODAL_DAMPING, MODES_KEPT, Count, Mass, ModalDamping, PositionVector, Quantity
+from gbeam.guards.quantities import (
+    MODAL_DAMPING,
+    MODES_KEPT,
+    Count,
+    Mass,
+    ModalDamping,
+    OfKind,
+    PositionVector,
+    Quantity,
+)
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients, Geometric, coefficients, inertial_forces
 from gbeam.mechanics.fields.taylor import Places
@@ -90,7 +99,7 @@ class ImportedModel(Value):
 
     mass: Any
     stiffness: Any
-    nodes: ArrayLike
+    nodes: Annotated[ArrayLike, OfKind("length")]
     unknowns: ArrayLike | None = None
     numbers: ArrayLike | None = None
 

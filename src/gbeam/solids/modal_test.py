@@ -15,8 +15,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array
-from gbeam.guards.kinds import kinds
-from gbeam.guards.quantities import OneOrSome, Quantity, Rows
+from gbeam.guards.quantities import OfKind, OneOrSome, Quantity, Rows
 from gbeam.io.models.registry import model_of
 from gbeam.mechanics.equations.linear import Geometric, coefficients
 from gbeam.mechanics.fields.taylor import Places
@@ -27,7 +26,6 @@ LOOSE = 0.5  # of a modal mass, which the masses of the nodes do not have
 CURVED = 0.1  # of a shape, which moves out of phase
 
 
-@kinds(modal_mass="mass")
 @typed
 @dataclass(frozen=True, eq=False)
 class ModalTest(Value):
@@ -55,7 +53,7 @@ class ModalTest(Value):
     ]
     nodes: Annotated[ArrayLike, Quantity("length"), Rows(3), "places (k, 3) of the nodes from the root, base axes"]
     modal_mass: Annotated[
-        Any, "that goes with the shapes, of every mode, or one for each: 1 kg of mass-normalised ones"
+        Any, OfKind("mass"), "that goes with the shapes, of every mode, or one for each: 1 kg of mass-normalised ones"
     ]
     numbers: Annotated[ArrayLike | None, "numbers (k,) of the nodes, 0 to k - 1 where left out"] = None
 

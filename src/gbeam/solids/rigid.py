@@ -17,7 +17,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, choice, positive, vector
 from gbeam.guards.limits import SAMPLES, refuse_more
-from gbeam.guards.quantities import Factor, PositionVector, Quantity, Rows, Shape
+from gbeam.guards.quantities import Coordinates, Factor, Mass, OfKind, PositionVector, Quantity, Rows, Seconds, Shape
 from gbeam.mechanics.equations.linear import PAIRS, Coefficients
 from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.holding import held_at_points
@@ -132,11 +132,11 @@ class RigidSpecimen(Value):
     @typed
     def box(
         cls,
-        mass: float,
-        size: Numbers,
-        centre: Numbers,
+        mass: Mass,
+        size: Annotated[Numbers, OfKind("length")],
+        centre: PositionVector,
         *,
-        bolts: ArrayLike | None = None,
+        bolts: Annotated[ArrayLike | None, OfKind("length")] = None,
         bolt_axis: Numbers | None = None,
     ) -> RigidSpecimen:
         """A box of uniform density along the base axes.
@@ -171,7 +171,7 @@ class RigidSpecimen(Value):
 
     @typed
     def loads(
-        self, motion: Motion, duration: float, *, sample: float, start: float = 0.0, name: str = ""
+        self, motion: Motion, duration: Seconds, *, sample: Seconds, start: Seconds = 0.0, name: str = ""
     ) -> SpecimenLoads:
         """Loads in a motion.
 
@@ -330,7 +330,14 @@ class RigidSpecimen(Value):
         return {}
 
     def parts(
-        self, time: Floats, base: Any, causes: Floats, *, motion: str, model: str, environment: str
+        self,
+        time: Annotated[Floats, OfKind("time")],
+        base: Any,
+        causes: Coordinates,
+        *,
+        motion: str,
+        model: str,
+        environment: str,
     ) -> dict[str, Any]:
         """Return the loads of a response of the :attr:`structure`, by the name of its field.
 
@@ -356,7 +363,7 @@ class RigidSpecimen(Value):
             Coordinates.
         """
 
-    def felt(self, causes: Floats) -> Floats:
+    def felt(self, causes: Coordinates) -> Floats:
         """Return no number: the stress of a rigid body is not known.
 
         Parameters

@@ -16,7 +16,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, damping_ratios
-from gbeam.guards.quantities import OneOrSome, Quantity
+from gbeam.guards.quantities import OneOrSome, Positions, Quantity
 from gbeam.structure.attachments import TIP, Load, Point, PointMass, Root
 from gbeam.structure.line import Line
 from gbeam.structure.material import ASSUMED_RATIO, Material
@@ -243,7 +243,7 @@ class Beam(Value):
         place, axes = self.at_rest([m.at for m in self.masses])
         return np.asarray(place + np.einsum("pab,pb->pa", axes, offset))
 
-    def at_rest(self, x: ArrayLike) -> tuple[Floats, Floats]:
+    def at_rest(self, x: Positions) -> tuple[Floats, Floats]:
         """Places (p, 3) m and axes of the sections in columns (p, 3, 3) at positions `x` (p,) m, base axes."""
         if self.line is not None:
             return self.line.places(x)
@@ -275,7 +275,7 @@ class Beam(Value):
         """Mass per volume, kg/m³; 1 of a section by matrices, whose area is its mass per length."""
         return 1.0 if self.material is None else self.material.density
 
-    def rigidities(self, x: ArrayLike) -> tuple[Any, Any, Any]:
+    def rigidities(self, x: Positions) -> tuple[Any, Any, Any]:
         """EA, N, EI_y and EI_z, N m², at positions `x`, m: against stretching, bending along z and bending along y."""
         if self.material is None:
             axial, *_, about_y, about_z = self.stiffnesses(x)
@@ -284,7 +284,7 @@ class Beam(Value):
         plate_factor = 1 / (1 - self.material.ratio**2) if self.section.plate else 1.0
         return modulus * section.area, modulus * section.inertia_y * plate_factor, modulus * section.inertia_z
 
-    def stiffnesses(self, x: ArrayLike) -> tuple[Any, ...]:
+    def stiffnesses(self, x: Positions) -> tuple[Any, ...]:
         """EA, kGA along y and z, N, GJ, EI_y and EI_z, N m², at positions `x`, m.
 
         They act against stretch, shears, twist and curvatures about y and z. GJ is NaN where the torsion constant is

@@ -16,7 +16,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.quantities import Angle, Position, Quantity
+from gbeam.guards.quantities import Angle, OfKind, Position, Positions, Quantity
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -79,7 +79,7 @@ class Line(Value):
     array([[0.05, 0.05, 0.  ]])
     """
 
-    length: float
+    length: Annotated[float, OfKind("length")]
     curvature: Curvature
     breaks: Annotated[Numbers, Quantity("length")] = ()
     corners: Annotated[Numbers, Quantity("length")] = ()
@@ -237,7 +237,7 @@ class Line(Value):
             positions |= set(np.linspace(low, high, 1 + max(1, math.ceil(turn / PANEL - NEAR)))[1:-1].tolist())
         return tuple(sorted(positions))
 
-    def places(self, x: ArrayLike) -> tuple[Floats, Floats]:
+    def places(self, x: Positions) -> tuple[Floats, Floats]:
         """Places at rest (p, 3), m, base axes, and axes of the sections in columns (p, 3, 3), at positions `x` (p,), m.
 
         A corner turns all beyond it; one at the root turns the root, too.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any, Unpack
 
@@ -18,12 +18,22 @@ from gbeam.constants import SectionShape
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, positive, possible
-from gbeam.guards.kinds import kind_of_argument, kinds
-from gbeam.guards.quantities import Length, OneOrSome, Quantity, Rows, Shape
+from gbeam.guards.kinds import kinds
+from gbeam.guards.parameters import kinds_of_entries
+from gbeam.guards.quantities import Length, OfKind, OneOrSome, Positions, Quantity, Ratio, Rows, Shape
 from gbeam.structure.material import Material
 from gbeam.structure.matrices import between, matrices_of, read_matrices, refuse_impossible
 from gbeam.structure.matrices import listed as matrices
-from gbeam.structure.shapes import MATRICES, ROUND, SHAPES, Dimensions
+from gbeam.structure.shapes import (
+    MATRICES,
+    ROUND,
+    SHAPES,
+    Areas,
+    Dimensions,
+    Lengths,
+    SecondMoments,
+    ShearCoefficients,
+)
 
 
 def _listed(name: str, value: Any) -> tuple[Any, ...]:
@@ -34,10 +44,6 @@ def _listed(name: str, value: Any) -> tuple[Any, ...]:
     return tuple(float(x) for x in np.atleast_1d(values))
 
 
-Lengths = Annotated[ArrayLike, Quantity("length", "positive"), OneOrSome()]
-Areas = Annotated[ArrayLike, Quantity("area", "positive"), OneOrSome()]
-SecondMoments = Annotated[ArrayLike, Quantity("second moment of area", "positive"), OneOrSome()]
-ShearCoefficients = Annotated[ArrayLike, Quantity("ratio", "positive"), OneOrSome()]
 SectionMatrices = Annotated[ArrayLike, OneOrSome((6, 6))]
 Corners = Annotated[ArrayLike, Quantity("length"), Rows(2)]
 Stations = Annotated[
@@ -61,14 +67,7 @@ KINDS = {
 _UNITS = {"area": "m²", "second moment": "m⁴", "shear coefficient": "(a number)"}
 
 
-@kinds(
-    dimensions={
-        name: kind_of_argument("of", name, {})
-        for kind, shape in SHAPES.items()
-        for name in (*shape.required, *shape.optional)
-        if kind != MATRICES  # of mixed units
-    }
-)
+@kinds(dimensions=kinds_of_entries(Dimensions))
 @typed
 @dataclass(frozen=True, eq=False)
 class Section(Value):
@@ -103,7 +102,7 @@ class Section(Value):
 
     shape: SectionShape
     dimensions: dict[str, tuple[Any, ...]]
-    stations: tuple[float, ...] = ()
+    stations: Annotated[tuple[float, ...], OfKind("length")] = ()
     plate: bool = False
 
     def __post_init__(self) -> None:
@@ -156,7 +155,7 @@ class Section(Value):
     @classmethod
     @typed
     def of(
-        cls, shape: SectionShape, stations: ArrayLike = (), *, plate: bool = False, **dimensions: Unpack[Dimensions]
+        cls, shape: SectionShape, stations: Positions = (), *, plate: bool = False, **dimensions: Unpack[Dimensions]
     ) -> Section:
         """Build a section from scalars or sequences; a scalar holds at every station.
 
@@ -184,6 +183,11 @@ class Section(Value):
                 holds_everywhere = len(per_station) == 1 and positions
                 values[name] = per_station * len(positions) if holds_everywhere else per_station
         return cls(shape, values, positions, plate)
+
+    @property
+    def maker(self) -> Callable[..., Section]:
+        """Function whose :attr:`arguments` make the section again."""
+        return Section.of
 
     @property
     def arguments(self) -> dict[str, Any]:
@@ -343,22 +347,22 @@ class Section(Value):
         """
         return cls.of_matrices(*matrices_of(outline, holes, material, axis, element_size))
 
-    def at(self, x: ArrayLike) -> SectionValues:
+    def at(self, x: Positions) -> SectionValues:
         """Area, second moments and extreme fibres at positions `x`, m (any shape), of matrices by mass."""
         area, inertia_y, inertia_z, fibre_y, fibre_z = SHAPES[self.shape].values(**self._local(x))
         return SectionValues(area, inertia_y, inertia_z, fibre_y, fibre_z, round=self.shape in ROUND)
 
-    def torsion_constant(self, x: ArrayLike) -> Floats:
+    def torsion_constant(self, x: Positions) -> Floats:
         """J, m⁴, at positions `x`, m; NaN where it is not known."""
         return as_array(SHAPES[self.shape].torsion(**self._local(x)))
 
-    def shear_coefficients(self, x: ArrayLike, poissons_ratio: float) -> tuple[Floats, Floats]:
+    def shear_coefficients(self, x: Positions, poissons_ratio: Ratio) -> tuple[Floats, Floats]:
         """Coefficients of the shear forces k G A γ along y and z at positions `x`, m, for a `poissons_ratio`."""
         y, z = SHAPES[self.shape].shear(poissons_ratio, **self._local(x))
         xp = namespace(y, z)
         return xp.broadcast_to(y, np.shape(x)), xp.broadcast_to(z, np.shape(x))
 
-    def stresses(self, x: ArrayLike) -> Floats | None:
+    def stresses(self, x: Positions) -> Floats | None:
         """Stresses (points, 3, 6, s), Pa, normal and along two shears, of unit loads at positions `x` (s,), m.
 
         None if the shape has no formulas, or JAX has the dimensions.
@@ -368,7 +372,7 @@ class Section(Value):
             return None
         return np.asarray(formula(**local))
 
-    def matrices(self, x: ArrayLike) -> tuple[Floats, Floats]:
+    def matrices(self, x: Positions) -> tuple[Floats, Floats]:
         """Stiffness and mass matrices (..., 6, 6) at positions `x`, m, of a section that has them."""
         if self.shape != MATRICES:
             raise InputError("shape", f"is {self.shape!r}, which has no matrices", "give gb.Section.of_matrices")

@@ -9,7 +9,7 @@ part.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple, TypedDict
+from typing import Annotated, Any, Final, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.types import Floats
 from gbeam.constants import SectionShape
+from gbeam.guards.quantities import OneOrSome, Quantity
 from gbeam.structure import matrices
 
 ALONG = np.linspace(-1, 1, 9)  # of a face, between corners
@@ -194,21 +195,27 @@ class Shape(NamedTuple):
     stresses: Callable[..., Array] | None = None
 
 
+Lengths = Annotated[ArrayLike, Quantity("length", "positive"), OneOrSome()]
+Areas = Annotated[ArrayLike, Quantity("area", "positive"), OneOrSome()]
+SecondMoments = Annotated[ArrayLike, Quantity("second moment of area", "positive"), OneOrSome()]
+ShearCoefficients = Annotated[ArrayLike, Quantity("ratio", "positive"), OneOrSome()]
+
+
 class Dimensions(TypedDict, total=False):
     """Dimensions of all shapes, as :meth:`gbeam.Section.of` takes those of one."""
 
-    width: ArrayLike | None
-    thickness: ArrayLike | None
-    diameter: ArrayLike | None
-    wall: ArrayLike | None
-    area: ArrayLike | None
-    inertia_y: ArrayLike | None
-    inertia_z: ArrayLike | None
-    extreme_fibre_y: ArrayLike | None
-    extreme_fibre_z: ArrayLike | None
-    torsion_constant: ArrayLike | None
-    shear_coefficient_y: ArrayLike | None
-    shear_coefficient_z: ArrayLike | None
+    width: Lengths | None
+    thickness: Lengths | None
+    diameter: Lengths | None
+    wall: Lengths | None
+    area: Areas | None
+    inertia_y: SecondMoments | None
+    inertia_z: SecondMoments | None
+    extreme_fibre_y: Lengths | None
+    extreme_fibre_z: Lengths | None
+    torsion_constant: SecondMoments | None
+    shear_coefficient_y: ShearCoefficients | None
+    shear_coefficient_z: ShearCoefficients | None
     stiffness: ArrayLike | None
     mass: ArrayLike | None
 

@@ -14,6 +14,7 @@ from gbeam.analysis.case import Case
 from gbeam.errors import ComputationError, GbeamError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import WRITTEN, kinds
+from gbeam.guards.quantities import Seconds
 from gbeam.progress import Progress
 from gbeam.questions import Needs, Options, reduced
 from gbeam.results.result import Floats
@@ -38,7 +39,7 @@ _TIED = 0.7  # correlation of residuals with the next ones, above which they are
 _VISIBLE = 1e-5  # of the largest datum: residuals that are less are rounding
 
 
-@kinds(at="time", bounds=WRITTEN, options=WRITTEN)
+@kinds(bounds=WRITTEN, options=WRITTEN)
 @typed
 def fit(
     scenario: str | os.PathLike[str] | Case,
@@ -47,7 +48,7 @@ def fit(
     *,
     bounds: Bounds | None = None,
     motion: str | None = None,
-    at: float | None = None,
+    at: Seconds | None = None,
     options: Options | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),

@@ -16,6 +16,7 @@ from gbeam.constants import Verb
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import KINDS, WRITTEN, kinds
+from gbeam.guards.quantities import Seconds
 from gbeam.guards.units import read_quantity
 from gbeam.progress import Progress
 from gbeam.questions import Options
@@ -35,7 +36,7 @@ LIMITS = "limits"
 _BOUND = re.compile(r"\s*(\S+)\s*(<=|>=)\s*(.+?)\s*")
 
 
-@kinds(at="time", bounds=WRITTEN, options=WRITTEN)
+@kinds(bounds=WRITTEN, options=WRITTEN)
 @typed
 def optimise(
     scenario: str | os.PathLike[str] | Case,
@@ -46,7 +47,7 @@ def optimise(
     bounds: Bounds | None = None,
     verb: Verb = "run",
     motion: str | None = None,
-    at: float | None = None,
+    at: Seconds | None = None,
     options: Options | None = None,
     starts: int = 1,
     overrides: Sequence[str] = (),

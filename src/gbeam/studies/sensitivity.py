@@ -16,6 +16,7 @@ from gbeam.constants import Verb
 from gbeam.errors import GbeamError, InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import WRITTEN, kinds
+from gbeam.guards.quantities import Seconds
 from gbeam.progress import Progress
 from gbeam.questions import Options
 from gbeam.results.cases import Sensitivity
@@ -46,7 +47,7 @@ _SMOOTH = 1e-3  # of the figure over the value: a smaller difference is rounding
 _NOT_PHYSICAL = re.compile(r"(^|\.)(steps|step|errors|error_estimate|accepted|passed|yielded|margin_estimate)(\.|\[|$)")
 
 
-@kinds(at="time", options=WRITTEN)
+@kinds(options=WRITTEN)
 @typed
 def sensitivity(
     scenario: str | os.PathLike[str] | Case,
@@ -55,7 +56,7 @@ def sensitivity(
     *,
     verb: Verb = "run",
     motion: str | None = None,
-    at: float | None = None,
+    at: Seconds | None = None,
     options: Options | None = None,
     overrides: Sequence[str] = (),
     progress: Progress = None,

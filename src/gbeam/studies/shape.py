@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
 from gbeam.guards.kinds import kinds
+from gbeam.guards.quantities import Angle, OfKind, Ratio, Seconds
 from gbeam.mechanics.models import MODEL_KINDS
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.system import System
@@ -48,18 +49,17 @@ def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
 @kinds(
     limit=lambda arguments: DRIVES[_drive(arguments)][1],
     rate=lambda arguments: "speed" if _drive(arguments)[1] else "angular rate",
-    distance="length",
 )
 @typed
 def shape_hub_command(
     scenario: str | os.PathLike[str] | Case,
     *,
-    angle: float | None = None,
+    angle: Angle | None = None,
     rate: float | None = None,
-    distance: float | None = None,
-    duration: float | None = None,
+    distance: Annotated[float | None, OfKind("length")] = None,
+    duration: Seconds | None = None,
     limit: float = np.inf,
-    robust: float = 0.0,
+    robust: Ratio = 0.0,
     check: ModelKind | Literal[""] = "",
     motion: str | None = None,
     joint: str | None = None,

@@ -18,6 +18,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import WRITTEN, kinds
 from gbeam.guards.limits import HISTORY_BYTES, WORKERS, refuse_more
+from gbeam.guards.quantities import Seconds
 from gbeam.progress import tell
 from gbeam.questions import Options
 from gbeam.results.cases import Sweep
@@ -35,7 +36,7 @@ _LONGEST = 256  # cases in a batch
 Progress = Callable[[int, int, int], None] | bool | None
 
 
-@kinds(at="time", over=WRITTEN, options=WRITTEN)
+@kinds(over=WRITTEN, options=WRITTEN)
 @typed
 def sweep(
     scenario: str | os.PathLike[str] | Case,
@@ -46,7 +47,7 @@ def sweep(
     times: int = TIMES,
     verb: Verb | None = None,
     motion: str | None = None,
-    at: float | None = None,
+    at: Seconds | None = None,
     options: Options | None = None,
     overrides: Sequence[str] = (),
     samples: int | None = None,

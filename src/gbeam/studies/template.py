@@ -18,7 +18,8 @@ import numpy as np
 from gbeam.analysis.case import BEAM, Case
 from gbeam.arrays.tree import altered, arguments_of
 from gbeam.errors import InputError, placing_within
-from gbeam.guards.kinds import KINDS, Kinds, common_kind, element_kinds, kind_of_argument
+from gbeam.guards.kinds import KINDS, Kinds, common_kind, element_kinds
+from gbeam.guards.parameters import kind_of_argument
 from gbeam.guards.units import read_quantity
 from gbeam.mechanics.assembly import assemble, model_of
 from gbeam.mechanics.structure import Structure
@@ -27,6 +28,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import notes_on
 from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
+from gbeam.results.result import Part
 from gbeam.scenario.build import build, scenario_of
 from gbeam.scenario.load import change, provenance
 from gbeam.scenario.schema.fields import kind_of, quantities
@@ -108,7 +110,7 @@ class ScenarioTemplate:
 class _BeamBody:
     """A beam in its model, as a body of a system, whose values are the arguments of the beam, and `model`."""
 
-    owner = "Beam"
+    maker = Beam
 
     def __init__(self, structure: Structure, beam: Beam) -> None:
         self.structure = structure
@@ -245,15 +247,17 @@ def template_of(
 
 def _children(node: Any, kinds: Kinds) -> dict[Any, tuple[Any, Kinds]]:
     """Children of a node by name or number. Each has the kinds of quantity of its own name, or else
-    those of the node.
+    those of the node. What is computed from a case, such as the summary of its record, has none to vary.
     """
+    if isinstance(node, Part):
+        return {}
     if isinstance(node, (tuple, list)) or np.ndim(node):
         return {k: (child, common_kind(kinds)) for k, child in enumerate(node)}
     if isinstance(node, Mapping):
         return {name: (child, element_kinds(kinds, name)) for name, child in node.items()}
-    owner = getattr(node, "owner", type(node).__name__)
+    maker = getattr(node, "maker", type(node))  # the class or function that takes them
     arguments = arguments_of(node) or {}
-    return {name: (child, kind_of_argument(owner, name, arguments) or kinds) for name, child in arguments.items()}
+    return {name: (child, kind_of_argument(maker, name, arguments) or kinds) for name, child in arguments.items()}
 
 
 def _replace_values(node: Any, kinds: Kinds, changes: Any, path: Path) -> Any:

@@ -28,7 +28,7 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
-from gbeam.guards.kinds import kinds
+from gbeam.guards.quantities import AngularRate, Seconds
 from gbeam.mechanics.plausibility import input_warnings
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.control import signal_names
@@ -41,14 +41,13 @@ from gbeam.results.errors import direction_words
 from gbeam.results.state_space import ACCURATE, Gauge, StateSpace, import_control
 
 
-@kinds(at="")
 @typed
 def linearize(
     structure: Structure | System,
     motion: Motion | None = None,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     *,
-    rate: float | None = None,
+    rate: AngularRate | None = None,
     q: ArrayLike | None = None,
     qd: ArrayLike | None = None,
     gauges: Sequence[Gauge] = (),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
+from gbeam.guards.quantities import OfKind
 from gbeam.integrate.equations import accelerations
 from gbeam.mechanics.assembly import replace_stations
 from gbeam.mechanics.causes import causes_of
@@ -39,7 +40,7 @@ from gbeam.structure.beam import Beam, fibre_strain, names_at
 
 
 @typed
-def surface_gauges(beam: Beam, stations: Iterable[float]) -> list[Gauge]:
+def surface_gauges(beam: Beam, stations: Annotated[Iterable[float], OfKind("length")]) -> list[Gauge]:
     """Return two gauges at each station, on the extreme fibres towards +z and +y.
 
     Parameters

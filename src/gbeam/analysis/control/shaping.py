@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import kinds
+from gbeam.guards.quantities import Angle, OfKind, Ratio, Seconds
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.hub import Hub
@@ -52,19 +53,18 @@ def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
 @kinds(
     limit=lambda arguments: DRIVES[_drive(arguments)][1],
     rate=lambda arguments: "speed" if _drive(arguments)[1] else "angular rate",
-    distance="length",
 )
 @typed
 def shape_command(
     structure: Structure | System,
     hub: Hub | str,
     *,
-    angle: float | None = None,
+    angle: Angle | None = None,
     rate: float | None = None,
-    distance: float | None = None,
-    duration: float,
+    distance: Annotated[float | None, OfKind("length")] = None,
+    duration: Seconds,
     limit: float = np.inf,
-    robust: float = 0.0,
+    robust: Ratio = 0.0,
     pieces: int = 24,
     check: Structure | System | None = None,
     point: str | None = None,

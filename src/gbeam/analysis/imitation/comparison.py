@@ -15,6 +15,7 @@ from gbeam.errors import InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
 from gbeam.guards.kinds import kinds
+from gbeam.guards.quantities import Ratio
 from gbeam.numerics.samples import interpolated, largest_oscillator_acceleration, low_pass
 from gbeam.results.accounting import TOLERANCE, PeakPair
 from gbeam.results.comparison import Comparison
@@ -79,7 +80,7 @@ def compare(
     centrifuge: Response,
     *,
     point: str | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: Ratio = TOLERANCE,
     tolerance_of: ToleranceOf = "peak",
     accept: Limits | None = None,
     control: Mapping[str, float] | None = None,

@@ -19,7 +19,7 @@ from gbeam.constants import Measure, Mounting
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice
-from gbeam.guards.quantities import Quantity
+from gbeam.guards.quantities import OfKind, Quantity
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.centrifuge.centrifuge import MOUNTINGS, Centrifuge
 from gbeam.motion.centrifuge.course import INVERSES
@@ -71,7 +71,7 @@ class Choice:
 
     make: Callable[..., Centrifuge]
     mountings: Sequence[Mounting]
-    widths: Numbers
+    widths: Annotated[Numbers, OfKind("time")]
     refined: bool = True
     limited: bool = True
     turns: Annotated[tuple[Turn, ...], Quantity("angle")] = ()
@@ -101,7 +101,7 @@ def width_of(centrifuge: Centrifuge) -> float:
 @typed
 def choice_of(
     centrifuge: Centrifuge,
-    smoothing: Numbers = (),
+    smoothing: Annotated[Numbers, OfKind("time")] = (),
     *,
     limited: bool = True,
     turns: Ways = "own",

@@ -11,6 +11,7 @@ from gbeam.constants import ToleranceOf
 from gbeam.guards.arguments import typed
 from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import SAMPLES, refuse_more
+from gbeam.guards.quantities import Ratio, Seconds
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.centrifuge.centrifuge import Centrifuge
@@ -33,7 +34,7 @@ def plan(
     tracks: str = "",
     *,
     specimen: Structure | System | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: Ratio = TOLERANCE,
     tolerance_of: ToleranceOf = "peak",
     accept: Limits | None = None,
     title: str = "",
@@ -107,7 +108,7 @@ def plan(
 
 
 @typed
-def axis_commands(motion: Centrifuge, sample: float) -> Commands:
+def axis_commands(motion: Centrifuge, sample: Seconds) -> Commands:
     """Return the axis motions at a controller's sample time, from their closed forms and not by interpolation.
 
     Parameters

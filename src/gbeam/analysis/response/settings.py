@@ -13,7 +13,7 @@ from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import implausible, refuse_traced
 from gbeam.guards.limits import STEPS, refuse_more
-from gbeam.guards.quantities import Factor, Quantity, Time
+from gbeam.guards.quantities import Factor, Quantity, Seconds, Time
 
 FINE = 1e-4
 KEPT = 50_000  # samples of each history that a file holds, unless the settings say how often: 36 MB of the F-16 example
@@ -23,17 +23,17 @@ NO_LOADS = "no loads are computed, nor whether the material yields: the settings
 class Settings(TypedDict, total=False):
     """Keywords of :class:`ResponseSettings`, as :func:`gbeam.simulate` takes them; quantities may be text."""
 
-    duration: float | str
-    start: float | str
-    step: float | str | None
+    duration: Annotated[float | str, Quantity("time")]
+    start: Annotated[float | str, Quantity("time")]
+    step: Annotated[float | str | None, Quantity("time")]
     integrator: Integrator
     parameters: Mapping[Parameter, float]
-    tolerance: float | str
-    residual_from: float | str | None
+    tolerance: Annotated[float | str, Quantity("ratio")]
+    residual_from: Annotated[float | str | None, Quantity("time")]
     initial: Initial | State
     estimate: bool
     loads: bool
-    histories: float | str | None
+    histories: Annotated[float | str | None, Quantity("time")]
 
 
 @typed
@@ -130,7 +130,7 @@ class ResponseSettings(Value):
         lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
         return "" if self.estimate else f"{lacking}: the settings say estimate = false"
 
-    def kept_every(self, samples: int, step: float) -> int:
+    def kept_every(self, samples: int, step: Seconds) -> int:
         """Number n if every n-th of the `samples` of a history, `step` s apart, goes into a file: all or fewer, unless
         the settings say how often.
         """

@@ -20,7 +20,7 @@ from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats, Indices, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
-from gbeam.guards.quantities import Quantity
+from gbeam.guards.quantities import OfKind, Quantity, Seconds
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.profiles.profile import Profile
@@ -115,13 +115,13 @@ def campbell(
     motion: Motion | None = None,
     *,
     turning: str | None = None,
-    speeds: Numbers | None = None,
+    speeds: Annotated[Numbers | None, OfKind("angular rate")] = None,
     start: Annotated[float, Quantity("angular rate")] = 0.0,
     end: Annotated[float, Quantity("angular rate")] | None = None,
     count: int = 60,
     modes: int = 8,
     orders: Sequence[int] | Indices = (1, 2, 3, 4),
-    time: float = 0.0,
+    time: Seconds = 0.0,
     name: str = "",
     progress: Progress = None,
 ) -> Campbell:

@@ -10,6 +10,7 @@ from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.rest import steady_state
 from gbeam.arrays.namespace import Array, holds_jax
 from gbeam.guards.arguments import typed
+from gbeam.guards.quantities import Seconds
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
@@ -25,7 +26,7 @@ class Equilibrium(NamedTuple):
 
 
 @typed
-def solve_equilibrium(structure: Structure, base: Base, time: float | None = None) -> Equilibrium:
+def solve_equilibrium(structure: Structure, base: Base, time: Seconds | None = None) -> Equilibrium:
     """Coordinates at which the beam rests relative to a base whose motion is frozen, under its loads, stable or not.
 
     It is that of the system of this body alone. A linear model's equations are solved at once; others by Newton's

@@ -18,6 +18,7 @@ from gbeam.analysis.system.richer import judged_bodies
 from gbeam.analysis.system.steady import SteadySystem
 from gbeam.arrays.types import Complex, Floats
 from gbeam.guards.arguments import typed
+from gbeam.guards.quantities import Seconds
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_matrices
@@ -130,7 +131,7 @@ def decided(computed: Modes, bend: float) -> Modes:
 def modes(
     structure: Structure | System,
     motion: Motion | None = None,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     *,
     gyroscopic: bool = True,
     errors: bool = True,

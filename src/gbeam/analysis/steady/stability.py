@@ -22,7 +22,7 @@ from gbeam.arrays.types import Numbers
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.quantities import Quantity
+from gbeam.guards.quantities import OfKind, Quantity, Seconds
 from gbeam.mechanics.assembly import assemble
 from gbeam.mechanics.models import Model
 from gbeam.mechanics.plausibility import input_warnings
@@ -62,7 +62,7 @@ def critical_speed(
     *,
     turning: str | None = None,
     upper: Annotated[float, Quantity("angular rate")] | None = None,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     name: str = "",
     progress: Progress = None,
 ) -> Critical:
@@ -161,7 +161,7 @@ def critical_speed_map(
     model: Model,
     motion: Motion,
     masses: Annotated[Numbers, Quantity("mass")],
-    positions: Numbers,
+    positions: Annotated[Numbers, OfKind("length")],
     upper: Annotated[float, Quantity("angular rate")] | None = None,
     *,
     name: str = "",
@@ -229,7 +229,7 @@ def critical_speed_map(
 def buckling_acceleration(
     structure: Structure | System,
     *,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     upper: Annotated[float, Quantity("acceleration")] | None = None,
     progress: Progress = None,
 ) -> Critical:
@@ -275,7 +275,7 @@ def critical_load(
     structure: Structure | System,
     base: Base | None = None,
     *,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     motion: Motion | None = None,
     upper: float | None = None,
     progress: Progress = None,

@@ -23,6 +23,7 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import ComputationError, InputError
 from gbeam.guards.arguments import typed
+from gbeam.guards.quantities import AccelerationVector, Seconds
 from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.models import TORSION
 from gbeam.mechanics.section_forces import add_hub_torques
@@ -73,9 +74,9 @@ def _sideways(state: SteadySystem) -> tuple[str, ...]:
 def static(
     structure: Structure | System,
     motion: Motion | None = None,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     *,
-    acceleration: Numbers | None = None,
+    acceleration: AccelerationVector | None = None,
     name: str = "",
     progress: Progress = None,
 ) -> Rest:

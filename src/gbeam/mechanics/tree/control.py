@@ -22,7 +22,7 @@ from gbeam.errors import ComputationError, InputError, placing_within
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, refuse_traced
 from gbeam.guards.kinds import Kinds, kinds
-from gbeam.guards.quantities import Duration, Factor, Quantity, Ratio, Time
+from gbeam.guards.quantities import Duration, Factor, Quantity, Ratio, Seconds, Time
 from gbeam.mechanics.tree.signal_names import kind_of_drive, kind_of_signal
 from gbeam.motion.profiles.combine import as_profile
 from gbeam.printable import on_one_line, shortened
@@ -187,7 +187,7 @@ class Feedback(Value):
         except Exception:  # that it fails is said where it is sampled
             return False
 
-    def effort(self, t: float, measured: Floats, state: Any) -> tuple[Floats, Any]:
+    def effort(self, t: Seconds, measured: Floats, state: Any) -> tuple[Floats, Any]:
         """Return the efforts (m,), before they are limited, and the state at the next sample.
 
         Parameters

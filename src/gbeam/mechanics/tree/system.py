@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from gbeam.arrays.types import Floats, Numbers
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, vector
-from gbeam.guards.quantities import AccelerationVector, Components, Quantity
+from gbeam.guards.quantities import AccelerationVector, Components, Quantity, Seconds, Times
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.body_terms import body_of, refuse_turnless, stations_of
 from gbeam.mechanics.tree.control import Feedback
@@ -434,7 +434,7 @@ class System(Value):
         """Places of all points, (points, 3) m, with the joints at the start and bodies undeformed."""
         return np.asarray(self.start_state.places)
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Return the times that steps should not pass unseen, s.
 
         Parameters
@@ -450,7 +450,7 @@ class System(Value):
         times += [history.corners(step) for history in loads]
         return np.concatenate(times)
 
-    def inputs(self, t: Any, motion: Motion | None = None) -> Inputs:
+    def inputs(self, t: Times, motion: Motion | None = None) -> Inputs:
         """Return what drives the tree.
 
         Parameters

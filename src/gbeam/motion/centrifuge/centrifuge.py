@@ -15,7 +15,7 @@ from gbeam.constants import STANDARD_GRAVITY, InverseName, Mounting, Start
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, positive, vector
-from gbeam.guards.quantities import Duration, Factor, Quantity, RotationVector
+from gbeam.guards.quantities import Duration, Factor, Quantity, RotationVector, Seconds, Times
 from gbeam.motion.centrifuge.course import INVERSES, LESS, Course, Planned, prepare, replan
 from gbeam.motion.centrifuge.inverses.instant import Geometry, Inverse
 from gbeam.motion.centrifuge.kinematics import Axes, control_point_load, forward_kinematics
@@ -193,7 +193,7 @@ class Centrifuge:
         return False
 
     @typed
-    def over(self, start: float, end: float, *, ahead: bool = True) -> Self:
+    def over(self, start: Seconds, end: Seconds, *, ahead: bool = True) -> Self:
         """The machine with its target and axis motions prepared for the flight's times from `start` to `end`, s.
 
         It is itself if it is prepared for these times already. Unless `ahead`, the plan of ``planned`` is made only
@@ -243,11 +243,11 @@ class Centrifuge:
             "span": None if self.course is None else self.course.target.span,
         }
 
-    def base(self, t: Any) -> Base:
+    def base(self, t: Times) -> Base:
         """Motion of the root at times `t` (s, any shape)."""
         return shift_base(self.at_control_point(t), -self.place)
 
-    def at_control_point(self, t: Any) -> Base:
+    def at_control_point(self, t: Times) -> Base:
         """Motion of the control point at times `t` (s, any shape), axes of the specimen."""
         base = forward_kinematics(self.axes(t), self.geometry.arm, self.geometry.gravity)
         return each_leaf(self._felt, base) if any(self.turn) else base
@@ -266,7 +266,7 @@ class Centrifuge:
         """First and last time of the motion on the flight's clock, s: from standstill to standstill, or at idle."""
         return self._solved.extent
 
-    def beyond(self, start: float, end: float) -> tuple[Any, Any]:
+    def beyond(self, start: Seconds, end: Seconds) -> tuple[Any, Any]:
         """Return how long the machine moves before `start` and after `end`, s: its spin-up and its spin-down.
 
         Each is zero if its end lies inside the flight, as in a run of a part of it.
@@ -288,7 +288,7 @@ class Centrifuge:
         """Inverse that makes axis motions of the target, likewise."""
         return self._solved.inverse
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""
         return self.target.load.corners(step)
 
@@ -311,22 +311,22 @@ class Centrifuge:
         plan = replan(course.inverse, course.target, self.geometry, self.limits, self.ends, self.ease)
         return self._changed(course=replace(course, solution=plan), ease=LESS * self.ease)
 
-    def axes(self, t: Any) -> Axes:
+    def axes(self, t: Times) -> Axes:
         """States of the three axes at times `t` (s)."""
         first, second, third = self._solved.derivatives(t, 2)
         return Axes(*first[:2], *second, *third)
 
-    def axes_and_jerks(self, t: Any) -> tuple[Axes, Any]:
+    def axes_and_jerks(self, t: Times) -> tuple[Axes, Any]:
         """States of the axes and their jerks (..., 3) rad/s³ at times `t` (s), from the closed forms."""
         first, second, third = self._solved.derivatives(t, 3)
         jerks = first[2], second[3], third[3]
         return Axes(*first[:2], *second[:3], *third[:3]), namespace(*jerks).stack(jerks, axis=-1)
 
-    def reference(self, t: Any) -> Any:
+    def reference(self, t: Times) -> Any:
         """Load to be made at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
         return self._felt(self._solved.reference(t))
 
-    def actual(self, t: Any) -> Any:
+    def actual(self, t: Times) -> Any:
         """Load that the axes make at the control point at times `t` (s), base axes, m/s², shape (..., 3)."""
         return self.actual_by(self.axes(t))
 
@@ -334,11 +334,11 @@ class Centrifuge:
         """Load that given states of the `axes` make at the control point, base axes, m/s², shape (..., 3)."""
         return self._felt(control_point_load(axes, self.geometry.arm, self.geometry.gravity))
 
-    def tracking_error(self, t: Any) -> Any:
+    def tracking_error(self, t: Times) -> Any:
         """Actual load less the reference at times `t` (s), base axes, m/s², shape (..., 3)."""
         return self.actual(t) - self.reference(t)
 
-    def not_followed(self, t: Any) -> Any:
+    def not_followed(self, t: Times) -> Any:
         """Tell at which times `t` (s) the reference is not the flight's load; spin-up and spin-down are among them."""
         (first, last), now = self.target.span, as_array(t)
         return self.target.not_followed(now) | (now < first) | (now > last)

@@ -14,7 +14,7 @@ from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
-from gbeam.guards.kinds import kinds
+from gbeam.guards.quantities import Seconds, Times
 from gbeam.motion.profiles.piecewise import PiecewiseLinear, constant
 from gbeam.motion.profiles.profile import Convolved, Profile, append_axes
 from gbeam.numerics.series import Series, stack, where
@@ -32,10 +32,10 @@ class _Combined(Profile):
     def breaks(self) -> Any:
         return merged_breaks(*self.parts)
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         return np.unique(np.concatenate([part.corners(step) for part in self.parts]))
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return np.unique(np.concatenate([part.knots(step) for part in self.parts]))
 
     @property
@@ -72,10 +72,10 @@ class Sum(_Combined):
             raise InputError("parts", "is empty", "list one profile or more")
         object.__setattr__(self, "parts", tuple(self.parts))
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         return reduce(add, (part.series(t, order) for part in self.parts))
 
-    def smoothed(self, width: Any) -> Profile:
+    def smoothed(self, width: Times) -> Profile:
         # Convolution is linear.
         return Sum(tuple(part.smoothed(width) for part in self.parts))
 
@@ -86,10 +86,10 @@ class Vector(_Combined):
 
     parts: tuple[Profile, Profile, Profile]
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         return stack([part.series(t, order) for part in self.parts])
 
-    def smoothed(self, width: Any) -> Profile:
+    def smoothed(self, width: Times) -> Profile:
         x, y, z = (part.smoothed(width) for part in self.parts)
         return Vector((x, y, z))
 
@@ -101,17 +101,17 @@ class Turned(Profile):
     profile: Profile
     matrix: Any
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         return self.profile.series(t, order).map(lambda c: c @ self.matrix.T)
 
     @property
     def breaks(self) -> Any:
         return self.profile.breaks
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         return self.profile.corners(step)
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return self.profile.knots(step)
 
     @property
@@ -122,11 +122,10 @@ class Turned(Profile):
     def record(self) -> RecordSummary | None:
         return self.profile.record
 
-    def smoothed(self, width: Any) -> Profile:
+    def smoothed(self, width: Times) -> Profile:
         return Turned(self.profile.smoothed(width), self.matrix)
 
 
-@kinds(x="")
 @typed
 def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> Vector:
     """Return the vector profile of three components; one left out is zero.
@@ -208,19 +207,18 @@ def _cut(table: PiecewiseLinear, first: float, last: float) -> PiecewiseLinear:
     return PiecewiseLinear(inside, table(inside))
 
 
-@kinds(first="time", last="time")
 @record
 class Clamped(Profile):
     """A curved profile that is constant before one time and after another, s; see :func:`clamped`."""
 
     profile: Profile
-    first: Any
-    last: Any
+    first: Times
+    last: Times
 
     def __post_init__(self) -> None:
         assign(self, first=as_array(self.first), last=as_array(self.last))
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         now = as_array(t)
         inner = self.profile.series(namespace(now, self.first, self.last).clip(now, self.first, self.last), order)
         inside = (now >= self.first) & (now <= self.last)  # the ends themselves belong to it, with their derivatives
@@ -234,15 +232,15 @@ class Clamped(Profile):
         between = xp.clip(breaks, self.first, self.last)
         return xp.concatenate([self.first[None], between, self.last[None]])
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """The two times and the corners between, s."""
         first, last = float(self.first), float(self.last)
         return np.concatenate([[first], np.clip(self.profile.corners(step), first, last), [last]])
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return np.unique(np.clip(self.profile.knots(step), float(self.first), float(self.last)))
 
-    def smoothed(self, width: Any) -> Profile:
+    def smoothed(self, width: Times) -> Profile:
         """By quadrature; if the profile is a convolution itself, of a table of it: nested quadrature costs minutes."""
         inner = self.profile
         if not isinstance(inner, Convolved) or is_traced(width, inner.width, self.first, self.last):

@@ -14,8 +14,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import finite, positive
-from gbeam.guards.kinds import kinds
-from gbeam.guards.quantities import OfProfile, Quantity
+from gbeam.guards.quantities import OfProfile, Quantity, Seconds, Times
 from gbeam.motion.profiles.profile import TOGETHER, Profile, Rounded, append_axes, hann_orders
 from gbeam.numerics.series import Series
 
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from gbeam.results.description import RecordSummary
 
 
-@kinds(times="time")
 @record
 class PiecewiseLinear(Profile):
     """Straight between knots, constant before the first and after the last; one knot makes a constant."""
@@ -33,7 +31,7 @@ class PiecewiseLinear(Profile):
     slopes: Any  # of the k + 1 segments, the outer two level, (k + 1,) or (k + 1, 3)
     summary: RecordSummary | None = static()  # of the flight's record that it is
 
-    def __init__(self, times: Any, values: Any, *, record: RecordSummary | None = None) -> None:
+    def __init__(self, times: Times, values: Any, *, record: RecordSummary | None = None) -> None:
         """Refuse times and values that make no profile, and compute the slopes between them."""
         t, v = (array[None] if array.ndim == 0 else array for array in (as_array(times), as_array(values)))
         if t.ndim != 1 or t.size == 0:
@@ -52,7 +50,7 @@ class PiecewiseLinear(Profile):
             _refuse_steep(np.asarray(t), np.asarray(rise))
         assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]), summary=record)
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         now = as_array(t)
         xp = namespace(now, self.times)
         return _line(self, now, xp.searchsorted(xp.asarray(self.times), now, side="right"), order)
@@ -65,14 +63,14 @@ class PiecewiseLinear(Profile):
     def record(self) -> RecordSummary | None:
         return self.summary
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         bent = (np.diff(np.asarray(self.slopes), axis=0) != 0).reshape(len(self.times), -1).any(axis=1)
         return np.asarray(self.times)[bent]
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return np.asarray(self.times)
 
-    def smoothed(self, width: Any) -> Profile:
+    def smoothed(self, width: Times) -> Profile:
         """Closed form: the straight pieces, with a rounded ramp at each knot near by."""
         return SmoothedPiecewiseLinear(self, width)
 
@@ -112,7 +110,6 @@ def _line(table: PiecewiseLinear, t: Any, segment: Any, order: int) -> Series:
     )
 
 
-@kinds(width="time")
 @record
 class SmoothedPiecewiseLinear(Rounded):
     """Convolution of a piecewise-linear profile with the Hann kernel, exact and three times differentiable.
@@ -128,10 +125,10 @@ class SmoothedPiecewiseLinear(Rounded):
     table: PiecewiseLinear
     bends: Any  # change of slope at each knot, and a zero for indices past the end, (k + 1,) or (k + 1, 3)
     times: Any  # of the knots, the last twice, (k + 1,)
-    width: Any
+    width: Times
     count: int = static()  # most knots that one window can hold
 
-    def __init__(self, table: PiecewiseLinear, width: Any) -> None:
+    def __init__(self, table: PiecewiseLinear, width: Times) -> None:
         """Compute the bends at the knots, and how many knots one window of the kernel can hold."""
         t, slopes, width = table.times, table.slopes, as_array(width)
         xp = namespace(t, slopes)
@@ -143,7 +140,7 @@ class SmoothedPiecewiseLinear(Rounded):
         bends = xp.concatenate([xp.diff(slopes, axis=0), xp.zeros_like(slopes[:1])])
         assign(self, table=table, bends=bends, times=xp.append(t, t[-1]), width=width, count=count)
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         """Values and derivatives at times `t`, s: the line at the window's begin, and a rounded ramp for each bend."""
         now = as_array(t)
         xp = namespace(now, self.times, self.bends, self.width)

@@ -14,8 +14,8 @@ from gbeam.arrays.tree import assign, record
 from gbeam.arrays.types import Floats
 from gbeam.guards.arguments import typed, typed_methods
 from gbeam.guards.checks import positive
-from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import KNOTS, refuse_more
+from gbeam.guards.quantities import Seconds, Times
 from gbeam.numerics.series import Series, compose, where
 
 if TYPE_CHECKING:
@@ -40,21 +40,21 @@ class Profile(ABC):
         typed_methods(cls)
 
     @abstractmethod
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         """Value and time derivatives up to `order` at times `t` (s): of the shape of `t`, with a last 3 for a vector.
 
         Where a derivative jumps, it is the one from the right.
         """
 
-    def __call__(self, t: Any) -> Any:
+    def __call__(self, t: Times) -> Any:
         """Value at times `t` (s, any shape): of the shape of `t`, with a trailing 3 for a vector."""
         return self.series(t, 0).value
 
-    def derivatives(self, t: Any, order: int = 1) -> tuple[Any, ...]:
+    def derivatives(self, t: Times, order: int = 1) -> tuple[Any, ...]:
         """Value and time derivatives up to `order` at times `t` (s), each like the value."""
         return self.series(t, order).derivatives()
 
-    def integral(self, t: Any) -> Any | None:
+    def integral(self, t: Times) -> Any | None:
         """Integral over time up to times `t` (s), but for a constant; None where it has no closed form here."""
         return None
 
@@ -63,12 +63,12 @@ class Profile(ABC):
     def breaks(self) -> Any:
         """Times (s, ascending) at which a derivative jumps, shape (b,); empty if the third is continuous."""
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Times (s, ascending) that steps of length `step` (s) should not pass unseen; breaks are among them."""
         return np.asarray(self.breaks, dtype=np.float64)
 
     @abstractmethod
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         """Times (s, ascending) between which the profile is straight, or which are `step` apart at most."""
 
     @property
@@ -82,7 +82,7 @@ class Profile(ABC):
         times = self.knots(_FOR_EVER)
         return (float(times[0]), float(times[-1])) if times.size > 1 else None
 
-    def smoothed(self, width: Any) -> Profile:
+    def smoothed(self, width: Times) -> Profile:
         """The profile convolved with the Hann kernel (1 + cos 2πt/W)/W on abs(t) < W/2, W = `width` s.
 
         By quadrature, but for profiles that know a better way.
@@ -91,9 +91,8 @@ class Profile(ABC):
         return Convolved(self, width)
 
 
-@kinds(width="time")
 @typed
-def smoothed(profile: Profile, width: Any) -> Profile:
+def smoothed(profile: Profile, width: Times) -> Profile:
     """Round the corners of a profile: its convolution with a Hann kernel, three times differentiable.
 
     Parameters
@@ -155,11 +154,11 @@ class Rounded(Profile):
         """None: the third derivative is continuous."""
         return self.sharp.breaks[:0]
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Corners of the sharp profile, s, where steps are long beside the width."""
         return rounded_corners(self.sharp.corners(step), self.width, step)
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         """Times, s, no further apart than `step` within half a width of the sharp profile's knots."""
         half, inner = float(self.width) / 2, self.sharp.knots(step)
         return sampled(float(inner[0]) - half, float(inner[-1]) + half, step)
@@ -257,7 +256,6 @@ def soft_step(value: Series, middle: Any, band: Any) -> Series:
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
-@kinds(width="time")
 @record
 class Convolved(Rounded):
     """A profile convolved with the Hann kernel of width W.
@@ -268,12 +266,12 @@ class Convolved(Rounded):
     """
 
     profile: Profile  # analytic between its breaks, with whose number the cost grows
-    width: Any  # W, s
+    width: Times  # W
 
     def __post_init__(self) -> None:
         assign(self, width=as_array(self.width))
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         """Values and derivatives at times `t`, s, by Gauss's rule on panels between the breaks in each window."""
         now, breaks, width = as_array(t), self.profile.breaks, self.width
         xp = namespace(now, breaks, width)

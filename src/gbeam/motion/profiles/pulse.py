@@ -12,7 +12,7 @@ from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import array, finite, positive
-from gbeam.guards.quantities import OfProfile, Quantity
+from gbeam.guards.quantities import OfProfile, Quantity, Seconds, Times
 from gbeam.motion.profiles.profile import STEPS_PER_EVENT, TURN, Profile, hann_orders, sampled
 from gbeam.numerics.bspline import DEGREE, PIECE, Spline
 from gbeam.numerics.series import Series
@@ -28,12 +28,12 @@ class _Pulse(Profile):
     def breaks(self) -> Any:
         return self.start + self.duration * np.arange(2.0)
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Start and end, s, and the quarters between where these are of few steps."""
         parts = STEPS_PER_EVENT if float(self.duration) < 2 * STEPS_PER_EVENT * step else 1
         return np.asarray(self.start + self.duration * (np.arange(1 + parts) / parts))
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 
@@ -66,13 +66,13 @@ class SmoothStep(_Pulse):
             start=as_array(self.start),
         )
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         phase = (as_array(t) - self.start) / self.duration
         # 2009 (43) is a step rounded by a Hann kernel of width T.
         orders = hann_orders(1, 1 + order, phase - 0.5)
         return Series.from_derivatives([self.level * h / self.duration**k for k, h in enumerate(orders)], order)
 
-    def integral(self, t: Any) -> Any:
+    def integral(self, t: Times) -> Any:
         phase = (as_array(t) - self.start) / self.duration
         return self.level * self.duration * hann_orders(0, 0, phase - 0.5)[0]
 
@@ -106,7 +106,7 @@ class Sine(_Pulse):
             start=as_array(self.start),
         )
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         phase = (as_array(t) - self.start) / self.duration
         xp = namespace(phase, self.amplitude)
         size = xp.where((phase >= 0) & (phase < 1), self.amplitude, 0.0)
@@ -144,9 +144,9 @@ class SplineProfile(Profile):
     1.5000
     """
 
-    duration: Any
+    duration: Times
     coefficients: Any
-    start: Any = 0.0
+    start: Times = 0.0
 
     def __post_init__(self) -> None:
         """Refuse a duration that is not positive, and too few coefficients for a flat begin and end."""
@@ -164,7 +164,7 @@ class SplineProfile(Profile):
     def _spline(self) -> Spline:
         return Spline(0.0, self.duration / (self.coefficients.shape[0] - DEGREE), self.coefficients[:, None])
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         since = as_array(t) - self.start
         xp = namespace(since, self.coefficients)
         inside = self._spline.series(xp.clip(since, 0.0, self.duration), order)
@@ -172,7 +172,7 @@ class SplineProfile(Profile):
         value, *rates = (coefficient[..., 0] for coefficient in inside.coefficients)
         return Series((value, *(xp.where(beyond, 0.0, rate) for rate in rates)))
 
-    def integral(self, t: Any) -> Any:
+    def integral(self, t: Times) -> Any:
         since = as_array(t) - self.start
         inside = namespace(since, self.coefficients).clip(since, 0.0, self.duration)
         # Before and after it is constant.
@@ -183,13 +183,13 @@ class SplineProfile(Profile):
         """None: the fourth derivative is continuous."""
         return np.empty(0)
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         """Start and end, s, and the ends of the pieces where these are of few steps."""
         pieces = len(self.coefficients) - DEGREE
         short = float(self.duration) / pieces < PIECE * step
         return np.asarray(self.start + self.duration * np.linspace(0, 1, 1 + (pieces if short else 1)))
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return sampled(float(self.start), float(self.start + self.duration), step)
 
 

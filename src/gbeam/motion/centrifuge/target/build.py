@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -14,8 +14,8 @@ from gbeam.constants import STANDARD_GRAVITY
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
-from gbeam.guards.kinds import kinds
 from gbeam.guards.limits import KNOTS, refuse_more
+from gbeam.guards.quantities import Acceleration, OfKind, Seconds
 from gbeam.motion.centrifuge.target.reachability import (
     LEAST_IDLE,
     MIN_TRANSVERSE_LOAD,
@@ -54,18 +54,17 @@ _ROUNDING = 1e-9
 Stretches = Sequence[tuple[float, float]]
 
 
-@kinds(gravity="", leave_out="time")
 @typed
 def build_target(
     raw: Profile,
     *,
-    span: tuple[float, float],
-    idle: float | None,
-    smoothing: float | None,
+    span: Annotated[tuple[float, float], OfKind("time")],
+    idle: Acceleration | None,
+    smoothing: Seconds | None,
     gravity: bool,
-    arm: float | None = None,
+    arm: Annotated[float | None, OfKind("length")] = None,
     clip: bool = False,
-    leave_out: Stretches = (),
+    leave_out: Annotated[Stretches, OfKind("time")] = (),
 ) -> Target:
     """Make of a flight's load the nearest one that a centrifuge can follow, at every time.
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gbeam.arrays.namespace import as_array, is_traced, namespace
 from gbeam.arrays.tree import assign, record, static
 from gbeam.arrays.types import Flags, Floats
+from gbeam.guards.quantities import Seconds, Times
 from gbeam.motion.profiles.combine import merged_breaks
 from gbeam.motion.profiles.profile import Profile, append_axes, soft_floor, soft_step
 from gbeam.numerics.samples import true_runs
@@ -223,7 +224,7 @@ class NearestLoad(Profile):
     def __post_init__(self) -> None:
         assign(self, idle=as_array(self.idle), least=as_array(self.least))
 
-    def series(self, t: Any, order: int) -> Series:
+    def series(self, t: Times, order: int) -> Series:
         now = as_array(t)
         flight = self.flight.series(now, order)
         xp = namespace(now, flight.value, self.idle)
@@ -272,10 +273,10 @@ class NearestLoad(Profile):
     def breaks(self) -> Any:
         return merged_breaks(self.flight, self.path)
 
-    def corners(self, step: float) -> Floats:
+    def corners(self, step: Seconds) -> Floats:
         return np.union1d(self.flight.corners(step), self.path.corners(step))
 
-    def knots(self, step: float) -> Floats:
+    def knots(self, step: Seconds) -> Floats:
         return np.union1d(self.flight.knots(step), self.path.knots(step))
 
 
