@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,7 @@ from gbeam.guards.limits import refuse_more
 from gbeam.guards.units import NUMBER
 from gbeam.results.cases import SAMPLE, Parameter
 from gbeam.scenario.values import Distribution, parse_path, quantities, read_distribution, with_unit
-
-SAMPLERS = ("sobol", "latin", "random", "saltelli")
-DEFAULT_SAMPLES = 64
+from gbeam.sweeps import SAMPLES
 
 
 @dataclass(frozen=True)
@@ -87,15 +85,15 @@ def read_cases(
         raise InputError("--sampler", "is saltelli, without a distribution", "draw from one, or leave it out")
     if not drawn:
         return Cases(grid, (), 0)
-    count = DEFAULT_SAMPLES if samples is None else samples
+    count = SAMPLES if samples is None else samples
     if count < 1:
         raise InputError("--samples", f"is {count}", "give one or more")
     size = count * len(drawn) * (len(drawn) + 2 if sampler == "saltelli" else 1)
     refuse_more("--samples", "values", size, MAX_VALUES, 8.0, "give fewer")
     if seed < 0:
         raise InputError("--seed", f"is {seed}", "give zero or more")
-    if sampler not in SAMPLERS:
-        raise InputError("--sampler", f"is {sampler!r}", f"choose {', '.join(SAMPLERS)}")
+    if sampler not in get_args(Sampler):
+        raise InputError("--sampler", f"is {sampler!r}", f"choose {', '.join(get_args(Sampler))}")
     if sampler == "saltelli":
         unit = _saltelli(_points(count, 2 * len(drawn), "sobol", seed))
     else:

@@ -135,12 +135,11 @@ def sweep(
       note: motion.slew: gravity is left out; on a test arm give gravity = [0, 0, "-1 g"], in hub axes
     """
     template = template_of(scenario, overrides, distributions=True)
-    table = template.table
-    if table is not None:
-        over, measure, histories = over or table.over, measure or table.measure, histories or table.history
-        verb, samples = verb or table.verb, table.samples if samples is None else samples
-        sampler, seed = sampler or table.sampler, table.seed if seed is None else seed
-    verb = verb or "run"
+    settings = template.sweep
+    over, measure, histories = over or settings.over, measure or settings.measure, histories or settings.history
+    verb, sampler = verb or settings.verb, sampler or settings.sampler
+    samples = settings.samples if samples is None else samples
+    seed = settings.seed if seed is None else seed
     if not (measure or histories):
         measure = usual_figures(template, verb, judged=True)
     names = tuple(measure)
@@ -150,8 +149,7 @@ def sweep(
     over_time = _over_time(tuple(histories), times, verb)
     if not 1 <= workers <= WORKERS:
         raise InputError("--workers", f"is {workers}", f"give 1 to {WORKERS}; a --scheduler has any number")
-    seed = seed or 0
-    cases = read_cases(_texts(over), samples, sampler or "sobol", seed, template.distributions)
+    cases = read_cases(_texts(over), samples, sampler, seed, template.distributions)
     size = len(over_time.names) * over_time.count * len(cases)
     refuse_more("--times", "values of histories", size, HISTORY_BYTES // 8, 8.0, "give fewer times, or fewer cases")
     if not isinstance(measure, Mapping):

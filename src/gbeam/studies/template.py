@@ -30,11 +30,13 @@ from gbeam.printable import advise
 from gbeam.results.provenance import Provenance
 from gbeam.results.result import Part
 from gbeam.scenario.build import build, scenario_of
+from gbeam.scenario.collector import Collector
 from gbeam.scenario.load import change, provenance
+from gbeam.scenario.schema.declared import object_of
 from gbeam.scenario.schema.fields import kind_of, quantities
-from gbeam.scenario.schema.scenario import Sweep as SweepTable
 from gbeam.scenario.values import Distribution, Path, parse_path, path_text
 from gbeam.structure.beam import Beam
+from gbeam.sweeps import SweepSettings
 
 if TYPE_CHECKING:
     from gbeam.scenario.load import AnyScenario
@@ -54,9 +56,10 @@ class ScenarioTemplate:
         return self.scenario.heading(varied)
 
     @property
-    def table(self) -> SweepTable | None:
-        """The scenario's own sweep."""
-        return self.scenario.sweep
+    def sweep(self) -> SweepSettings:
+        """Sweep that the scenario asks for."""
+        table = self.scenario.sweep
+        return SweepSettings() if table is None else object_of(Collector(), "sweep", table)
 
     @property
     def distributions(self) -> Mapping[str, Distribution]:
@@ -129,7 +132,7 @@ class CaseTemplate:
 
     case: Case
 
-    table = None
+    sweep = SweepSettings()
 
     def title(self, varied: Collection[str] = ()) -> str:
         return self.case.title

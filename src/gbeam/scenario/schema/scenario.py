@@ -15,52 +15,31 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from gbeam.constants import Sampler
 from gbeam.guards.limits import TITLE
 from gbeam.printable import advise, level_words, unprintable
 from gbeam.questions import QUESTIONS
 from gbeam.scenario.schema.arm import Arm
+from gbeam.scenario.schema.declared import table_of
 from gbeam.scenario.schema.fields import Loc, Table, by_name, motion_name, optional, refuse, wrong
 from gbeam.scenario.schema.motion import Centrifuge, Flight, Hub
 from gbeam.scenario.schema.record import PartOfRecord, Record
 from gbeam.scenario.text.source import Source
+from gbeam.sweeps import SweepSettings
 
 if TYPE_CHECKING:
-    from gbeam.constants import Verb
-
     Beam = Any
     Response = Any
     Model = Any
     Motion = Any
     Sensor = Any
+    Sweep = Any
 else:
     from gbeam.scenario.schema.beam import Beam, Model
     from gbeam.scenario.schema.motion import Motion, Sensor
     from gbeam.scenario.schema.response import Response
 
-    Verb = Literal[tuple(QUESTIONS)]  # with those that are declared elsewhere
-
-
-class Sweep(Table):
-    """Figures of many cases; `gbeam run` and the others answer for the scenario as it stands."""
-
-    over: dict[str, str] = Field(
-        default_factory=dict,
-        description='values by the path of a key: a range "1 m:12 m:12" (from, to, how many), a list "FOAM, exact", or '
-        'a distribution "normal(70 GPa, 2 GPa)", lognormal, uniform or triangular; what is a distribution where it '
-        "stands is drawn too",
-    )
-    measure: tuple[str, ...] = Field(
-        default=(),
-        description="figures by the end of their path in the verb's JSON, such as tip.z.max_abs or verdict.tip",
-    )
-    history: tuple[str, ...] = Field(
-        default=(), description="histories over time by motion, quantity and axis, such as flight.tip.z"
-    )
-    verb: Verb = Field(default="run", description="whose figures")
-    samples: int | None = optional("how many are drawn from distributions; 64", ge=1, strict=True)
-    sampler: Sampler = Field(default="sobol", description="how they are drawn; saltelli for Sobol indices")
-    seed: int = Field(default=0, ge=0, strict=True, description="the same seed draws the same samples")
+    # Verbs are those of all questions, those that are declared elsewhere among them.
+    Sweep = table_of(SweepSettings, name="Sweep", types={"verb": Literal[tuple(QUESTIONS)]})
 
 
 def _printable(title: str) -> str:
