@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gbeam as gb
-from gbeam.analysis import RESOLVED, Correction, Departures, Solution, Within
+from gbeam.analysis import RESOLVED, Correction, Departures, Embedding, Solution
 from gbeam.integrate import Trajectory
 from gbeam.mechanics import Frame, moving_system
 from gbeam.results import Base
@@ -214,7 +214,7 @@ def test_departures_of_a_beam_on_a_free_hub_are_derivatives_of_its_equations(kin
     of = Trajectory(np.array([0.0, 0.1]), y, yd, ydd)
     system, _ = moving_system(structure, hub)
     posed = Solution(system, of, lambda other, times: other.inputs(of.time[times])).posed(())
-    ours = Within.lifted(posed, posed, of).departures()
+    ours = Embedding.lifted(posed, posed, of).departures()
     for at in range(2):
         for k, matrix in enumerate((ours.k[at], ours.c[at], ours.m[at])):
 

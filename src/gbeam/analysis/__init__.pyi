@@ -3,7 +3,7 @@
 from .accuracy.correction import RESOLVED as RESOLVED
 from .accuracy.correction import Correction as Correction
 from .accuracy.correction import Departures as Departures
-from .accuracy.correction import Within as Within
+from .accuracy.correction import Embedding as Embedding
 from .accuracy.estimate import cure_of_theory as cure_of_theory
 from .accuracy.looks import Looks as Looks
 from .accuracy.looks import highest as highest

@@ -48,7 +48,7 @@ def sufficient(
 
 
 def lowest_errors(frequency: Floats, errors: FrequencyErrors | None) -> FrequencyErrors | None:
-    """Errors of the `LOWEST` frequencies of (k,) Hz, and of unseen ones below the highest of these; None if none."""
+    """Errors of the `LOWEST` frequencies of (k,) Hz, and of unseen ones below the highest of these, or None if none."""
     if errors is None or not len(frequency):
         return None
     lowest = np.argsort(frequency)[:LOWEST]
@@ -82,10 +82,10 @@ def _richer(model: Model, beam: Beam, errors: Iterable[Lacking], shapes: float, 
 
 def strains_lacking(model: Model, beam: Beam) -> tuple[StrainName, ...]:
     """Names of the strains, of twist and shear, that a model lacks and whose stiffness the beam gives."""
-    return tuple(name for name in STRAINS if not getattr(model, name) and _known(beam, name))
+    return tuple(name for name in STRAINS if not getattr(model, name) and _has_stiffness(beam, name))
 
 
-def _known(beam: Beam, strain: StrainName) -> bool:
+def _has_stiffness(beam: Beam, strain: StrainName) -> bool:
     """True if a beam gives the stiffness of a strain."""
     try:
         refuse_unknown(beam, **{name: name == strain for name in STRAINS})

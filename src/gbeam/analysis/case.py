@@ -163,8 +163,8 @@ class Case(OneBody, Value):
     def __repr__(self) -> str:
         motions = ", ".join(f"{name}: {motion.kind}" if motion else name for name, motion in self.environments.items())
         subject = repr(self.subject) if self.only_beam is None else self.model.kind
-        alike = self.response is not None and not self.spans
-        duration = f", {self.over_time.duration:g} s" if alike else ""
+        same_times = self.response is not None and not self.spans
+        duration = f", {self.over_time.duration:g} s" if same_times else ""
         return f"{type(self).__name__}({self.title!r}, {subject}, {{{motions}}}{duration})"
 
     def _refuse_motion(self, where: str, name: str, motion: Motion) -> None:
@@ -293,7 +293,7 @@ def _stressed(system: System) -> list[str]:
 
 def _refuse_unstressed(system: System, where: str, point: str) -> None:
     """Raise InputError unless a point has a stress."""
-    name, on = refuse_no_point(system, where, point)
+    name, number = refuse_no_point(system, where, point)
     stressed = _stressed(system)
     if name not in stressed:
         problem = f"is on {name}, which is no beam and no mesh"
@@ -301,4 +301,4 @@ def _refuse_unstressed(system: System, where: str, point: str) -> None:
     recovery = system.flexible[name].recovery
     if recovery is not None:
         with naming(where):
-            recovery.strain(system.points_of(name)[on], (1.0, 0.0, 0.0))
+            recovery.strain(system.points_of(name)[number], (1.0, 0.0, 0.0))

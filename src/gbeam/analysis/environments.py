@@ -110,7 +110,7 @@ def study_of(case: Case, responses: Mapping[str, Any], failures: Mapping[str, Fa
 
 
 def _readings(response: Response, sensors: Mapping[str, Sensor]) -> Readings | None:
-    """Readings of accelerometers, with their peaks; None in a response that is not done or has no accelerations.
+    """Readings of accelerometers, with their peaks, or None in a response that is not done or has no accelerations.
 
     Peaks are the larger ones of the times of output and of all steps, where these are recorded.
     """
@@ -141,8 +141,8 @@ def _answers(case: Case, progress: Progress) -> tuple[dict[str, Any], dict[str, 
         """Response in one environment."""
         motion = case.environments[name]
 
-        def report(what: str, share: float) -> None:
-            tell(progress, f"{name}: {what}", share)
+        def report(stage: str, share: float) -> None:
+            tell(progress, f"{name}: {stage}", share)
 
         response = simulate(case.system, motion, case.settings_of(name), name=name, progress=report)
         return replace(response, provenance=case.provenance)

@@ -100,13 +100,13 @@ def compare_models(
     chosen = [REFERENCE, *(k for k in kinds if k != REFERENCE)]
     answers: dict[tuple[str, str], tuple[_Tip | Failure, float]] = {}
     for i, kind in enumerate(chosen):
-        alike = _counterpart(case, kind)
+        counterpart = _counterpart(case, kind)
         for name, motion in case.environments.items():
 
-            def report(what: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
-                tell(progress, f"{doing}: {what}", (done + share) / len(chosen))
+            def report(stage: str, share: float, doing: str = f"{kind} on {name}", done: int = i) -> None:
+                tell(progress, f"{doing}: {stage}", (done + share) / len(chosen))
 
-            run = partial(_answer, alike, motion, case.settings_of(name), name, point, report)
+            run = partial(_answer, counterpart, motion, case.settings_of(name), name, point, report)
             answer, seconds = _timed(run)
             if not answers and seconds < PATIENCE:
                 answer, seconds = _timed(run)
@@ -155,8 +155,8 @@ def _counterpart(case: Case, kind: ModelKind) -> Case | Failure:
 def convert_models(system: System, kind: ModelKind) -> System:
     """Put all beams of a system into one kind of model, each with as many shapes as before."""
     beams = {name: body for name, body in system.flexible.items() if body.source is not None}
-    other = {name: remade(body, counterpart(model_of(body), kind), body.stations[:-1]) for name, body in beams.items()}
-    return replace(system, bodies={**system.bodies, **other})
+    bodies = {name: remade(body, counterpart(model_of(body), kind), body.stations[:-1]) for name, body in beams.items()}
+    return replace(system, bodies={**system.bodies, **bodies})
 
 
 def _answer(
@@ -208,8 +208,8 @@ def _tip_of(response: Response, point: str | None) -> _Tip:
         moved, peaks = body.at(name), body.peaks.displacement[body.points.index(name)].components
         return _Tip(response, point, moved, peaks.value, peaks.time, residual, response.residual_from, angle)
     moved = response.place[:, k] - response.place[0, k]
-    value, when = vector_peaks(response.time, moved)
-    return _Tip(response, point, moved, value[:3], when[:3], residual, response.residual_from, angle)
+    value, peak_time = vector_peaks(response.time, moved)
+    return _Tip(response, point, moved, value[:3], peak_time[:3], residual, response.residual_from, angle)
 
 
 def shape_tail(structure: Structure, q: Floats) -> float:
@@ -220,9 +220,9 @@ def shape_tail(structure: Structure, q: Floats) -> float:
     size = float(np.abs(tip).max())
     if not last or size == 0:
         return 0.0
-    without = q.copy()
-    without[:, last] = 0
-    return float(np.abs(structure.displacement(without)[:, -1] - tip).max() / size)
+    truncated = q.copy()
+    truncated[:, last] = 0
+    return float(np.abs(structure.displacement(truncated)[:, -1] - tip).max() / size)
 
 
 def _timed(run: Callable[[], _Tip | Failure]) -> tuple[_Tip | Failure, float]:
@@ -261,12 +261,12 @@ def _row(
             # At 40 samples to the lowest period a cubic is wrong by 1e-5 of a vibration, a straight line by 0.3 %.
             tip = CubicSpline(reference.response.time, tip)(response.time)
         largest = float(np.abs(answer.moved[:, axis] - tip).max())
-        after = response.time >= answer.residual_from
+        is_residual = response.time >= answer.residual_from
         if reference_peak > 0:
             peak_error, difference = peak / reference_peak - 1, largest / reference_peak
             residual_error = residual / reference_residual - 1 if reference_residual > 0 else nan
-            if after.sum() > 8:
-                phase = _phase(response.time[after], answer.moved[after, axis], tip[after])
+            if is_residual.sum() > 8:
+                phase = _phase(response.time[is_residual], answer.moved[is_residual, axis], tip[is_residual])
     return ModelRow(
         model=kind,
         motion=name,
@@ -290,7 +290,9 @@ def _row(
 
 
 def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
-    """Phase, rad, by which `ours` leads `theirs` (t,) at the dominant frequency of `theirs`; NaN if one is constant."""
+    """Phase, rad, by which `ours` leads `theirs` (t,) at the dominant frequency of `theirs`,
+    or NaN if one is constant.
+    """
     if len(time) < 8 or np.ptp(theirs) == 0 or np.ptp(ours) == 0:
         return float("nan")
 
@@ -305,5 +307,5 @@ def _phase(time: Floats, ours: Floats, theirs: Floats) -> float:
     coarse = 2 * np.pi * np.fft.rfftfreq(len(theirs), step)[1 + int(np.argmax(spectrum[1:]))]
     width = 2 * np.pi / span
     bounds = max(coarse - width, 1e-3 * width), coarse + width
-    best = minimize_scalar(lambda w: fit(theirs, w)[1], bounds=bounds, method="bounded")
-    return float(np.angle(fit(ours, best.x)[0] / fit(theirs, best.x)[0]))
+    best_fit = minimize_scalar(lambda w: fit(theirs, w)[1], bounds=bounds, method="bounded")
+    return float(np.angle(fit(ours, best_fit.x)[0] / fit(theirs, best_fit.x)[0]))

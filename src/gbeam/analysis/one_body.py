@@ -64,8 +64,8 @@ class OneBody:
         """Return the structure of the beam that the base holds by its root; InputError where the case has none."""
         if self.only_beam is None:
             body, names = self.system.only_structure, ", ".join(self.system.order)
-            what = f"{names} is {body.kind}" if body is not None else f"it is of {names} on joints"
-            raise InputError("case", f"needs a beam that the base holds by its root, and {what}", "give one [beam]")
+            words = f"{names} is {body.kind}" if body is not None else f"it is of {names} on joints"
+            raise InputError("case", f"needs a beam that the base holds by its root, and {words}", "give one [beam]")
         return self.only_beam
 
     @property

@@ -39,7 +39,7 @@ def assembly_of(system: System) -> Assembly:
 def ends_of(system: System) -> dict[str, Floats]:
     """Places (3,) m, by name, at one of which the load on the undeformed bodies is largest.
 
-    They are the corners of convex hulls; ends of beams, and bodies off their axes; points and centres of mass of rigid
+    They are the corners of convex hulls. Ends of beams, and bodies off their axes; points and centres of mass of rigid
     bodies; and points of matrices.
     """
     several, ends = len(system.bodies) > 1, dict[str, Floats]()
@@ -71,18 +71,18 @@ def _ends(body: RigidBody | Structure) -> dict[str, Floats]:
 
 
 def _place_at_rest(system: System, on: str) -> Floats:
-    """Place (3,) m of a point from the root of its undeformed body; zero for the origin of the ground."""
+    """Place (3,) m of a point from the root of its undeformed body, or zero for the origin of the ground."""
     if on == GROUND:
         return np.zeros(3)
     name, point = system.point("on", on)
     link = system.tree.links[system.order.index(name)]
-    none = np.zeros(link.body.size)
-    places = [relative.r for relative in link.body.relative(none, none, none)]
+    zeros = np.zeros(link.body.size)
+    places = [relative.r for relative in link.body.relative(zeros, zeros, zeros)]
     return np.asarray(places[point]) if point < len(places) else np.zeros(3)
 
 
 def _box(body: object) -> tuple[Floats, Floats, Floats]:
-    """Extents, centre and rotation of a uniform box with the inertia of a rigid body; NaN for other bodies."""
+    """Extents, centre and rotation of a uniform box with the inertia of a rigid body, or NaN for other bodies."""
     if not isinstance(body, RigidBody):
         return np.full(3, np.nan), np.full(3, np.nan), np.full((3, 3), np.nan)
     moments, axes = np.linalg.eigh(body.tensor)
@@ -177,7 +177,7 @@ def outline_in_modes(structure: Structure, q: Floats, modes: Complex) -> dict[st
 
 
 def _attitude(motion: Any, time: Floats, sampled: Any) -> Floats | None:
-    """Attitude of a flight at sampled times. Its rates are integrated over all times; None if it has none."""
+    """Attitude of a flight at sampled times. Its rates are integrated over all times, or None if it has none."""
     if not isinstance(motion, Flight) or motion.rates is None:
         return None
     return attitude(time, np.asarray(motion.base(time).w_WB_B))[sampled]

@@ -1,7 +1,8 @@
 """Derivatives of a window of steps: K, C and M at their stages, when they are found anew, and what steps map by them.
 
-Those at its first state serve a whole window until corrections shrink slowly; then they are found at some of the steps
-that have moved since they were, and interpolated between these, until corrections shrink fast for long.
+Those at the window's first state serve the whole window until corrections shrink slowly. Then derivatives are found at
+some of the steps that have moved since they were last found, and interpolated between these. That lasts until
+corrections shrink fast for long.
 """
 
 from __future__ import annotations
@@ -39,10 +40,10 @@ class Stages(NamedTuple):
 class Derivatives:
     """Derivatives of the residual at the stages of a window's steps, and the maps of steps that follow from them.
 
-    `slope` holds K, C and M (1 or t, s, 3, n, n), which are computed at stages `spacing` from one another; `reached`
+    `slope` holds K, C and M (1 or t, s, 3, n, n), which are computed at stages `spacing` from one another. `reached`
     (3, n, n) are those where the window began. `age` (t,) is the sum of the corrections, as shares of the
-    accelerations, since a step's derivatives were computed. `maps` are J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n) and
-    S = g − d J⁻¹ L (t, m n, m n), from δz to δz₊; one of each where all steps are alike.
+    accelerations, since a step's derivatives were computed. `maps` are J⁻¹ (t, s n, s n), J⁻¹ L (t, s n, m n) and S = g
+    − d J⁻¹ L (t, m n, m n), from δz to δz₊. There is one of each where all steps are alike.
     """
 
     slope: Any
@@ -80,8 +81,8 @@ class Derivatives:
 
         They are a step's own, or those where the window began.
         """
-        alone = len(self.age) == 1
-        return (alone & self.fresh_steps) | (self.has_one_set and (self.slope == self.reached).all())
+        is_single = len(self.age) == 1
+        return (is_single & self.fresh_steps) | (self.has_one_set and (self.slope == self.reached).all())
 
     def extend(self, added: int) -> None:
         """Append steps with the derivatives of the last one, or of the stage whose derivatives serve all."""
@@ -104,12 +105,12 @@ class Derivatives:
         """Let the first `count` steps leave."""
         self._keep(slice(count, None))
 
-    def _keep(self, kept: slice) -> None:
+    def _keep(self, rows: slice) -> None:
         """Keep a slice of the steps. If it is empty, the last derivatives serve the steps that follow."""
-        count, self.age = len(self.age), self.age[kept]
+        count, self.age = len(self.age), self.age[rows]
         if len(self.slope) == count > 1:
-            self.slope = self.slope[kept] if len(self.age) else self.slope[-1:, -1:]
-        self.maps = self._maps_of(kept)
+            self.slope = self.slope[rows] if len(self.age) else self.slope[-1:, -1:]
+        self.maps = self._maps_of(rows)
 
     def grow_old(self, shares: Array, slow: Flags, *, fast: bool) -> None:
         """Add the last corrections (t,), as shares of the accelerations, to the age of the derivatives.
@@ -151,10 +152,10 @@ class Derivatives:
         self.slope = np.concatenate([np.broadcast_to(self.slope, (count, *renewed.shape[1:]))[:first], renewed])
         self.age[first:], self.maps = 0.0, self._maps_of(slice(first))
 
-    def factor(self, stages: Stages, tableau: Tableau, held: HeldCommands | None) -> None:
+    def factor(self, stages: Stages, tableau: Tableau, commands: HeldCommands | None) -> None:
         """Compute the maps of steps that have none, or whose derivatives are new.
 
-        The commands `held` by controllers receive their effect on the steps.
+        The `commands` of controllers receive their effect on the steps.
         """
         (*_, per_step, m), count, n = tableau.w_q.shape, len(self.age), stages.states.shape[-1]
         done = 0 if self.maps is None else len(self.maps[0])
@@ -167,8 +168,8 @@ class Derivatives:
         size = per_step * n
         unit = np.broadcast_to(np.eye(size), jacobian.shape)
         inverse, answer = np.split(solve_systems(jacobian, np.concatenate([unit, by_state], axis=-1)), [size], axis=-1)
-        if held is not None:
-            held.push(inverse, t, self._interpolate(held.sampling.residual_slopes, stages, 0))
+        if commands is not None:
+            commands.push(inverse, t, self._interpolate(commands.sampling.residual_slopes, stages, 0))
         # S = g − d J⁻¹ L
         step = (t.g[:, :, None, :, None] * np.eye(n)[:, None, :]).reshape(-1, m * n, m * n)
         by_stages = t.d @ answer.reshape(-1, per_step, n * m * n)
@@ -205,11 +206,11 @@ class Derivatives:
             return values
         return interpolate(stages.times[chosen], values, stages.times[begin : begin + count])
 
-    def _maps_of(self, kept: slice) -> Any:
-        """Maps of a slice of the steps; None if one serves all, or with controllers: these are computed again."""
+    def _maps_of(self, rows: slice) -> Any:
+        """Maps of a slice of the steps, or None if one serves all, or with controllers: these are computed again."""
         if self.maps is None or self.sampling is not None:
             return None
-        maps = tuple(by_step[kept] for by_step in self.maps)
+        maps = tuple(by_step[rows] for by_step in self.maps)
         return maps if len(maps[0]) > 1 else None
 
 

@@ -37,7 +37,7 @@ def integrate(
     """Integrate `count` steps of length `step` from q, qd (n,), split at `corners`.
 
     `stop` maps q (k, n) of a chunk of steps to the number of steps after which to end, or None. A failed step ends the
-    trajectory; where JAX traces the equations, it leaves NaN.
+    trajectory. Where JAX traces the equations, it leaves NaN.
     """
     steps = make_steps(start, step, count, None if corners is None else corners.felt_by(scheme))
     return integrate_steps(equations, scheme, q, qd, steps, stop=stop, progress=progress)
@@ -53,7 +53,7 @@ def integrate_steps(
     stop: Callable[[Floats], int | None] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Integrate by `steps` as :func:`integrate` does; the result has the start and the ends of the kept ones."""
+    """Integrate by `steps` as :func:`integrate` does. The result has the start and the ends of the kept ones."""
     time = np.append(steps.begin[:1], steps.end[steps.kept])
     if not np.size(q):
         return Trajectory(time, *np.zeros((3, len(time), 0)))
@@ -70,9 +70,9 @@ def integrate_steps(
             converged = valid == len(good)
             stop_after = None if stop is None or valid == 0 or not pieces else stop(piece[0][:valid])
             stopped = stop_after is not None
-            kept = valid if stop_after is None else stop_after
+            last = valid if stop_after is None else stop_after
             # The initial state is kept even where it has no acceleration.
-            piece = [x[: kept if pieces else 1] for x in piece]
+            piece = [x[: last if pieces else 1] for x in piece]
         pieces.append(tuple(piece))
         done += len(piece[0]) if len(pieces) > 1 else 0
         if progress is not None:
@@ -80,8 +80,8 @@ def integrate_steps(
         if stopped or not converged:
             break
     q, qd, *qdd = (namespace(parts[0]).concatenate(parts) for parts in zip(*pieces, strict=True))
-    known = qdd[0] if qdd else Demanded(equations, steps, q, qd, samples)  # q̈, or how to compute it
-    trajectory = Trajectory(time[: len(q)], q, qd, known, converged, stopped, samples)
+    accelerations = qdd[0] if qdd else Demanded(equations, steps, q, qd, samples)  # q̈, or how to compute it
+    trajectory = Trajectory(time[: len(q)], q, qd, accelerations, converged, stopped, samples)
     return replace(trajectory, stopped=stopped or trajectory.failure is not None)
 
 

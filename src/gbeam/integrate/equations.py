@@ -1,6 +1,6 @@
 """Equations of motion as an integrator sees them, linear or a residual, with its derivatives, and their run.
 
-A residual is analytic, and its arrays and what drives it may have leading axes, which are broadcast; the first one is
+A residual is analytic, and its arrays and what drives it may have leading axes, which are broadcast. The first one is
 that of the steps. So complex steps give its derivatives at many states in one call: nothing is compiled.
 """
 
@@ -53,8 +53,10 @@ class LinearTerms:
 
 @dataclass(frozen=True, eq=False)
 class LinearEquations:
-    """M q̈ + C(t) q̇ + K(t) q = F(t): `matrices` maps inputs at times (t,) to C, K, F; `terms` and `features` give the
-    same as sums; to `rest`, symmetric C and K, steps are fitted.
+    """Linear equations M q̈ + C(t) q̇ + K(t) q = F(t).
+
+    `matrices` maps inputs at times (t,) to C, K and F. `terms` and `features` give the same as sums. Steps are fitted
+    to `rest`, symmetric C and K.
     """
 
     mass: Array
@@ -134,7 +136,7 @@ class Trajectory:
 
     @property
     def failure(self) -> ComputationError | None:
-        """Error of a controller's law that ended the integration; None if none did."""
+        """Error of a controller's law that ended the integration, or None if none did."""
         return None if self.samples is None or self.samples.failure is None else self.samples.failure[1]
 
     @property
@@ -144,8 +146,8 @@ class Trajectory:
 
     def select(self, steps: Any) -> Trajectory:
         """Return the trajectory at the times that `steps`, indices or a slice, chooses."""
-        known, index = self.known, np.arange(len(self.time))[steps]
-        chosen = (lambda part: known(index[part])) if callable(known) else known[steps]
+        accelerations, index = self.known, np.arange(len(self.time))[steps]
+        chosen = (lambda part: accelerations(index[part])) if callable(accelerations) else accelerations[steps]
         return replace(self, time=self.time[steps], q=self.q[steps], qd=self.qd[steps], known=chosen)
 
 
@@ -169,9 +171,9 @@ def values_and_slopes(residual: Any, q: Array, qd: Array, qdd: Array, inputs: An
     for *state, inputs_piece in _pieces(n**2, q, qd, qdd, inputs):
         stepped_state = (values + steps[:, :, k] for k, values in enumerate(state))
         pieces.append(residual(*stepped_state, inputs_piece))
-    every = np.concatenate(pieces, axis=1)
-    value = every[0].real if n else residual(q, qd, qdd, inputs)
-    return value, (every.imag / STEP).reshape(3, n, len(q), every.shape[-1]).transpose(0, 2, 3, 1)
+    joined = np.concatenate(pieces, axis=1)
+    value = joined[0].real if n else residual(q, qd, qdd, inputs)
+    return value, (joined.imag / STEP).reshape(3, n, len(q), joined.shape[-1]).transpose(0, 2, 3, 1)
 
 
 def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
@@ -184,7 +186,7 @@ def masses(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
 
 
 def accelerations(residual: Any, q: Array, qd: Array, inputs: Any) -> Array:
-    """q̈ (t, n) that satisfies equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...); NaN where M is singular.
+    """q̈ (t, n) that satisfies equations linear in q̈ at q, q̇ (t, n) and inputs (t, ...), or NaN where M is singular.
 
     The residual without acceleration is the force, and one of a huge unit acceleration is a column of M.
     """
@@ -215,13 +217,13 @@ class Demanded:
 
     def __call__(self, index: Any) -> Any:
         """Accelerations (k, n) at the times of indices (k,), computed where they have not been asked for before."""
-        new = np.unique(index[~self.computed[index]])
-        if len(new):
-            inputs = self.equations.drive(self.time[new])
+        uncomputed = np.unique(index[~self.computed[index]])
+        if len(uncomputed):
+            inputs = self.equations.drive(self.time[uncomputed])
             if self.held is not None:
-                inputs = self.equations.controllers.add_commands(inputs, self.held[new])
-            self.values[new] = self.equations.accelerations(self.q[new], self.qd[new], inputs)
-            self.computed[new] = True
+                inputs = self.equations.controllers.add_commands(inputs, self.held[uncomputed])
+            self.values[uncomputed] = self.equations.accelerations(self.q[uncomputed], self.qd[uncomputed], inputs)
+            self.computed[uncomputed] = True
         return self.values[index]
 
 
@@ -237,11 +239,11 @@ def _pieces(numbers: int, *parts: Any) -> list[Any]:
     return [each_leaf(lambda leaf, piece=piece: leaf[piece], parts) for piece in pieces]  # type: ignore[misc]
 
 
-def solve_systems(matrix: Array, right: Array) -> Array:
+def solve_systems(matrix: Array, right_side: Array) -> Array:
     """Solve linear systems. A solution is NaN where its matrix is singular: there NumPy would refuse all systems."""
     try:
-        return namespace(matrix, right).linalg.solve(matrix, right)
+        return namespace(matrix, right_side).linalg.solve(matrix, right_side)
     except np.linalg.LinAlgError:
         if matrix.ndim == 2:
-            return np.full_like(right, np.nan)
-        return np.stack([solve_systems(*pair) for pair in zip(matrix, right, strict=True)])
+            return np.full_like(right_side, np.nan)
+        return np.stack([solve_systems(*pair) for pair in zip(matrix, right_side, strict=True)])

@@ -46,15 +46,17 @@ def chunk(
     steps: Steps,
     added: tuple[Array | float, Array | float] = (0.0, 0.0),
 ) -> tuple[Array, tuple[Array, ...]]:
-    """Take steps from z (m, n) with terms `added` to M and C; returns the next z, and q, q̇ and, where the scheme has
-    them or JAX traces them, q̈ (k, n) at the ends of kept steps.
+    """Take steps from z (m, n) with terms `added` to M and C.
+
+    Returns the next z, and q and q̇ (k, n) at the ends of recorded steps. q̈ is returned, too, where the scheme has it
+    or JAX traces the equations.
     """
     t = scheme.tableau(steps.length[:1] if steps.equal else steps.length)
     count, stages, (m, n) = len(steps), len(scheme.offsets), z.shape
     times = np.stack([steps.times(offset) for offset in scheme.offsets], axis=1)
-    inputs, which = equations.drive(times.ravel()), slice(None)  # `which` map each step has
+    inputs, map_index = equations.drive(times.ravel()), slice(None)  # of the map that each step has
     if steps.equal and not holds_jax(inputs):
-        inputs, which = _distinct(inputs, count)
+        inputs, map_index = _distinct(inputs, count)
     matrices = equations.matrices(inputs)
     xp, mass = namespace(equations.mass, z, *matrices), equations.mass + added[0]
     c, k, f = (xp.reshape(values, (-1, stages, *values.shape[1:])) for values in matrices)
@@ -65,8 +67,8 @@ def chunk(
     if xp is np and steps.equal and not scheme.ends and len(groups) == 1 and n >= FEWEST and len(c) == count:
         settled = take_equal_steps(t, mass, c, k, f, z)
     if settled is not None:
-        flat, x = settled
-        states, last = flat[:-1].reshape(count, m, n), flat[-1].reshape(m, n)
+        first_states, x = settled
+        states, last = first_states[:-1].reshape(count, m, n), first_states[-1].reshape(m, n)
         ends = _sum(t.end_z, states) + _sum(t.end_x, x.reshape(count, stages, n))
         return last, tuple(ends[:, part][steps.kept] for part in (0, 1))
     # Of each group of coordinates, maps of z to the stages' x and to the next z.
@@ -79,18 +81,20 @@ def chunk(
         if len(groups) > 1:
             columns = np.append((n * np.arange(m)[:, None] + group).ravel(), m * n)
             maps[:, :, group[:, None], columns] = to_next
-    flat_states = recurrence(xp, xp.reshape(maps, (-1, m * n, m * n + 1))[which], xp.reshape(z, (-1,)))
+    flat_states = recurrence(xp, xp.reshape(maps, (-1, m * n, m * n + 1))[map_index], xp.reshape(z, (-1,)))
     states, last, parts = xp.reshape(flat_states[:-1], (count, m, n)), xp.reshape(flat_states[-1], (m, n)), []
     for group, (to_stages, _) in zip(groups, of_groups, strict=True):
         state = xp.reshape(states if len(groups) == 1 else states[:, :, group], (count, -1, 1))
-        flat = xp.reshape(to_stages, (len(c), stages * len(group), -1))[which]
-        parts.append(xp.reshape((flat[..., :-1] @ state)[..., 0] + flat[..., -1], (count, stages, -1)))
+        first_states = xp.reshape(to_stages, (len(c), stages * len(group), -1))[map_index]
+        parts.append(xp.reshape((first_states[..., :-1] @ state)[..., 0] + first_states[..., -1], (count, stages, -1)))
     x = parts[0] if len(groups) == 1 else np.concatenate(parts, axis=-1)[..., np.argsort(np.concatenate(groups))]
     ends = _sum(t.end_z, states) + _sum(t.end_x, x)
-    kept = tuple(values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1]))
+    recorded = tuple(
+        values if steps.kept.all() else values[steps.kept] for values in (ends[:, 0], ends[:, 1], x[:, -1])
+    )
     if xp is np and not scheme.ends:
-        return last, kept[:2]
-    q, qd, qdd = kept
+        return last, recorded[:2]
+    q, qd, qdd = recorded
     # The last stage's acceleration is that at the end, unless the stage lies before it, or just before a jump.
     lacking = np.flatnonzero(steps.jump[steps.kept]) if scheme.ends else np.arange(len(q))
     if lacking.size:
@@ -140,8 +144,8 @@ def _stages(xp: Any, t: Tableau, mass: Array, c: Array, k: Array, f: Array, grou
         pair = np.ix_(group, group)
         mass, c, k, f = mass[pair], c[..., *pair], k[..., *pair], f[..., group]
     # J x = F − L z at all stages together.
-    jacobian, onto = t.jacobians(k, c, mass[None, None])
-    x = solve_systems(jacobian, xp.concatenate([-onto, xp.reshape(f, (-1, stages * n, 1))], axis=-1))
+    jacobian, input_map = t.jacobians(k, c, mass[None, None])
+    x = solve_systems(jacobian, xp.concatenate([-input_map, xp.reshape(f, (-1, stages * n, 1))], axis=-1))
     x = xp.reshape(x, (-1, stages, n, m * n + 1))
     return x, _sum(t.g, _unit(m, n)) + _sum(t.d, x)
 

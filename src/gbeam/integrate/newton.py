@@ -59,7 +59,7 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Many chunks without inputs; `shape` is (groups, steps), `times` (steps, stages) s where inputs are needed."""
+    """Many chunks without inputs. `shape` is (groups, steps), `times` (steps, stages) s where inputs are needed."""
 
     steps: Steps
     shape: tuple[int, int]
@@ -169,9 +169,9 @@ def _size(correction: Array, x: Array) -> Array:
     return jnp.max(jnp.abs(correction)) / (LEAST + jnp.max(jnp.abs(x)))
 
 
-def _remaining_error(last: Array, before: Array) -> Array:
+def _remaining_error(last: Array, previous: Array) -> Array:
     """Estimated error after the last of two corrections, whose sizes are taken to shrink by a constant factor."""
-    return last * jnp.where(before > 0, shrinkage(last, before), 0.0)
+    return last * jnp.where(previous > 0, shrinkage(last, previous), 0.0)
 
 
 def _guess(t: Tableau, carry: Carry) -> Array:
@@ -266,7 +266,7 @@ def _loop_over_groups(take: Any, carry: Carry, by_group: Any, count: Any, shape:
         group = jax.tree.map(lambda leaf: jax.lax.dynamic_index_in_dim(leaf, k, keepdims=False), by_group)
         carry, values = take(carry, group)
         put = partial(jax.lax.dynamic_update_index_in_dim, index=k, axis=0)
-        return carry, tuple(put(whole, part) for whole, part in zip(history, values, strict=True))
+        return carry, tuple(put(history_array, part) for history_array, part in zip(history, values, strict=True))
 
     history = (*[jnp.zeros(shape)] * 3, jnp.zeros(shape[:-1]))
     return jax.lax.fori_loop(0, count, take_next, (carry, history))

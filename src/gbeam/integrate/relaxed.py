@@ -43,9 +43,11 @@ def take_equal_steps(
 
 
 class _Mean:
-    """Maps of a step by mean matrices. `per_force` and `per_state` map forces and the state before to the accelerations
-    of stages; `of_state` and `of_stages` map the state before and these accelerations to q and q̇ at the stages; `next`
-    maps the accelerations to the next state. `powers` are those of the map from state to state.
+    """Maps of a step by mean matrices.
+
+    `per_force` and `per_state` map forces and the state before to the accelerations of stages. `of_state` and
+    `of_stages` map the state before and these accelerations to q and q̇ at the stages. `next` maps the accelerations to
+    the next state. `powers` are those of the map from state to state.
     """
 
     def __init__(self, t: Tableau, mass: Floats, c: Floats, k: Floats) -> None:
@@ -63,17 +65,17 @@ class _Mean:
         """Return states (t + 1, m n) from the first, (m n,), and accelerations of stages, (t, s n).
 
         `driven` (t, s n) are forces; K and C differ from their means by `change` (t, s, n, 2 n). The forces of these
-        changes are added, and the steps taken again, until the accelerations settle; None where they do not.
+        changes are added, and the steps taken again, until the accelerations settle, or None where they do not.
         """
         count, stages, n, _ = change.shape
-        forces, before = driven, np.inf
+        forces, previous = driven, np.inf
         for _ in range(MOST):
             by_force = forces @ self.per_force.T
             states = chain(self.powers, by_force @ self.next, state)
             x = by_force + states[:-1] @ self.per_state.T
-            if np.abs(x - before).max() <= SETTLED * np.abs(x).max():
+            if np.abs(x - previous).max() <= SETTLED * np.abs(x).max():
                 return states, x
-            before = x
+            previous = x
             q, qd = (states[:-1] @ w + x @ c for w, c in zip(self.of_state, self.of_stages, strict=True))
             at_stages = np.concatenate([values.reshape(count, stages, n, 1) for values in (q, qd)], axis=2)
             forces = driven - (change @ at_stages).reshape(count, -1)

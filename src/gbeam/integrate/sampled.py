@@ -1,8 +1,8 @@
 """Sampled controllers in the windows of an integration: commands that are held from sample to sample.
 
-A command depends on the state at its sample, and what moves this state is what the recurrence over a window's steps
-corrects: so each sample is taken there, of the corrected state, and a law of any kind is satisfied by the solution as
-the equations are. Measurements are linear about the last iterate.
+A command depends on the state at its sample, and the recurrence over a window's steps corrects that state. So each
+sample is taken within the recurrence, of the corrected state. The solution satisfies a law of any kind as it satisfies
+the equations. Measurements are linear about the last iterate.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ class Controllers(Protocol):
         """Raise InputError if a law does not answer a sample as it did, with command and next state."""
         ...
 
-    def add_commands(self, inputs: Any, held: Array) -> Any:
-        """Return the inputs with the commands `held` (t, m) added."""
+    def add_commands(self, inputs: Any, commands: Array) -> Any:
+        """Return the inputs with the `commands` (t, m) added."""
         ...
 
     @property
@@ -77,7 +77,7 @@ class Uncontrolled:
         """Return no laws."""
         return []
 
-    def add_commands(self, inputs: Any, held: Array) -> Any:
+    def add_commands(self, inputs: Any, commands: Array) -> Any:
         """Return the inputs themselves."""
         return inputs
 
@@ -115,27 +115,27 @@ class Sampling:
 
     def hold(self, end: int) -> None:
         """Hold the last commands until step `end`."""
-        for part, since, samples in zip(self.controllers.drives, self.acting_from, self.samples, strict=True):
+        for part, first_steps, samples in zip(self.controllers.drives, self.acting_from, self.samples, strict=True):
             if samples:
-                self.held[since[len(samples)] : end, part] = samples[-1][2]
+                self.held[first_steps[len(samples)] : end, part] = samples[-1][2]
 
     def take(self, c: int, s: int, step: int, measured: Array) -> bool:
         """Take sample number `s` of controller `c`, measured at the beginning of a step; return False if its law fails.
 
         Later samples are forgotten: they were those of an earlier iterate. An error at the first sample is raised.
         """
-        samples, since = self.samples[c], self.acting_from[c]
+        samples, first_steps = self.samples[c], self.acting_from[c]
         del samples[s:]
         try:
-            asked, limited, after = self.controllers.command(c, *self._sample(c, s, step, measured))
+            asked, limited, next_state = self.controllers.command(c, *self._sample(c, s, step, measured))
         except ComputationError as error:
             if not s:
                 raise
             self.failure = step, error
             return False
         self.failure = None
-        samples.append((measured, asked, limited, after))
-        self.held[since[s] : since[s + 1], self.controllers.drives[c]] = limited
+        samples.append((measured, asked, limited, next_state))
+        self.held[first_steps[s] : first_steps[s + 1], self.controllers.drives[c]] = limited
         power_of_two = s & (s - 1) == 0  # at these samples the law is asked twice: it may not remember calls
         if power_of_two and (c, s) not in self.repeated:
             self._repeat(c, s)
@@ -151,10 +151,10 @@ class Sampling:
         A law that answers otherwise keeps a state of its own, and is refused.
         """
         self.repeated.add((c, s))
-        before = max(s - 1, 0)
-        measured, asked, _, after = self.samples[c][before]
-        sample = self._sample(c, before, int(np.argmax(self.sample_numbers[c] == before)), measured)
-        self.controllers.refuse_memory(c, *sample, (asked, after))
+        previous = max(s - 1, 0)
+        measured, asked, _, next_state = self.samples[c][previous]
+        sample = self._sample(c, previous, int(np.argmax(self.sample_numbers[c] == previous)), measured)
+        self.controllers.refuse_memory(c, *sample, (asked, next_state))
 
     def forget_failure(self, step: int) -> None:
         """Forget a failure that is not of the step where the run ended: an earlier iterate may have caused it."""
@@ -206,7 +206,7 @@ class Sampling:
 
 
 def sampling_of(equations: NonlinearEquations, steps: Steps) -> Sampling | None:
-    """Return the samples that controllers of equations have to take at some steps; None without controllers."""
+    """Return the samples that controllers of equations have to take at some steps, or None without controllers."""
     if equations.controllers is None:
         return None
     return Sampling(equations.controllers, equations.residual, equations.drive, steps)
@@ -227,12 +227,12 @@ class HeldCommands:
         self.due: list[list[tuple[int, int, int]]] = [[] for _ in self.u]
         # By controllers: steps of the window with a sample, and the inputs there without commands.
         self.samples, self.inputs = {}, {}
-        for c, taken in enumerate(sampling.sample_numbers):
-            steps = np.flatnonzero(taken[first : first + count] >= 0)
+        for c, sample_numbers in enumerate(sampling.sample_numbers):
+            steps = np.flatnonzero(sample_numbers[first : first + count] >= 0)
             if len(steps):
                 self.samples[c], self.inputs[c] = steps, sampling.drive(sampling.steps.begin[first + steps])
             for i, k in enumerate(steps):
-                self.due[k].append((c, i, int(taken[first + k])))
+                self.due[k].append((c, i, int(sample_numbers[first + k])))
 
     def begin(self, z: Array) -> None:
         """Linearise the measurements about the states z (t, m, n) at the beginnings of steps."""
@@ -247,22 +247,22 @@ class HeldCommands:
 
         The commands are those that acted before a sample. The values are returned by the controllers' numbers.
         """
-        before = np.concatenate([self.previous_commands[None], self.u])
+        earlier = np.concatenate([self.previous_commands[None], self.u])
         values = {}
         for c, steps in self.samples.items():
-            inputs = self.sampling.controllers.add_commands(self.inputs[c], before[steps])
+            inputs = self.sampling.controllers.add_commands(self.inputs[c], earlier[steps])
             values[c] = function(c, z[steps, 0], z[steps, 1], inputs)
         return values
 
-    def push(self, inverse: Array, t: Any, onto: Array) -> None:
+    def push(self, inverse: Array, t: Any, by_wrench: Array) -> None:
         """Compute the effect of a change of commands: −J⁻¹ ∂r/∂u on accelerations, and −d J⁻¹ ∂r/∂u on the next z.
 
-        `inverse` is J⁻¹, d that of the tableau `t`, and `onto` ∂r/∂u (t s, n, m).
+        `inverse` is J⁻¹, d that of the tableau `t`, and `by_wrench` ∂r/∂u (t s, n, m).
         """
-        count, n = len(self.u), onto.shape[1]
-        self.answer = inverse @ onto.reshape(count, -1, onto.shape[-1])
-        by_stages = t.d @ self.answer.reshape(count, -1, n * onto.shape[-1])
-        self.step = -by_stages.reshape(count, -1, onto.shape[-1])
+        count, n = len(self.u), by_wrench.shape[1]
+        self.answer = inverse @ by_wrench.reshape(count, -1, by_wrench.shape[-1])
+        by_stages = t.d @ self.answer.reshape(count, -1, n * by_wrench.shape[-1])
+        self.step = -by_stages.reshape(count, -1, by_wrench.shape[-1])
 
     def take_samples(self, k: int, moved: Array) -> Array:
         """Take the samples at the beginning of step `k` of the window, whose state is to change by `moved` (m n,).

@@ -126,12 +126,12 @@ def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: flo
             carried,
         ]
     )
-    known = (alpha_f - alpha_m) / (1 - alpha_m)
+    share_known = (alpha_f - alpha_m) / (1 - alpha_m)
     first = np.array(
         [
-            [1.0, 1.0, (0.5 - beta) + beta * known],
-            [0.0, 1.0, (1 - gamma) + gamma * known],
-            [0.0, 0.0, known],
+            [1.0, 1.0, (0.5 - beta) + beta * share_known],
+            [0.0, 1.0, (1 - gamma) + gamma * share_known],
+            [0.0, 0.0, share_known],
         ]
     )
     # Newmark's scheme carries nothing.
@@ -152,7 +152,7 @@ def _one_step(name: str, alpha_m: float, alpha_f: float, beta: float, gamma: flo
 
 
 def newmark(beta: float = 0.25, gamma: float = 0.5) -> Scheme:
-    """Newmark (1959); the defaults are the average acceleration: no damping, unconditionally stable."""
+    """Newmark (1959). The defaults are the average acceleration: no damping, unconditionally stable."""
     if not (gamma >= 0.5 and 2 * beta >= gamma):
         raise InputError(
             "beta",

@@ -1,6 +1,6 @@
 """Many runs of one shape at once, compiled by JAX: a step of all of them is one program.
 
-The runs share their sizes, the scheme and about the number of steps; equations, initial states, drives and lengths of
+The runs share their sizes, the scheme and about the number of steps. Equations, initial states, drives and lengths of
 steps are each one's own. The steps are those that :func:`gbeam.integrate.driver.integrate` takes.
 """
 
@@ -67,8 +67,8 @@ def taken_together(
         rows, damped = [], [c_stage + damping for c_stage in c[:stages]]
         for i in range(stages):
             blocks = [t.c_v[i, j] * damped[i] + t.c_q[i, j] * k[i] + (mass if i == j else 0.0) for j in range(stages)]
-            right = f[i] - _times(damped[i], v0[i]) - _times(k[i], q0[i])
-            rows.append(jnp.concatenate([*blocks, right[:, None]], axis=1))
+            right_side = f[i] - _times(damped[i], v0[i]) - _times(k[i], q0[i])
+            rows.append(jnp.concatenate([*blocks, right_side[:, None]], axis=1))
         x = eliminate(jax.lax.optimization_barrier(jnp.concatenate(rows))).reshape(stages, n, b)
         q, qd = _combined(t.end_z, z) + _combined(t.end_x, x)
         qdd = x[-1] if ends else _times(inverse, f[-1] - _times(k[-1], q) - _times(c[-1], qd))
@@ -78,7 +78,7 @@ def taken_together(
         z, history = state
         z, ends = step(z, lengths[i], features[i])
         put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
-        return z, tuple(put(whole, part) for whole, part in zip(history, ends, strict=True))
+        return z, tuple(put(history_array, part) for history_array, part in zip(history, ends, strict=True))
 
     history = (jnp.zeros((len(lengths), *z.shape[1:])),) * 3
     z, history = jax.lax.fori_loop(0, count, take_next, (z, history))
@@ -88,7 +88,7 @@ def taken_together(
 def eliminate(rows: Array) -> Array:
     """Solve b small linear systems at once, by Gauss's elimination without pivoting.
 
-    `rows` (n, n + 1, b) has their matrices and right-hand sides; the solutions are (n, b).
+    `rows` (n, n + 1, b) has their matrices and right-hand sides. The solutions are (n, b).
     """
     pivots = []
     while len(rows):
@@ -140,7 +140,7 @@ Histories = tuple[Array, Array, Array]  # q, q̇, q̈ of b runs at the start and
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run from q, qd (n,); `common` is a tree of the arrays that the residuals of all nonlinear runs share."""
+    """A run from q, qd (n,). `common` is a tree of the arrays that the residuals of all nonlinear runs share."""
 
     equations: LinearEquations | NonlinearEquations
     q: Array
@@ -214,11 +214,11 @@ def integrate_together(runs: Sequence[Run]) -> list[Trajectory | None]:
     histories, converged = solve(runs)
     trajectories = []
     for run, sound, *state in zip(runs, converged, *histories, strict=True):
-        kept = np.append(True, run.steps.kept)
+        recorded = np.append(True, run.steps.kept)
         time = np.append(run.steps.begin[0], run.steps.end)
-        q, qd, qdd = (x[: len(kept)] for x in state)  # without the steps that fill a shorter run
-        if not kept.all():
-            time, q, qd, qdd = time[kept], q[kept], qd[kept], qdd[kept]
+        q, qd, qdd = (x[: len(recorded)] for x in state)  # without the steps that fill a shorter run
+        if not recorded.all():
+            time, q, qd, qdd = time[recorded], q[recorded], qd[recorded], qdd[recorded]
         trajectories.append(Trajectory(time, q, qd, qdd) if sound and np.isfinite(qdd).all() else None)
     return trajectories
 
@@ -263,11 +263,21 @@ def _integrate_linear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     features = features[1:].reshape(count, stages, *features.shape[1:])
     for begin in range(0, count, STEPS):
         # The last piece is filled, so that one program serves every duration.
-        chosen, taken = np.minimum(np.arange(begin, begin + STEPS), count - 1), min(STEPS, count - begin)
-        arguments = mass + mass_terms, damping, inverse, terms, scheme.unit, z, lengths[chosen], features[chosen], taken
+        chosen, count_taken = np.minimum(np.arange(begin, begin + STEPS), count - 1), min(STEPS, count - begin)
+        arguments = (
+            mass + mass_terms,
+            damping,
+            inverse,
+            terms,
+            scheme.unit,
+            z,
+            lengths[chosen],
+            features[chosen],
+            count_taken,
+        )
         z, piece = taken_together(*arguments, parts=parts, ends=scheme.ends)
-        for whole, part in zip(histories, piece, strict=True):
-            whole[:, begin + 1 : begin + 1 + taken] = np.asarray(part)[:, :taken]
+        for history_array, part in zip(histories, piece, strict=True):
+            history_array[:, begin + 1 : begin + 1 + count_taken] = np.asarray(part)[:, :count_taken]
     return (histories[0], histories[1], histories[2]), np.ones(len(runs), dtype=bool)
 
 
@@ -346,13 +356,13 @@ def _integrate_nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
     # Most runs have equal steps, which are divided once.
     divided = {steps: iter(tee(stretches(scheme, steps, size), count)) for steps, count in equal.items()}
     runs_chunks = [chunks(run.equations.drive, scheme, next(divided[run.steps])) for run in runs]
-    now = [next(run_chunks) for run_chunks in runs_chunks]
+    current = [next(run_chunks) for run_chunks in runs_chunks]
     going = np.ones(len(runs), dtype=bool)
     while going.any():
-        counts = np.stack([chunk.counted for chunk in now]) & going[:, None]  # of the steps, without fillings
-        ends = [chunk.end for chunk in now]
-        tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in now])
-        last, count = np.stack([chunk.last_counted for chunk in now]), max(chunk.count for chunk in now)
+        counts = np.stack([chunk.counted for chunk in current]) & going[:, None]  # of the steps, without fillings
+        ends = [chunk.end for chunk in current]
+        tableau, inputs, at_ends = _stacked([(chunk.tableau, chunk.inputs, chunk.at_ends) for chunk in current])
+        last, count = np.stack([chunk.last_counted for chunk in current]), max(chunk.count for chunk in current)
         carry, history = _steps(*residual, tableau, carry, inputs, at_ends, last, count)
         *piece, error = (np.asarray(values) for values in history)
         sound &= ((error <= newton.ACCEPTED) | ~counts).all(axis=1)  # NaN is not
@@ -362,15 +372,18 @@ def _integrate_nonlinear(runs: Sequence[Run]) -> tuple[Histories, Array]:
             q, qd = piece[0][at_last], piece[1][at_last]
             begin = accelerations([end.resume for end in ends], q, qd)
             final = accelerations([end.end for end in ends], q, qd)
-            new = begin_steps(q, qd, begin, [end.following for end in ends])
-            carry = newton.Carry(*(np.where(anew[:, None, None], *both) for both in zip(new, carry, strict=True)))
+            begun = begin_steps(q, qd, begin, [end.following for end in ends])
+            carry = newton.Carry(
+                *(np.where(anew[:, None, None], *carries) for carries in zip(begun, carry, strict=True))
+            )
             piece[2] = piece[2].copy()
             piece[2][at_last[0][anew], at_last[1][anew]] = final[anew]
         pieces.append(piece)
         counted.append(counts)
-        after = [next(run_chunks, None) for run_chunks in runs_chunks]
-        going = np.array([chunk is not None for chunk in after])
-        now = [new or old for new, old in zip(after, now, strict=True)]  # a run that has ended repeats its last chunk
+        following = [next(run_chunks, None) for run_chunks in runs_chunks]
+        going = np.array([chunk is not None for chunk in following])
+        # A run that has ended repeats its last chunk.
+        current = [chunk or previous for chunk, previous in zip(following, current, strict=True)]
     flags = np.concatenate(counted, axis=1)
     filled = [np.concatenate(parts, axis=1) for parts in zip(*pieces, strict=True)]
     histories: Any = ([run[counts] for run, counts in zip(values, flags, strict=True)] for values in filled)

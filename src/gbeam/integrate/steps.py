@@ -21,9 +21,9 @@ from gbeam.integrate.schemes import Scheme
 
 _NEAR, _ULPS = 1e-8, 8  # of a step, and roundings of a time: nearer to one another, two times are one
 _JUMP = 1e-4  # of the largest value at or between the corners: less is no jump
-_BETWEEN = 0.37  # of the way from one corner to the next
+_MIDWAY = 0.37  # of the way from one corner to the next
 FEW = 10_000  # steps: what is kept of them is small
-_BESIDE = 1e-12  # of the span: where a drive is looked at on both sides of a corner
+_SIDE_STEP = 1e-12  # of the span: where a drive is looked at on both sides of a corner
 
 
 @dataclass(frozen=True)
@@ -40,18 +40,18 @@ class Corners:
         time = time[(time >= start) & (time < end)]
         if not len(time):
             return Corners(time, np.zeros(0, dtype=bool))
-        beside = _BESIDE * (end - start) + _ULPS * np.spacing(max(abs(start), abs(end)))
+        side_step = _SIDE_STEP * (end - start) + _ULPS * np.spacing(max(abs(start), abs(end)))
         # Between them the drive is seen at its size: a sine is zero at both its ends.
-        between = time + _BETWEEN * np.diff(time, append=end)
+        midway = time + _MIDWAY * np.diff(time, append=end)
         count, jump = len(time), np.zeros(len(time), dtype=bool)
 
         def mark_jumps(leaf: Any) -> None:
-            before, after, middle = np.asarray(leaf).reshape(3, count, -1)
-            change = np.abs(after - before).max(axis=1, initial=0.0)
-            largest = np.abs([before, after, middle]).max(initial=0.0)
+            left_values, right_values, middle = np.asarray(leaf).reshape(3, count, -1)
+            change = np.abs(right_values - left_values).max(axis=1, initial=0.0)
+            largest = np.abs([left_values, right_values, middle]).max(initial=0.0)
             jump[:] |= change > _JUMP * largest
 
-        each_leaf(mark_jumps, drive(np.concatenate([time - beside, time + beside, between])))
+        each_leaf(mark_jumps, drive(np.concatenate([time - side_step, time + side_step, midway])))
         return Corners(time, jump)
 
     def felt_by(self, scheme: Scheme) -> Corners:
@@ -82,8 +82,8 @@ class Steps:
     def __len__(self) -> int:
         return len(self.begin)
 
-    def __getitem__(self, which: Any) -> Steps:
-        return Steps(*(getattr(self, field.name)[which] for field in dataclasses.fields(self)))
+    def __getitem__(self, index: Any) -> Steps:
+        return Steps(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
 
     def times(self, offset: float) -> Floats:
         """Times, s, at a share `offset` of the way through the steps."""
@@ -118,12 +118,12 @@ def join_steps(parts: Sequence[Steps]) -> Steps:
     if len(parts) == 1:
         return parts[0]
     names = [field.name for field in dataclasses.fields(Steps)]
-    whole = Steps(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+    joined = Steps(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
     last = np.cumsum([len(part) for part in parts[:-1]]) - 1
-    following, resume = whole.following.copy(), whole.resume.copy()
-    following[last], resume[last] = whole.length[last + 1], whole.drive_begin[last + 1]
-    anew = whole.jump | (following != whole.length)
-    return dataclasses.replace(whole, following=following, resume=resume, anew=anew)
+    following, resume = joined.following.copy(), joined.resume.copy()
+    following[last], resume[last] = joined.length[last + 1], joined.drive_begin[last + 1]
+    anew = joined.jump | (following != joined.length)
+    return dataclasses.replace(joined, following=following, resume=resume, anew=anew)
 
 
 @lru_cache(maxsize=8)
@@ -144,15 +144,15 @@ def _fitted(start: float, step: float, count: int, corners: Corners | None) -> S
     off_grid = np.abs(corners.time - nodes[nearest]) > tolerance
     cuts = corners.time[off_grid & (corners.time > start) & (corners.time < nodes[-1])]
     cuts = cuts[np.append(np.diff(cuts) > tolerance, True)[: len(cuts)]]
-    times, kept = np.concatenate([nodes, cuts]), np.arange(len(nodes) + len(cuts)) <= count
+    times, is_recorded = np.concatenate([nodes, cuts]), np.arange(len(nodes) + len(cuts)) <= count
     order = np.argsort(times)
-    times, kept = times[order], kept[order]
+    times, is_recorded = times[order], is_recorded[order]
     jump = np.zeros(len(times), dtype=bool)
     jump[np.searchsorted(times, corners.time[corners.jump] - tolerance).clip(max=len(times) - 1)] = True
-    length = np.where(kept[1:] & kept[:-1], step, np.diff(times))
+    length = np.where(is_recorded[1:] & is_recorded[:-1], step, np.diff(times))
     # The drive is read just inside a step where it jumps at an end.
     inside = 2 * tolerance * jump
     first, last = times[:-1] + inside[:-1], times[1:] - inside[1:]
     following, resume = np.append(length[1:], length[-1]), np.append(first[1:], times[-1])
     anew = jump[1:] | (following != length)
-    return Steps(times[:-1], length, times[1:], first, last, kept[1:], jump[1:], anew, resume, following)
+    return Steps(times[:-1], length, times[1:], first, last, is_recorded[1:], jump[1:], anew, resume, following)

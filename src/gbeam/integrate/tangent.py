@@ -33,14 +33,14 @@ def tangent(
     q: Floats,
     qd: Floats,
     *,
-    within: System | None = None,
+    linear_system: System | None = None,
     accelerations: bool = True,
 ) -> tuple[Floats, Floats, Floats]:
     """Derivatives (t + 1, n, p) of a run's q, q̇ and q̈ with respect to p parameters, from those at its start, q and qd
     (n, p).
 
-    `system` gives the equations linearised about the run's states, `within` those that its fitted steps solve. Without
-    `accelerations` the result's q̈ may be those of the last stage.
+    `system` gives the equations linearised about the run's states, `linear_system` those that its fitted steps solve.
+    Without `accelerations` the result's q̈ may be those of the last stage.
     """
     shape = (len(steps) + 1, *q.shape)
     histories = np.empty(shape), np.empty(shape), np.empty(shape)
@@ -55,7 +55,7 @@ def tangent(
     for end in ends:
         for first in range(begin, end, _CHUNK):
             part = slice(first, min(first + _CHUNK, end))
-            z, piece = _chunk(system, within or system, scheme, z, steps[part], _part(run, part), accelerations)
+            z, piece = _chunk(system, linear_system or system, scheme, z, steps[part], _part(run, part), accelerations)
             for history, values in zip(histories, piece, strict=True):
                 history[part.start + 1 : part.stop + 1] = values
         if end < len(steps):
@@ -72,37 +72,39 @@ def _part(run: Trajectory, steps: slice) -> Trajectory:
     return Trajectory(run.time[times], run.q[times], run.qd[times], run.qdd[times])
 
 
-def _accelerations(system: System, time: Floats, run: Trajectory, at: Any, q: Floats, qd: Floats) -> Floats:
-    """δq̈ (k, n, p) by the linearised equations for δq, δq̇, `q` and `qd`, about the run's states of indices `at`."""
-    mass, c, k, f = system(time, run.q[at], run.qd[at])
+def _accelerations(system: System, time: Floats, run: Trajectory, indices: Any, q: Floats, qd: Floats) -> Floats:
+    """δq̈ (k, n, p) by the linearised equations for δq, δq̇, `q` and `qd`, about the run's states at `indices`."""
+    mass, c, k, f = system(time, run.q[indices], run.qd[indices])
     return np.asarray(np.linalg.solve(mass, f - c @ qd - k @ q), dtype=np.float64)
 
 
 def _chunk(
-    system: System, within: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory, accelerations: bool
+    system: System, linear_system: System, scheme: Scheme, z: Floats, steps: Steps, run: Trajectory, accelerations: bool
 ) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
     """Take steps from z (m, n, p); return the next z, and δq, δq̇, δq̈ (t, n, p) at their ends."""
     t = scheme.tableau(steps.length)
     stages, (m, n, p) = len(scheme.offsets), z.shape
     states = _states(run, scheme, t)
-    at_stages = [within(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)]
+    at_stages = [
+        linear_system(steps.times(offset), *state) for offset, state in zip(scheme.offsets, states, strict=True)
+    ]
     mass, c, k, f = (np.stack(matrices, axis=1) for matrices in zip(*at_stages, strict=True))
     jacobian, by_state = t.jacobians(k, c, mass)
     # x = onto z + constant at all stages.
     x = np.linalg.solve(jacobian, np.concatenate([-by_state, f.reshape(len(steps), stages * n, p)], axis=-1))
-    onto, constant = x[..., : m * n], x[..., m * n :]
+    input_maps, constant = x[..., : m * n], x[..., m * n :]
     # Each step is an affine map of z, and the states before the steps are a recurrence.
     by_stage = x.reshape(len(steps), stages, n, m * n + p)
     unit = np.eye(m * n, m * n + p).reshape(m, n, m * n + p)
     maps = np.einsum("tij,jnk->tink", t.g, unit) + np.einsum("tis,tsnk->tink", t.d, by_stage)
     maps = maps.reshape(len(steps), m * n, m * n + p)
-    before = np.empty((len(steps), m * n, p))
+    earlier = np.empty((len(steps), m * n, p))
     state = z.reshape(m * n, p)
     for index, of_step in enumerate(maps):
-        before[index] = state
+        earlier[index] = state
         state = of_step[:, : m * n] @ state + of_step[:, m * n :]
-    x = (onto @ before + constant).reshape(len(steps), stages, n, p)
-    ends = np.einsum("tij,tjnp->tinp", t.end_z, before.reshape(len(steps), m, n, p))
+    x = (input_maps @ earlier + constant).reshape(len(steps), stages, n, p)
+    ends = np.einsum("tij,tjnp->tinp", t.end_z, earlier.reshape(len(steps), m, n, p))
     ends += np.einsum("tis,tsnp->tinp", t.end_x, x)
     q, qd, qdd = ends[:, 0], ends[:, 1], x[:, -1]
     # The last stage's q̈ is that at the end, unless the stage lies before it, or just before a jump.

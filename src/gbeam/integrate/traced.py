@@ -113,10 +113,10 @@ class TracedLoop:
         `inputs` have the laws' first states.
         """
         recorded = []
-        for shapes, taken, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
+        for shapes, samples, (*_, start) in zip(self.shapes, sampling.samples, inputs, strict=True):
             arrays = Samples(*(np.full(field.shape, np.nan) for field in shapes))
-            states = [start, *(after for *_, after in taken[:-1])]
-            for k, ((measured, asked, limited, _), state) in enumerate(zip(taken, states, strict=False)):
+            states = [start, *(next_state for *_, next_state in samples[:-1])]
+            for k, ((measured, asked, limited, _), state) in enumerate(zip(samples, states, strict=False)):
                 for array, value in zip(arrays, (measured, asked, limited, state), strict=True):
                     array[k] = value
             recorded.append(arrays)
@@ -139,16 +139,16 @@ class TracedLoop:
     ) -> _Changes:
         """Changes of samples along a run.
 
-        `primals` are the residual and its drives where steps begin, `inputs` the laws' values; `tangents` and
+        `primals` are the residual and its drives where steps begin, `inputs` the laws' values. `tangents` and
         `by_inputs` are the tangents of both.
         """
-        held = self.acting_commands(samples)
-        before = jnp.concatenate([0 * held[:1], held[:-1]])
+        acting = self.acting_commands(samples)
+        earlier = jnp.concatenate([0 * acting[:1], acting[:-1]])
         laws = zip(self.sample_steps, self.laws_of(inputs), self.laws_of(by_inputs), samples, strict=True)
         parts = []
-        for c, (at, law, by_law, values) in enumerate(laws):
-            state = [part[at] for part in run[:2]]
-            measured = self._measurement_changes(c, primals, tangents, state, before[at], at)
+        for c, (sample_steps, law, by_law, values) in enumerate(laws):
+            state = [part[sample_steps] for part in run[:2]]
+            measured = self._measurement_changes(c, primals, tangents, state, earlier[sample_steps], sample_steps)
             parts.append(measured + self._law_changes(law, by_law, values))
         return _Changes(self, parts)
 
@@ -165,7 +165,7 @@ class TracedLoop:
         driven, by_driven = (jax.tree.map(lambda leaf: leaf[at], tree) for tree in (driven, by_driven))
 
         def measured(residual: Any, driven: Any) -> Array:
-            """Measurements (s, k) as a function of what JAX traces; the states of the run are constants."""
+            """Measurements (s, k) as a function of what JAX traces. The states of the run are constants."""
             inputs = self.controllers.add_commands(driven, before)
             controllers = self.controllers.rebuild(exact_residual(residual))
             qdd = compiled_accelerations(residual, q, qd, inputs) if controllers.measures_accelerations(c) else 0 * q
@@ -210,7 +210,7 @@ class TracedLoop:
 
 
 class _Changes:
-    """Changes of samples, carried through the steps of a run; each step passes the change of its state."""
+    """Changes of samples, carried through the steps of a run. Each step passes the change of its state."""
 
     def __init__(self, loop: TracedLoop, parts: list[tuple[Array, ...]]) -> None:
         """Arrange the derivatives by steps, and find how many commands of each controller wait until they act."""
@@ -231,25 +231,27 @@ class _Changes:
         rings = [jnp.zeros(shape) for shape in zip(self.rings, sizes, strict=True)]
         return list(zip(self.starts, rings, strict=True)), jnp.zeros(sum(sizes))
 
-    def step(self, carried: Any, dz: Array, at: Any) -> tuple[Any, Array, Any]:
-        """Carry the changes through one step whose state changes by dz (m, n); `at` has its entries of `by_step`.
+    def step(self, carried: Any, dz: Array, entry: Any) -> tuple[Any, Array, Any]:
+        """Carry the changes through one step whose state changes by dz (m, n). `entry` has its entries of `by_step`.
 
         Returns the changes of the laws' states and rings after the step, of the commands that act in it, and of the
         samples at its beginning.
         """
-        laws, before = carried
-        after, acting, sampled = [], [], []
-        for (state, ring), (taken, active, by_z, by_command, y, by_y, by_state, direct) in zip(laws, at, strict=True):
+        laws, earlier = carried
+        laws_after, acting, sampled = [], [], []
+        for (state, ring), (taken, active, by_z, by_command, y, by_y, by_state, direct) in zip(
+            laws, entry, strict=True
+        ):
             count, m = ring.shape
-            measured = by_z @ dz.ravel() + by_command @ before + y
+            measured = by_z @ dz.ravel() + by_command @ earlier + y
             asked, limited, following = jnp.split(by_y @ measured + by_state @ state + direct, (m, 2 * m))
             sampled.append(Samples(measured, asked, limited, state))
             state = jnp.where(taken >= 0, following, state)
             ring = jnp.where(taken >= 0, ring.at[taken % count].set(limited), ring)
-            after.append((state, ring))
+            laws_after.append((state, ring))
             acting.append(jnp.where(active >= 0, ring[active % count], 0.0))
-        commands = jnp.concatenate([before[:0], *acting])
-        return (after, commands), commands, sampled
+        commands = jnp.concatenate([earlier[:0], *acting])
+        return (laws_after, commands), commands, sampled
 
 
 def traced(
@@ -278,18 +280,18 @@ def traced(
             index = order[np.searchsorted(times, t, sorter=order)]
             return each_leaf(lambda leaf: leaf[index], driven)
 
-        untraced, out, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
+        untraced, histories, done = NonlinearEquations(residual, drive), np.full((3, *shape), np.nan), 0
         laws = loop.laws_of(inputs)
         if laws:
             untraced = replace(untraced, controllers=loop.controllers.rebuild(exact_residual(residual), laws))
         samples = sampling_of(untraced, steps)
         with np.errstate(all="ignore"):  # of what is no number
             for *piece, _ in windows(untraced, scheme, q, qd, steps, samples):
-                out[: len(piece), done : done + len(piece[0])] = piece
+                histories[: len(piece), done : done + len(piece[0])] = piece
                 done += len(piece[0])
             if not scheme.ends:
-                out[2, :done] = Demanded(untraced, steps, out[0], out[1], samples)(np.arange(done))
-        return tuple(out), [] if samples is None else loop.record_samples(samples, inputs)
+                histories[2, :done] = Demanded(untraced, steps, histories[0], histories[1], samples)(np.arange(done))
+        return tuple(histories), [] if samples is None else loop.record_samples(samples, inputs)
 
     @jax.custom_jvp
     def run(residual: Any, q: Array, qd: Array, driven: Any, inputs: Any) -> Any:
@@ -375,10 +377,10 @@ def _changes(
     jacobian, by_z = t.jacobians(*map(select_stages, slope))
     inverse = jnp.linalg.inv(jacobian)
 
-    def step(carried: Any, at: Any) -> Any:
+    def step(carried: Any, entry: Any) -> Any:
         """Take the changes of state and laws through one step: δx = −J⁻¹ (δr + L δz), δz₊ = g δz + d δx."""
         dz, law = carried
-        inverse, by_z, by_command, direct, g, d, sampled = at
+        inverse, by_z, by_command, direct, g, d, sampled = entry
         law, du, taken = follow.step(law, dz, sampled)
         change = direct.ravel() + by_z @ dz.ravel() + (by_command @ du).ravel()
         dx = -(inverse @ change).reshape(stages, n)

@@ -68,12 +68,12 @@ class Verdict:
 
     def extend(self, added: int) -> None:
         """Append steps without corrections."""
-        none = np.repeat([[np.inf], [np.inf], [0.0], [np.inf], [0.0]], added, axis=1)
-        self.corrections = np.concatenate([self.corrections, none], axis=1)
+        empty = np.repeat([[np.inf], [np.inf], [0.0], [np.inf], [0.0]], added, axis=1)
+        self.corrections = np.concatenate([self.corrections, empty], axis=1)
 
-    def _keep(self, kept: slice) -> None:
+    def _keep(self, rows: slice) -> None:
         """Reduce to a slice of the steps."""
-        self.corrections = self.corrections[:, kept]
+        self.corrections = self.corrections[:, rows]
 
     def cut(self, count: int) -> None:
         """Take out all but the first `count` steps."""
@@ -141,23 +141,23 @@ class Verdict:
         """Judge the corrections recorded last. `loads` (t,) are the accelerations that the loads alone would make.
 
         Derivatives are `fresh` by which no correction has been made before. Those that are not `trusted` are
-        interpolated from states far away and may be far too large: a correction by them may be small wherever a step
+        interpolated from states far away and may be far too large. A correction by them may be small wherever a step
         is, so that the forces of such a step have to be `balanced`, too.
         """
-        size, share, count, least, rounding = self.corrections
-        alone = len(size) == 1
+        size, share, count, smallest, rounding = self.corrections
+        is_single = len(size) == 1
         noise = np.minimum(rounding, self.bound) + CANCELLED * loads
         # By derivatives of another state corrections may shrink slowly without being rounding.
-        good = converged_steps(size, self.previous_sizes, self.reach, noise, fresh=fresh, quick=least <= FAST)
+        good = converged_steps(size, self.previous_sizes, self.reach, noise, fresh=fresh, quick=smallest <= FAST)
         doubtful = good & ~trusted & ~balanced
         good &= ~doubtful
         factor = size / np.where(fresh | np.isinf(self.previous_sizes), np.nan, self.previous_sizes)
-        least[:] = np.fmin(least, factor)
-        slow = (~good & (count > 1) & ~(size <= SLOW * self.previous_sizes)) | (alone & doubtful)
+        smallest[:] = np.fmin(smallest, factor)
+        slow = (~good & (count > 1) & ~(size <= SLOW * self.previous_sizes)) | (is_single & doubtful)
         far = ~(share <= MOVED)
-        lost = ~np.isfinite(size) | (far & (count >= (ALONE if alone else LATE)))
-        lost[0] |= count[0] >= ALONE
-        return Judgement(good, slow, lost)
+        is_lost = ~np.isfinite(size) | (far & (count >= (ALONE if is_single else LATE)))
+        is_lost[0] |= count[0] >= ALONE
+        return Judgement(good, slow, is_lost)
 
 
 def balanced_steps(remaining: Array, forces: Array, loads: Array) -> Flags:
@@ -177,22 +177,22 @@ def reach(x: Array) -> Array:
     return largest + EARLIER * np.maximum.accumulate(largest) + TINY
 
 
-def shrinkage(size: Any, before: Any) -> Any:
+def shrinkage(size: Any, previous: Any) -> Any:
     """Factor, at most 1, by which corrections shrink, from the sizes of the last two. It is 0 after the first one,
     where the size before is infinite.
     """
-    xp = namespace(size, before)
-    return xp.minimum(size / xp.maximum(before, 1e-300), 1.0)
+    xp = namespace(size, previous)
+    return xp.minimum(size / xp.maximum(previous, 1e-300), 1.0)
 
 
-def converged_steps(size: Array, before: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Flags:
+def converged_steps(size: Array, previous: Array, reach: Array, noise: Array, *, fresh: Array, quick: Array) -> Flags:
     """Flags (t,) of steps whose last correction, of a `size`, leaves an error below a tolerance and rounding, `noise`.
 
     Corrections are taken to shrink by a constant factor, size / before. By `fresh` derivatives this factor is unknown
     and taken as 1, and after the first correction any error may remain. A small correction that stalls is rounding, by
     fresh derivatives or after `quick` ones: the rounding of earlier steps adds to a step's own.
     """
-    repeated, factor = np.isfinite(before), shrinkage(size, before)
+    repeated, factor = np.isfinite(previous), shrinkage(size, previous)
     remaining = size * np.where(fresh, 1.0, np.maximum(factor, QUICKEST))
     error = np.where(repeated, remaining, np.inf)
     stalled = (fresh & repeated & (factor > STALLED)) | (quick & (factor > SLOW) & (size <= SUMMED * reach))

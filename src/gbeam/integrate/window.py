@@ -66,8 +66,8 @@ class Window:
         count = len(self)
         if count and (self.sampling is not None or count > FEW or self.limit == 1):
             return 0
-        most = LONGEST if single else MOST
-        return max(min(self.growth, end - self.first - count, most - count), 0)
+        largest_room = LONGEST if single else MOST
+        return max(min(self.growth, end - self.first - count, largest_room - count), 0)
 
     def extend(self, added: int) -> None:
         """Append steps, and guess each like the last one."""
@@ -80,10 +80,10 @@ class Window:
         """Let more steps follow the next time, half as many again."""
         self.growth = min(self.growth + self.growth // 2 + 1, LONGEST)
 
-    def _keep(self, kept: slice) -> None:
+    def _keep(self, rows: slice) -> None:
         """Reduce the window to a slice of its steps, the first or the last."""
-        states = slice(kept.start, kept.stop if kept.stop is None else kept.stop + 1)
-        self.z, self.x = self.z[states], self.x[kept]
+        states = slice(rows.start, rows.stop if rows.stop is None else rows.stop + 1)
+        self.z, self.x = self.z[states], self.x[rows]
         if len(self):
             self._place()
 
@@ -120,8 +120,12 @@ class Window:
 
     def stages(self) -> Stages:
         """States and inputs at the stages of all steps, by the last iterate."""
-        both = self.weights @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
-        states = np.concatenate([both, self.x[:, None]], axis=1).swapaxes(0, 1).reshape(3, -1, self.x.shape[-1])
+        starts_and_solutions = self.weights @ np.concatenate([self.z[:-1], self.x], axis=1)[:, None]
+        states = (
+            np.concatenate([starts_and_solutions, self.x[:, None]], axis=1)
+            .swapaxes(0, 1)
+            .reshape(3, -1, self.x.shape[-1])
+        )
         return Stages(self.times, states, self.inputs)
 
     def correct(self, stages: Stages, maps: tuple[Array, Array, Array]) -> Array:
@@ -212,10 +216,12 @@ class Window:
         """Halve a single step's correction until the next one would be smaller. Friction or a stop bends the residual,
         so that a full correction may go too far.
         """
-        share, whole = 1.0, np.linalg.norm(change)
+        share, full_size = 1.0, np.linalg.norm(change)
         for _ in range(HALVINGS):
             following = inverse @ self.residual(*self.stages().states, self.inputs).reshape(1, -1, 1)
-            if np.linalg.norm(following) <= (1 - share / 2) * whole or whole <= ROUNDING * np.linalg.norm(self.x):
+            if np.linalg.norm(following) <= (1 - share / 2) * full_size or full_size <= ROUNDING * np.linalg.norm(
+                self.x
+            ):
                 return
             share /= 2
             self.z -= share * by_state

@@ -1,11 +1,11 @@
 """Nonlinear equations in time without compiling: windows of many steps solved together.
 
 One call of the residual evaluates all stages of a window, and one correction of Newton's method all its unknowns. The
-window slides: steps that have converged leave it at its beginning, and where its last one is near more follow, each at
-first like the last, of which the next correction makes the linear response about that state. Steps that stay far are
-taken out; where the first one does, the window begins anew and shorter, with a single step at last, which takes
-Newton's method proper. Where derivatives are interpolated, which may be wrong, a step is left only if the residual is
-small beside its forces, too.
+window slides. Steps that have converged leave it at its beginning. Where its last step is near, further ones follow,
+each at first like the last: the next correction makes the linear response about that state. Steps that stay far are
+taken out. Where the first one does, the window begins anew and shorter, with a single step at last, which takes
+Newton's method proper. Interpolated derivatives may be wrong. With them a step is left only if the residual is small
+beside its forces, too.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def windows(
 ) -> Iterator[Piece]:
     """Integrate nonlinear equations, and take the `samples` of controllers.
 
-    Yields pieces of q, q̇, q̈ (k, n) at the ends of kept steps, with flags (k,) of those solved; the first piece is the
+    Yields pieces of q, q̇, q̈ (k, n) at the ends of kept steps, with flags (k,) of those solved. The first piece is the
     initial state. q̈ is missing unless the scheme's last stage is the end of the step.
     """
     if not q.size:  # all motion is prescribed
@@ -61,8 +61,8 @@ def windows(
                     q, qd = ended[0][-1], ended[1][-1]
                     if scheme.ends and window.first == end and steps.anew[end - 1]:
                         qdd, ended[2][-1] = (acceleration(time[end - 1], q, qd) for time in (steps.resume, steps.end))
-                    kept = steps.kept[begin : window.first]
-                    yield *(ends[kept] for ends in ended), np.ones(np.count_nonzero(kept), dtype=bool)
+                    is_recorded = steps.kept[begin : window.first]
+                    yield *(ends[is_recorded] for ends in ended), np.ones(np.count_nonzero(is_recorded), dtype=bool)
             if not solved:
                 if samples is not None:
                     samples.forget_failure(window.first)
@@ -90,13 +90,13 @@ class _Solver:
         while self.window.first < enough:
             self._follow(end)
             judgement = self._correct()
-            good, lost = judgement.converged_steps, judgement.lost_steps
-            done = len(good) if good.all() else int(np.argmin(good))
-            if done and (self.window.sampling is None or done == len(good)):
+            converged_steps, lost_steps = judgement.converged_steps, judgement.lost_steps
+            done = len(converged_steps) if converged_steps.all() else int(np.argmin(converged_steps))
+            if done and (self.window.sampling is None or done == len(converged_steps)):
                 for part in self.parts:
                     part.leave(done)
-                lost = lost[done:]
-            if lost.any() and not self._withdraw(int(np.argmax(lost))):
+                lost_steps = lost_steps[done:]
+            if lost_steps.any() and not self._withdraw(int(np.argmax(lost_steps))):
                 return False
         return True
 

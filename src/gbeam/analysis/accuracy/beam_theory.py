@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from gbeam.analysis.accuracy.correction import MOVED, Correction, Departures, Posed, Quantity, Reading, State, Within
+from gbeam.analysis.accuracy.correction import MOVED, Correction, Departures, Embedding, Posed, Quantity, Reading, State
 from gbeam.analysis.accuracy.looks import Looks
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
@@ -23,18 +23,18 @@ from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.theory import Theory
 from gbeam.structure.beam import assumptions
 
-NAMED, NONE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
+NAMED, NEGLIGIBLE = 0.02, 1e-9  # of the largest cause, and of the energy: a smaller one is not named
 LESSER = 0.1  # of a difference: a smaller one beside it is not worth a run
 _K = TypeVar("_K")
 WORDS = {"shear": "shear", "rotary": "rotary inertia", "twist": "twist", "plate": "plate action"}
 
 
 # Initial departure, or None for equilibrium, by linear equations, with a stiffness (n, n) that these have besides.
-Begun = Callable[[Departures, Within, Floats], State | None]
+Begun = Callable[[Departures, Embedding, Floats], State | None]
 
 
 class Lacking(NamedTuple):
-    """Largest difference of each quantity between slender and thick beams; empty where thick beams have no answer.
+    """Largest difference of each quantity between slender and thick beams, or empty where thick beams have no answer.
 
     By beam there are the share of each cause in the energy, and the displacements (b,) m of the masses on it between
     the two. Over time there is the difference of each quantity's peaks.
@@ -50,9 +50,9 @@ class Lacking(NamedTuple):
         sizes, peaks = _larger(self.sizes, other.sizes), _larger(self.peaks, other.peaks)
         return Lacking(sizes, self.causes, _larger(self.bodies, other.bodies), peaks)
 
-    def is_significant(self, most: Lacking) -> bool:
+    def is_significant(self, largest: Lacking) -> bool:
         """True if the difference of a quantity is more than a LESSER part of the largest."""
-        return any(size > LESSER * most.sizes[key] for key, size in self.sizes.items())
+        return any(size > LESSER * largest.sizes[key] for key, size in self.sizes.items())
 
 
 def _larger(one: Mapping[_K, Any], other: Mapping[_K, Any]) -> dict[_K, Any]:
@@ -67,29 +67,29 @@ def thick_beam_differences(
     pose: Callable[[Mapping[str, Structure]], Posed],
     begun: Begun,
     look: Callable[[Floats], Looks],
-    again: Callable[[Mapping[str, Structure]], Reading] | None = None,
+    rerun: Callable[[Mapping[str, Structure]], Reading] | None = None,
 ) -> Lacking:
     """Differences between slender and thick beams at a solution of the equations `solved`, their `trajectory`.
 
     `pose` returns equations with other beams, `begun` the difference of their initial states, and `look` the times to
     read, chosen by sizes of departures.
 
-    With `again`, systems with slender and thick beams are run instead, as in a loop, whose controllers answer too.
+    With `rerun`, systems with slender and thick beams are run instead, as in a loop, whose controllers answer too.
     Thick beams run with and without plate action, unless the answers without controllers say that one of the two makes
     only a LESSER part of every difference.
     """
     compared = _Compared.from_solution(solved, trajectory, theories, pose)
     try:
         linear = compared.answered(begun, look)
-        most = reduce(Lacking.or_larger, linear)
-        if again is None:
-            return most
-        worth_a_run = (lacking.is_significant(most) for lacking in linear)
+        largest = reduce(Lacking.or_larger, linear)
+        if rerun is None:
+            return largest
+        worth_a_run = (lacking.is_significant(largest) for lacking in linear)
         plated = [*compress(compared.plated, worth_a_run)] or compared.plated
-        run = compared.run(again, plated)
+        run = compared.run(rerun, plated)
     except (ComputationError, np.linalg.LinAlgError):
         return Lacking()
-    return reduce(Lacking.or_larger, run)._replace(causes=most.causes)
+    return reduce(Lacking.or_larger, run)._replace(causes=largest.causes)
 
 
 class _Compared(NamedTuple):
@@ -100,8 +100,8 @@ class _Compared(NamedTuple):
     """
 
     theories: Mapping[str, Theory]
-    thin: Within
-    full: Within
+    thin: Embedding
+    full: Embedding
     columns: Mapping[str, list[int]]
     plates: Mapping[str, Floats]
     plated: Sequence[bool]
@@ -117,8 +117,8 @@ class _Compared(NamedTuple):
         """Put a solution of the equations `solved` into those of slender and of thick beams."""
         slender = {name: theory.slender for name, theory in theories.items()}
         thick = {name: theory.thick for name, theory in theories.items()}
-        thin = Within.lifted(pose(slender), solved, trajectory)
-        full = Within.lifted(pose(thick), thin.richer, thin.trajectory)
+        thin = Embedding.lifted(pose(slender), solved, trajectory)
+        full = Embedding.lifted(pose(thick), thin.richer, thin.trajectory)
         columns = {name: [k for k, body in enumerate(full.richer.bodies) if body == name] for name in theories}
         plates = {name: theory.plate(full.trajectory.q[:, columns[name]]) for name, theory in theories.items()}
         plated = (False, True) if any(plate.any() for plate in plates.values()) else (False,)
@@ -139,9 +139,9 @@ class _Compared(NamedTuple):
             stiffer = departures.stiffer(added)
             answers.append(stiffer.answer(residual + q @ added, begun(stiffer, self.full, added)))
         looks = look(np.concatenate([self.full.richer.sizes(answer) for answer in answers], axis=1))
-        without, differences = self.thin.read(looks.at), list[Lacking]()
+        slender_reading, differences = self.thin.read(looks.at), list[Lacking]()
         for answer in answers:
-            sizes, peaks = _differences(looks, without, self.full.read_corrected(answer, looks.at))
+            sizes, peaks = _differences(looks, slender_reading, self.full.read_corrected(answer, looks.at))
             bodies = dict[str, Floats]()
             for name, theory in self.theories.items():
                 moved = np.einsum("bai,ti->tba", theory.bodies, answer.value[:, self.columns[name]])
@@ -149,22 +149,24 @@ class _Compared(NamedTuple):
             differences.append(Lacking(sizes, shares, bodies, peaks))
         return differences
 
-    def run(self, again: Callable[[Mapping[str, Structure]], Reading], plated: Sequence[bool]) -> list[Lacking]:
+    def run(self, rerun: Callable[[Mapping[str, Structure]], Reading], plated: Sequence[bool]) -> list[Lacking]:
         """Differences between runs of systems with slender beams and with thick ones, for each flag of plate action."""
-        without = again({name: theory.slender for name, theory in self.theories.items()})
+        slender_reading = rerun({name: theory.slender for name, theory in self.theories.items()})
         answers = list[Lacking]()
         for flag in plated:
             stiff = {name: theory.variants(self.plates[name])[flag] for name, theory in self.theories.items()}
-            sizes, peaks = _differences(Looks.all_times(self.full.trajectory.time), without, again(stiff))
+            sizes, peaks = _differences(Looks.all_times(self.full.trajectory.time), slender_reading, rerun(stiff))
             answers.append(Lacking(sizes, peaks=peaks))
         return answers
 
 
-def _differences(looks: Looks, without: Reading, truth: Reading) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
+def _differences(
+    looks: Looks, slender_reading: Reading, thick_reading: Reading
+) -> tuple[dict[Quantity, float], dict[Quantity, float]]:
     """Largest differences of readings, and over time the differences of their peaks."""
-    sizes = {key: largest(truth[key] - values) for key, values in without.items()}
-    judged = [key for key in without if len(looks.at) > 1 and key[1] not in MOVED]
-    return sizes, {key: looks.peak_difference(without[key], truth[key]) for key in judged}
+    sizes = {key: largest(thick_reading[key] - values) for key, values in slender_reading.items()}
+    judged = [key for key in slender_reading if len(looks.at) > 1 and key[1] not in MOVED]
+    return sizes, {key: looks.peak_difference(slender_reading[key], thick_reading[key]) for key in judged}
 
 
 def causes(theory: Theory, p: Any, beam: Any, plate: Any) -> dict[str, float]:
@@ -195,7 +197,7 @@ def largest(values: Floats) -> float:
 
 def words(causes: Mapping[str, float]) -> str:
     """Names of the causes that are not negligible, the largest first, such as ``shear and rotary inertia``."""
-    limit = max(NAMED * max(causes.values(), default=0.0), NONE)
+    limit = max(NAMED * max(causes.values(), default=0.0), NEGLIGIBLE)
     ordered = sorted(causes.items(), key=lambda item: -item[1])
     chosen = [WORDS[name] for name, share in ordered if share > limit]
     return " and ".join([", ".join(chosen[:-1]), chosen[-1]] if len(chosen) > 1 else chosen)

@@ -1,6 +1,6 @@
 """Solutions put into equations with more shapes, their residuals there, and the small departures that cancel these.
 
-Modes that the samples resolve answer in time, by Gauss's method; the others follow statically.
+Modes that the samples resolve answer in time, by Gauss's method. The others follow statically.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Posed(NamedTuple):
 
     @property
     def bodies(self) -> list[str]:
-        """For each unknown the name of the body whose shape it is; "" for those of joints."""
+        """For each unknown the name of the body whose shape it is, or "" for those of joints."""
         return [name.rpartition(".q")[0] for name in self.names]
 
 
@@ -138,15 +138,15 @@ class Departures:
         resolved[np.argsort(square)[:2]] = True
         return Vibration(square, modes, resolved)
 
-    def stiffer(self, by: Floats) -> Departures:
+    def stiffer(self, stiffness: Floats) -> Departures:
         """Departures with more stiffness (n, n)."""
-        return replace(self, k=self.k + by)
+        return replace(self, k=self.k + stiffness)
 
     def settled(self, residual: Floats, bent: Flags | None = None, accelerated: Flags | None = None) -> State:
         """Departure at rest that balances a residual (n,).
 
-        Unknowns that are `bent`, by default those of bodies, are displaced; those that are `accelerated`, by default
-        those of joints, take up the residual by their inertia; the others are held.
+        Unknowns that are `bent`, by default those of bodies, are displaced. Those that are `accelerated`, by default
+        those of joints, take up the residual by their inertia. The others are held.
         """
         bent = self.elastic if bent is None else bent
         accelerated = ~bent if accelerated is None else accelerated
@@ -158,8 +158,8 @@ class Departures:
 
     def modal_state(self, start: State) -> State:
         """Modal coordinates and rates (n,) of a state."""
-        displaced, moving = (np.asarray(np.linalg.solve(self.vibration.modes, values)) for values in start)
-        return displaced, moving
+        displaced, velocity = (np.asarray(np.linalg.solve(self.vibration.modes, values)) for values in start)
+        return displaced, velocity
 
     def ringing(self, residual: Floats, start: State | None) -> tuple[Floats, Floats]:
         """Frequencies (k,) rad/s of the unresolved modes, and bounds (n, k) of the amplitudes of their free vibration.
@@ -169,8 +169,8 @@ class Departures:
         """
         square, modes, kept = self.vibration
         rate, force = np.sqrt(square[~kept]), residual @ modes[:, ~kept]
-        displaced, moving = (values[~kept] for values in self.modal_state(start or self.settled(residual[0])))
-        by_start = np.abs(displaced + force[0] / rate**2) + np.abs(moving) / rate
+        displaced, velocity = (values[~kept] for values in self.modal_state(start or self.settled(residual[0])))
+        by_start = np.abs(displaced + force[0] / rate**2) + np.abs(velocity) / rate
         by_corners = np.abs(np.diff(force, n=2, axis=0)).max(axis=0) / rate**2
         return rate, modes[:, ~kept] * (by_corners + by_start)
 
@@ -205,15 +205,15 @@ class Departures:
         return Correction(moved.q @ phi.T + static, moved.qd @ phi.T, moved.qdd @ phi.T)
 
 
-def _interpolate(at: Floats, values: Any, time: Floats) -> Floats:
-    """Interpolate values (k, ...) at the times `at` (k,) linearly to other times (t,)."""
-    place = np.interp(time, at, np.arange(len(at)))
+def _interpolate(known_time: Floats, values: Any, time: Floats) -> Floats:
+    """Interpolate values (k, ...) at the times `known_time` (k,) linearly to other times (t,)."""
+    place = np.interp(time, known_time, np.arange(len(known_time)))
     low = np.minimum(place.astype(int), len(values) - 2)
     share = (place - low).reshape(-1, *[1] * (values.ndim - 1))
     return np.asarray(values[low] * (1 - share) + values[low + 1] * share)
 
 
-class Within(NamedTuple):
+class Embedding(NamedTuple):
     """A solution of the equations `simpler`, as a `trajectory` of the equations `richer`, which have more shapes.
 
     `shared` are the indices of its unknowns among theirs.
@@ -225,7 +225,7 @@ class Within(NamedTuple):
     trajectory: Trajectory
 
     @classmethod
-    def lifted(cls, richer: Posed, simpler: Posed, solution: Trajectory, shared: IntArray | None = None) -> Within:
+    def lifted(cls, richer: Posed, simpler: Posed, solution: Trajectory, shared: IntArray | None = None) -> Embedding:
         """Put a solution into richer equations, whose unknowns have its names, or have it at the indices `shared`."""
         if shared is None:
             shared = np.array([richer.names.index(name) for name in simpler.names], dtype=int)
@@ -244,18 +244,18 @@ class Within(NamedTuple):
         first = self.trajectory.select(slice(1))
         return self._residual_at(slice(1), replace(first, known=np.where(accelerated, first.qdd, 0.0)))[0]
 
-    def _residual_at(self, times: slice, at: Trajectory) -> Floats:
+    def _residual_at(self, times: slice, states: Trajectory) -> Floats:
         """Residual (t, n) of states at a slice of the times, without the one in the solution's own equations.
 
         The solution has one of its own where inputs jump.
         """
-        residual = np.array(self.richer.residual(at.q, at.qd, at.qdd, self.richer.inputs(times)))
-        state = (values[:, self.shared] for values in (at.q, at.qd, at.qdd))
+        residual = np.array(self.richer.residual(states.q, states.qd, states.qdd, self.richer.inputs(times)))
+        state = (values[:, self.shared] for values in (states.q, states.qd, states.qdd))
         residual[:, self.shared] -= self.simpler.residual(*state, self.simpler.inputs(times))
         return residual
 
     def new_part(self, residual: Floats) -> Floats:
-        """Part of a residual (..., n) in the new coordinates, which too few shapes leave; the rest is the model's."""
+        """Part of a residual (..., n) in the new coordinates, which too few shapes leave. The rest is the model's."""
         new = residual.copy()
         new[..., self.shared] = 0.0
         return new
@@ -264,20 +264,22 @@ class Within(NamedTuple):
         """Linear equations of small departures from the solution, by the `richer` or by other `equations`."""
         richer = equations or self.richer
         chosen = matrix_times(len(self.trajectory.time))
-        at = self.trajectory.select(chosen)
+        state = self.trajectory.select(chosen)
         elastic = np.array([".q" in name for name in self.richer.names], dtype=bool)
-        k, c, m = slopes(richer.residual, at.q, at.qd, at.qdd, richer.inputs(chosen))
+        k, c, m = slopes(richer.residual, state.q, state.qd, state.qdd, richer.inputs(chosen))
         balls = [name.rpartition(".")[0] if name.endswith(PARAMETERS) else "" for name in self.richer.names]
-        faster = {ball for ball, accelerated in zip(balls, at.qdd.any(axis=0), strict=True) if ball and accelerated}
+        faster = {ball for ball, accelerated in zip(balls, state.qdd.any(axis=0), strict=True) if ball and accelerated}
         turned = np.array([ball in faster for ball in balls], dtype=bool)
-        return Departures(self.trajectory.time, at.time, k, c, m, elastic, turned)
+        return Departures(self.trajectory.time, state.time, k, c, m, elastic, turned)
 
     def read(self, times: Indices) -> Reading:
         """Read the solution in the `richer` equations at indices of its times."""
         return self.richer.read(self.trajectory.select(times), times)
 
-    def read_corrected(self, by: Correction, times: Indices) -> Reading:
+    def read_corrected(self, correction: Correction, times: Indices) -> Reading:
         """Read the solution with a correction added, at indices of its times."""
-        at, change = self.trajectory.select(times), by.select(times)
-        corrected = replace(at, q=at.q + change.value, qd=at.qd + change.rate, known=at.qdd + change.acceleration)
+        state, change = self.trajectory.select(times), correction.select(times)
+        corrected = replace(
+            state, q=state.q + change.value, qd=state.qd + change.rate, known=state.qdd + change.acceleration
+        )
         return self.richer.read(corrected, times)

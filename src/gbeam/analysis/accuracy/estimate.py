@@ -65,9 +65,9 @@ def reference_model(errors: ErrorEstimate) -> str:
     return "the model with forces of higher order" if math.isnan(errors.beam_theory) else "the exact model"
 
 
-def error_warning(what: str, size: str, errors: ErrorEstimate, theory: str) -> str:
+def error_warning(quantity: str, size: str, errors: ErrorEstimate, theory: str) -> str:
     """Warn that a quantity of a steady state is wrong by a `size` in words, with its largest cause and advice."""
-    return f"{what} is wrong by an estimated {size}: {causes_in_words(causes(errors, theory)[:1])}"
+    return f"{quantity} is wrong by an estimated {size}: {causes_in_words(causes(errors, theory)[:1])}"
 
 
 def causes_in_words(causes: list[Cause], worst_body: str = "") -> str:
@@ -148,7 +148,7 @@ def negligible(sizes: Mapping[Quantity, float], body: str, length: float, inerti
 
 
 def unjudged(structure: Structure) -> str:
-    """Sentence that says which errors of a structure are not judged; empty if all are."""
+    """Sentence that says which errors of a structure are not judged, or empty if all are."""
     if structure.source is not None or not structure.size:  # a rigid structure has neither shapes nor mesh
         return ""
     if structure.modes is None:
@@ -177,7 +177,7 @@ class Judgement(NamedTuple):
 
     def difference(self, key: Quantity, *pairs: tuple[Reading, Reading]) -> float:
         """Largest size of the sum of the differences of pairs of readings, as a share of the quantity's size."""
-        away = largest(np.sum([more[key] - less[key] for less, more in pairs], axis=0))
+        away = largest(np.sum([fine[key] - coarse[key] for coarse, fine in pairs], axis=0))
         size = 0.0 if key in self.nothing else self.sizes[key] or away
         return away / size if size else 0.0
 
@@ -210,7 +210,7 @@ class Judgement(NamedTuple):
         # From what is computed to the exact model with more shapes; what lies between is no solution.
         first, last = (self.model, self.shapes) if self.shapes[0] is self.model[1] else (self.shapes, self.model)
         pairs = [(first[0], last[1]), *([] if self.mesh is None else [self.mesh])]
-        difference = sum(self.looks.peak_difference(less[key], more[key]) for less, more in pairs)
+        difference = sum(self.looks.peak_difference(coarse[key], fine[key]) for coarse, fine in pairs)
         by_run = self.peaks_by_step.get(key, 0.0), self.friction.get(key, 0.0)
         causes = (difference + self.theory.peaks.get(key, 0.0)) / self.sizes[key], *by_run
         return min(max(float(np.nansum(causes)), ROUNDING), total)

@@ -88,9 +88,9 @@ class Vibration:
     def from_plant(plant: Plant) -> Vibration:
         """Find the modes that the drive of a plant excites, by ascending frequency; InputError if there are none."""
         small = plant.small
-        values, right = np.linalg.eig(small.a)
-        excited = np.linalg.solve(right, small.column)
-        size = np.linalg.norm(small.tip @ right, axis=0) * np.abs(excited)
+        values, vectors = np.linalg.eig(small.a)
+        excited = np.linalg.solve(vectors, small.column)
+        size = np.linalg.norm(small.tip @ vectors, axis=0) * np.abs(excited)
         vibrates = values.imag > 1e-6 * np.abs(values).max()  # rigid motions do not, and one of each pair counts
         chosen = vibrates & (size > 1e-9 * size[vibrates].max(initial=0.0))
         if not chosen.any():
@@ -103,8 +103,8 @@ class Vibration:
         """Complex amplitudes (k, ...), m, that drives (t, ...) leave in modes with eigenvalues times `ratio`."""
         # With the decay until the end in the exponent: that of a fast mode would overflow.
         weights = np.exp(ratio * (self.eigenvalue.real[:, None] * time[-1] - np.outer(self.eigenvalue, time)))
-        flat = drive.reshape(len(time), -1)
-        values = np.stack([np.trapezoid(weight[:, None] * flat, time, axis=0) for weight in weights])
+        drives = drive.reshape(len(time), -1)
+        values = np.stack([np.trapezoid(weight[:, None] * drives, time, axis=0) for weight in weights])
         return (self.gain[:, None] * values).reshape(len(weights), *drive.shape[1:])
 
     def amplitude(self, time: Floats, drive: Floats, ratio: Floats) -> Floats:

@@ -190,20 +190,20 @@ def _linearized(
     motion: Any = subject.motion
     n, measured = len(point.y), outputs_of(structure, state, gauges)
     value, d, forces = measured.matrices(point)
-    a, drive, out, through = linear._replace(inputs=forces).state_space(
+    a, drive, output, feedthrough = linear._replace(inputs=forces).state_space(
         *np.split(d, len(linear.mass) * np.arange(1, 4), axis=1)
     )
     states, held = coordinate_signals(structure, measured.first_coordinate), measured.holding_inputs
     begun = np.concatenate([point.y, point.yd])
     if not measured.first_coordinate:
         # u = (a, ω, α, loads): ω becomes a state where it acts, fed by α.
-        acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(through[:, i]).max() > 1e-12]
+        acts = [i for i in range(3, 6) if np.abs(drive[:, i]).max() > 1e-12 or np.abs(feedthrough[:, i]).max() > 1e-12]
         kept = [i for i in range(len(held)) if not 3 <= i < 6]
         fed = np.array([[float(j == i + 3) for j in kept] for i in acts]).reshape(-1, len(kept))
         m = len(acts)
         a = np.block([[a, drive[:, acts]], [np.zeros((m, 2 * n + m))]])
-        out = np.concatenate([out, through[:, acts]], axis=1)
-        drive, through = np.concatenate([drive[:, kept], fed]), through[:, kept]
+        output = np.concatenate([output, feedthrough[:, acts]], axis=1)
+        drive, feedthrough = np.concatenate([drive[:, kept], fed]), feedthrough[:, kept]
         states += tuple(BASE_RATES[i - 3] for i in acts)
         begun, held = np.concatenate([begun, held[acts]]), held[kept]
     warnings = input_warnings(structure, motion, name=name, span=(time, time), base=subject.base(state))
@@ -215,8 +215,8 @@ def _linearized(
     return StateSpace(
         a=a,
         b=drive,
-        c=out,
-        d=through,
+        c=output,
+        d=feedthrough,
         states=states,
         inputs=input_signals(structure, motion),
         outputs=output_signals(structure, gauges, motion),
@@ -254,7 +254,7 @@ def _poles(state: SteadySystem, subject: Subject) -> tuple[dict[str, Any], tuple
 def nonlinear_system(structure: Structure, motion: Motion, *, gauges: Sequence[Gauge] = ()) -> Any:
     """Return the complete model as ``control.nlsys``: driven by the torque on a free hub, else by its base's motion.
 
-    States are (y, ẏ) and, on a base that is not a free hub, the base's angular velocity; inputs and outputs are those
+    States are (y, ẏ) and, on a base that is not a free hub, the base's angular velocity. Inputs and outputs are those
     of :func:`gbeam.linearize`, not as departures but whole.
 
     Parameters

@@ -62,9 +62,9 @@ def surface_gauges(beam: Beam, stations: Annotated[Iterable[float], OfKind("leng
     [(0.01, 0.0, 0.002), (0.01, 0.01, 0.0)]
     """
     gauges: list[Gauge] = []
-    for i, at in enumerate(stations):
+    for i, station in enumerate(stations):
         with placing_within(f"stations[{i}]"):
-            gauges += [surface_gauge(beam, at, face) for face in ("z", "y")]
+            gauges += [surface_gauge(beam, station, face) for face in ("z", "y")]
     return gauges
 
 
@@ -88,9 +88,9 @@ class Outputs:
 
     They are displacement and absolute acceleration of the tip, root moment, strains, displacement and acceleration of
     other `points` (numbers of stations), and a free hub's angle and rate. Strains of beams are section forces times
-    `strains` (gauges, 6) at the sections `at`, those of solids are their causes times `shares` (gauges, n + h). u has
-    the torque on a free hub, or the base's acceleration, angular velocity and angular acceleration, and then the
-    components of the loads.
+    `strains` (gauges, 6) at the sections `at`. Those of solids are their causes times `shares` (gauges, n + h). The
+    first inputs are the torque on a free hub, or the base's acceleration, angular velocity and angular acceleration.
+    The components of the loads follow.
     """
 
     structure: Structure
@@ -201,9 +201,10 @@ def input_signals(structure: Structure, motion: Motion) -> tuple[Signal, ...]:
         signals += [Signal(f"base_angular_acceleration_{i}", "rad/s^2") for i in "xyz"]
     if structure.work is not None:
         counts = np.bincount(np.asarray(structure.work.load))
-        for k, per in enumerate("/m" if points > 1 else "" for points in counts[: len(counts) - structure.heated]):
-            signals += [Signal(f"load_{k + 1}_force_{i}", f"N{per}") for i in "xyz"]
-            signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{per}") for i in "xyz"]
+        points_on_beam = counts[: len(counts) - structure.heated]
+        for k, unit_suffix in enumerate("/m" if points > 1 else "" for points in points_on_beam):
+            signals += [Signal(f"load_{k + 1}_force_{i}", f"N{unit_suffix}") for i in "xyz"]
+            signals += [Signal(f"load_{k + 1}_moment_{i}", f"N m{unit_suffix}") for i in "xyz"]
     signals += [Signal("temperature", "K")] * structure.heated
     return tuple(signals)
 
@@ -233,7 +234,7 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
     """Build the outputs of one body in a state of its system."""
     measured, causes = structure.sections, structure.size + structure.heated
     shares = np.zeros((0, causes))
-    strains, at, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # rows of the sections: root and tip
+    strains, sections, rows = np.zeros((0, 6)), np.zeros(0, dtype=int), [0, -1]  # rows of the sections: root and tip
     if measured is None:
         by_gauge = [_solid_gauge(structure, i, gauge) for i, gauge in enumerate(gauges)]
         shares, gauges = np.array(by_gauge).reshape(-1, causes), ()
@@ -245,7 +246,7 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
         structure = replace_stations(structure, positions)
         measured = structure.sections
         assert measured is not None
-        at = _nearest(structure, positions)
+        sections = _nearest(structure, positions)
     points = np.array(list(points_of(structure).values()), dtype=int)
     if gauges or points.size:
         rows = list(range(len(structure.stations) + 1))
@@ -256,7 +257,7 @@ def outputs_of(structure: Structure, state: SteadySystem, gauges: Sequence[Gauge
         needed = replace(drives, efforts=None)
         efforts = point.tree.rows(point.y, point.yd, point.ydd, needed)[0]
         drives = replace(drives, efforts=efforts)
-    return Outputs(structure, point.tree, outboard, at, strains, shares, points, drives)
+    return Outputs(structure, point.tree, outboard, sections, strains, shares, points, drives)
 
 
 def _gauged(system: System, gauges: Sequence[Gauge]) -> tuple[System, dict[str, Strained]]:

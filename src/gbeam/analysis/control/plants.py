@@ -40,7 +40,7 @@ _SAG, _LEAST = 1e-6, 1e-6  # of the largest deflection, and m: a smaller change 
 _ASIDE = 1e-4  # m or rad: a joint that begins so near to its place of rest hardly swings
 _PLACES = (0.0, 0.19, 0.37, 0.61, 0.83, 1.0)  # shares of the way at which the sag is looked at
 _BENT = "bends the beam otherwise as it moves, which no command undoes", "leave it out, or let it be along the axis"
-HELD = 1e-9  # of the largest damping: a rigid motion with less is not braked
+BRAKING = 1e-9  # of the largest damping: a rigid motion with less is not braked
 
 
 @dataclass(frozen=True)
@@ -176,11 +176,13 @@ class Plant:
         initial = {key: value + moved * (key == coordinate) for key, value in joint.start_values.items()}
         efforts = {key: effort for key, effort in joint.efforts.items() if key != coordinate}
         moves: dict[str, Any] = {"initial": initial, "rate": {**joint.rates, coordinate: 0.0}, "effort": efforts}
-        held = replace(joint, **moves)
-        return steady_state(replace(self.system, joints={**self.system.joints, name: held}), Drive())
+        fixed_joint = replace(joint, **moves)
+        return steady_state(replace(self.system, joints={**self.system.joints, name: fixed_joint}), Drive())
 
     def _deflection(self, q: Floats) -> Floats | None:
-        """Displacement (t, 3) m of the point relative to its body's root, by all coordinates (t, n); None if rigid."""
+        """Displacement (t, 3) m of the point relative to its body's root, by all coordinates (t, n),
+        or None if rigid.
+        """
         moved = deflection(self.system, self.point, q)
         return None if moved is None else np.asarray(moved)
 
@@ -206,8 +208,8 @@ class Plant:
         shares = force[:, 0] @ rigid
         if not np.abs(shares).max(initial=0.0) > 0:
             raise InputError("joint", f"is {self.coordinate!r}, which a spring or gravity holds", "give it a rate")
-        rubs = np.abs(rigid[np.isin(state.names, self.system.rubbing)]).max(initial=0.0) > HELD * np.abs(rigid).max()
-        if rubs or np.abs(rigid.T @ c @ rigid).max() > HELD * np.abs(c).max(initial=1e-300):
+        rubs = np.abs(rigid[np.isin(state.names, self.system.rubbing)]).max(initial=0.0) > BRAKING * np.abs(rigid).max()
+        if rubs or np.abs(rigid.T @ c @ rigid).max() > BRAKING * np.abs(c).max(initial=1e-300):
             fix = "leave out damping and friction of what is driven"
             raise InputError("joint", f"is {self.coordinate!r}, whose motion friction or a damper brakes", fix)
         return float(1 / (shares @ shares))  # modes have unit mass
@@ -216,23 +218,23 @@ class Plant:
     def small(self) -> SmallMotions:
         """Linear model of the system about rest, with the column of a unit effort or acceleration."""
         state, linear = self._rest
-        name, at = self.system.point("point", self.point)
+        name, point_index = self.system.point("point", self.point)
         tip = np.zeros((3, len(linear.mass)))
         if self._deflection(self.system.start[0][None]) is None:
             tip = state.slopes_of_points[self.system.points.index(self.point)]
         else:
             body = self.system.flexible[name]
-            first, station = state.names.index(f"{name}.q1"), list(stations_of(body).values())[at]
+            first, station = state.names.index(f"{name}.q1"), list(stations_of(body).values())[point_index]
             tip[:, first : first + body.size] = np.asarray(body.station_places.first[station])
         a, b, c, _ = linear.state_space(tip, 0 * tip, 0 * tip, np.zeros((3, 1)))
         return SmallMotions(a, b[:, 0], c)
 
     def commanded(self, profile: Profile | None) -> System:
-        """The system with a command as the effort or rate of the coordinate; zero without one."""
+        """The system with a command as the effort or rate of the coordinate, or zero without one."""
         name, _, coordinate = self.coordinate.rpartition(".")
         joint = self.system.joints[name]
-        others = joint.efforts if self.free else joint.rates
-        command: Any = {**others, coordinate: 0.0 if profile is None else profile}
+        other_commands = joint.efforts if self.free else joint.rates
+        command: Any = {**other_commands, coordinate: 0.0 if profile is None else profile}
         joint = replace(joint, **{"effort" if self.free else "rate": command})
         return replace(self.system, joints={**self.system.joints, name: joint})
 
@@ -263,9 +265,9 @@ class Plant:
         assert settings.step is not None
         system, scheme = self.commanded(profile), scheme_of(settings)
         tree, k = system.tree, system.coordinates.index(self.coordinate)
-        kept = settings.duration / round(settings.duration / settings.step)
-        posed = pose(prepared(system, None, settings), settings, kept)
-        grid = posed.steps(kept)
+        result_step = settings.duration / round(settings.duration / settings.step)
+        posed = pose(prepared(system, None, settings), settings, result_step)
+        grid = posed.steps(result_step)
         # Derivatives need the states at all ends of split steps, too.
         steps = replace(grid, kept=np.ones(len(grid), dtype=bool))
         run = integrate_steps(posed.equations, scheme, posed.start.y, posed.start.yd, steps)
@@ -310,8 +312,8 @@ class Plant:
 
         def varied() -> Iterator[tuple[Ran, Ran]]:
             """Yield the runs of each pair, half a `width` before and behind this one."""
-            still = np.zeros((len(tree.unknowns), len(pairs)))
-            changes = tangent(linear, scheme, steps, run, still, still, accelerations=False)[0]
+            zeros = np.zeros((len(tree.unknowns), len(pairs)))
+            changes = tangent(linear, scheme, steps, run, zeros, zeros, accelerations=False)[0]
             for change in np.moveaxis(width / 2 * changes[ends], -1, 0):
                 yield read(-change), read(change)
 

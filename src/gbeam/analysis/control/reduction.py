@@ -43,7 +43,7 @@ def _split(system: StateSpace, chosen: Callable[[complex], bool]) -> Parts:
 
 @typed
 def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
-    """Keep the slowest modes; what the others add in statics goes into D.
+    """Keep the slowest modes. What the others add in statics goes into D.
 
     Parameters
     ----------
@@ -78,12 +78,12 @@ def modal_truncation(system: StateSpace, modes: int) -> StateSpace:
         return system
     limit = (levels[modes] + levels[modes + 1]) / 2
     slow, fast = _split(system, lambda value: abs(value) < limit)
-    kept = 2 * np.pi * system.frequency < limit
-    errors = None if system.errors is None else system.errors[kept]
+    is_slow = 2 * np.pi * system.frequency < limit
+    errors = None if system.errors is None else system.errors[is_slow]
     static = -fast.c @ np.linalg.solve(fast.a, fast.b)
     band = levels[1] / 2, levels[modes]
     left_out = truncation("modal", system, replace(fast, d=-static), len(fast.a), np.zeros(0), band)
-    return replace(slow, d=slow.d + static, frequency=system.frequency[kept], errors=errors, truncation=left_out)
+    return replace(slow, d=slow.d + static, frequency=system.frequency[is_slow], errors=errors, truncation=left_out)
 
 
 @typed
@@ -164,9 +164,9 @@ def truncation(
     """
     start, end = band
     poles = np.abs(scipy.linalg.eigvals(difference.a))  # where its gain has peaks
-    over = np.geomspace(start, end, POINTS, endpoint=False)  # short of the last pole kept, which may be undamped
-    error = _largest_gains(difference, np.concatenate([[0.0, end], over, poles[poles <= end]]))
-    peaks = _largest_gains(system, over)
+    frequencies = np.geomspace(start, end, POINTS, endpoint=False)  # short of the last pole kept, which may be undamped
+    error = _largest_gains(difference, np.concatenate([[0.0, end], frequencies, poles[poles <= end]]))
+    peaks = _largest_gains(system, frequencies)
     # A gain is compared with the largest of those between the same units.
     output_units = np.array([signal.unit for signal in system.outputs])
     input_units = np.array([signal.unit for signal in system.inputs])

@@ -139,14 +139,17 @@ def shape_command(
     if not limit > 0:
         raise InputError("limit", f"is {limit:g}", "give a positive number")
     commands, vibration = Commands(plant, goal, pieces), Vibration.from_plant(plant)
-    others = reference_drives(commands, vibration)
-    scale = float(np.mean(vibration.amplitude(commands.time, others["smooth-step"], np.ones(1))))
+    reference_commands = reference_drives(commands, vibration)
+    scale = float(np.mean(vibration.amplitude(commands.time, reference_commands["smooth-step"], np.ones(1))))
     design = _Design(commands, vibration, limit, robust, scale)
     inner = design.linear()
     if robust == 0:
         inner = _refined(plant, design, inner, progress)
-    profiles = {"shaped": commands.command(inner), **{name: commands.profile(drive) for name, drive in others.items()}}
-    drives = {"shaped": commands.fixed + commands.drive @ inner, **others}
+    profiles = {
+        "shaped": commands.command(inner),
+        **{name: commands.profile(drive) for name, drive in reference_commands.items()},
+    }
+    drives = {"shaped": commands.fixed + commands.drive @ inner, **reference_commands}
     tested = plant if check is None else _plant(check, hub, point)
     settings = _settings(vibration, goal.duration)
     runs, warnings = [], list[str]()
@@ -219,14 +222,14 @@ class _Design:
         """Coefficients that leave the least vibration in the modes of the linear model."""
         return self.solved(self.left, self.offset, self.commands.particular)
 
-    def solved(self, rows: Floats, offset: Floats, about: Floats) -> Floats:
-        """Coefficients c that minimise |rows c + offset|² and roughness, within the limit. `about` are coefficients
+    def solved(self, rows: Floats, offset: Floats, centre: Floats) -> Floats:
+        """Coefficients c that minimise |rows c + offset|² and roughness, within the limit. `centre` are coefficients
         that reach the goal. ComputationError if no command within the limit does.
         """
         commands = self.commands
         a = np.concatenate([rows, self.rough]) @ commands.free
-        b = np.concatenate([rows @ about + offset, self.rough @ about + self.rough_offset])
-        coefficients = about + commands.free @ np.linalg.lstsq(a, -b, rcond=None)[0]
+        b = np.concatenate([rows @ centre + offset, self.rough @ centre + self.rough_offset])
+        coefficients = centre + commands.free @ np.linalg.lstsq(a, -b, rcond=None)[0]
         sampled = slice(None, None, 8)
         drive, fixed = commands.drive[sampled], commands.fixed[sampled]
         if np.abs(drive @ coefficients + fixed).max() <= self.limit:
@@ -234,7 +237,7 @@ class _Design:
         from scipy.sparse import csc_array
 
         size, limited = np.linalg.norm(a, axis=0).max(), (drive @ commands.free) / self.limit
-        middle = (drive @ about + fixed) / self.limit
+        middle = (drive @ centre + fixed) / self.limit
         change = solve_quadratic(
             csc_array(a.T @ a / size**2), a.T @ b / size**2, csc_array(limited), -1.0 - middle, 1.0 - middle
         )
@@ -242,13 +245,15 @@ class _Design:
             word = DRIVES[commands.plant.free, commands.plant.slides][1]
             problem = f"no command of {word} {self.limit:.4g} or less does it in {commands.goal.duration:g} s"
             raise ComputationError("limits exceeded", problem)
-        return np.asarray(about + commands.free @ change)
+        return np.asarray(centre + commands.free @ change)
 
 
 def _settings(vibration: Vibration, duration: float) -> ResponseSettings:
     """Settings of a run that lasts for the command and for some periods of the slowest mode after it."""
-    after = _PERIODS * 2 * np.pi / float(vibration.eigenvalue[0].imag)
-    return ResponseSettings(duration + after, residual_from=duration, integrator="gauss", estimate=False, loads=False)
+    decay_time = _PERIODS * 2 * np.pi / float(vibration.eigenvalue[0].imag)
+    return ResponseSettings(
+        duration + decay_time, residual_from=duration, integrator="gauss", estimate=False, loads=False
+    )
 
 
 def _plant(structure: Structure | System, hub: Hub | str, point: str | None) -> Plant:
@@ -268,7 +273,7 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         raise ComputationError(first.outcome, first.message)
     settings = replace(settings, step=first.step)
     moves = commands.free / np.abs(commands.drive @ commands.free).max(axis=0)
-    best, least = inner, np.inf
+    best_step, least_vibration = inner, np.inf
     for k in range(_ROUNDS):
         words = f"{plant.kind}: refining, round {k + 1} of at most {_ROUNDS}"
         tell(progress, words, 0.0)
@@ -286,11 +291,11 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
             break  # the last step went too far
         residual = _departures(nominal, commands.goal.duration) / design.scale
         size = float(np.linalg.norm(residual))
-        if size < least:
-            better, best, least = size < _BETTER * least, inner, size
+        if size < least_vibration:
+            is_better, best_step, least_vibration = size < _BETTER * least_vibration, inner, size
         else:
-            better = False
-        if not better or k == _ROUNDS - 1:
+            is_better = False
+        if not is_better or k == _ROUNDS - 1:
             break
         slopes = [
             (_departures(after, commands.goal.duration) - _departures(before, commands.goal.duration))
@@ -301,12 +306,12 @@ def _refined(plant: Plant, design: _Design, inner: Floats, progress: Progress) -
         # From derivatives along the free directions to those by coefficients.
         rows = np.stack(slopes, axis=1) @ np.linalg.pinv(moves)
         inner = design.solved(rows, residual - rows @ inner, inner)
-    return best
+    return best_step
 
 
 def _part_progress(progress: Progress, words: str) -> Progress:
     """Progress of a part, which is told with `words` before its own."""
-    return lambda what, share: tell(progress, f"{words}, {what}", share)
+    return lambda stage, share: tell(progress, f"{words}, {stage}", share)
 
 
 def _departures(run: Ran, duration: float) -> Floats:

@@ -21,7 +21,7 @@ from gbeam.results.parts import Base
 _DIP = 0.9  # of the lower of two maxima: a load that falls further between them makes them two peaks
 _SLACK = 1e-9  # of idle: a load held at it is not above it
 _NAMED = 2  # limits named at most
-_NEAR = 0.25  # s around a stretch in which a limit may be used up because of it
+_MARGIN_TIME = 0.25  # s around a stretch in which a limit may be used up because of it
 _CORNER, _BELOW = "corner", "below idle"
 _NAMES = (_CORNER, _BELOW, "gimbals", "left out")
 
@@ -66,7 +66,7 @@ def judge(
 ) -> tuple[Accounting, PeakPair]:
     """Account for a flight on a machine over a `span` of the flight's times, s, and compare the largest loads.
 
-    These are the largest at the `ends` of a specimen, on the machine over all of its run; NaN without ends.
+    These are the largest at the `ends` of a specimen, on the machine over all of its run, or NaN without ends.
     """
     positive("tolerance", tolerance, "of the flight's load")
     choice("tolerance_of", tolerance_of, TOLERANCE_OF)
@@ -125,16 +125,16 @@ def account(
     """
     size, machine_size = flight.size, machine.size
     instant = tolerance_of == "instant"
-    least = _SLACK * float(size.max())
-    allowed = np.maximum(tolerance * size, least) if instant else np.full(len(time), tolerance * float(size.max()))
-    above = idle * (1 + _SLACK)
+    slack = _SLACK * float(size.max())
+    allowed = np.maximum(tolerance * size, slack) if instant else np.full(len(time), tolerance * float(size.max()))
+    above_idle = idle * (1 + _SLACK)
     begin, end = (float(time[0]), float(time[-1])) if span is None else span
     edges = np.concatenate([[begin], (time[1:] + time[:-1]) / 2, [end]])
-    low = (size < above) & (idle > 0)
+    low = (size < above_idle) & (idle > 0)
     limits = {} if shares is None else shares
     missed = _distance(machine.load, flight.load) > allowed
-    held = np.zeros(len(time), bool) if target is None else _distance(target, flight.load) > allowed
-    reasons = _reasons(time, low, held, episodes)
+    is_held = np.zeros(len(time), bool) if target is None else _distance(target, flight.load) > allowed
+    reasons = _reasons(time, low, is_held, episodes)
     for run in true_runs(missed & ~low):  # a stretch without a break has one reason
         kinds, counts = np.unique(reasons[run], return_counts=True)
         reasons[run] = kinds[counts.argmax()]
@@ -148,23 +148,23 @@ def account(
         for run in _runs(np.where(missed, reasons, -1))
     )
     duration = end - begin
-    lost = sum(stretch.end - stretch.start for stretch in stretches)
-    floor = max(above, least)
+    lost_time = sum(stretch.end - stretch.start for stretch in stretches)
+    floor = max(above_idle, slack)
     needed = np.maximum(size, idle)  # a machine cannot make less than idle
-    most = needed + (tolerance * needed if instant else allowed)
+    upper_limit = needed + (tolerance * needed if instant else allowed)
     return Accounting(
         tolerance=tolerance,
         tolerance_of=tolerance_of,
         allowed=float(allowed.max()),
         idle=idle,
         span=(begin, end),
-        followed_share=1 - lost / duration if duration > 0 else float(not missed.any()),
+        followed_share=1 - lost_time / duration if duration > 0 else float(not missed.any()),
         peaks=tuple(
             _peak(time, flight, machine, top, basin, tolerance, _NAMES[reasons[top]], limits)
             for top, basin in separate_peaks(size, floor, _DIP)
         ),
         not_followed=stretches,
-        overloads=tuple(_overloads(edges, time, size, machine_size, most)),
+        overloads=tuple(_overloads(edges, time, size, machine_size, upper_limit)),
     )
 
 
@@ -173,16 +173,16 @@ def _distance(load: Floats, other: Floats) -> Floats:
     return np.asarray(np.linalg.norm(load - other, axis=1))
 
 
-def _reasons(time: Floats, low: Flags, held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
+def _reasons(time: Floats, is_low: Flags, is_held: Flags, episodes: tuple[tuple[float, float, str], ...]) -> Codes:
     """Codes (t,) of the reason for which the load is not followed at each time, if it is not: indices of `_NAMES`."""
     codes = np.full(len(time), _NAMES.index(_CORNER))
     for start, end, why in episodes:
         inside = (time >= start) & (time <= end)
         if why == _BELOW:  # a load above idle that the target holds is left out, not below idle
-            codes[inside & held] = _NAMES.index("left out")
+            codes[inside & is_held] = _NAMES.index("left out")
         else:
             codes[inside] = _NAMES.index(why)
-    codes[low] = _NAMES.index(_BELOW)
+    codes[is_low] = _NAMES.index(_BELOW)
     return codes
 
 
@@ -195,16 +195,16 @@ def _runs(codes: Codes) -> Iterator[slice]:
 
 
 def _widened(time: Floats, run: slice) -> slice:
-    """Extend a run of samples to those up to `_NEAR` before and after it."""
-    first, last = time[run.start] - _NEAR, time[run.stop - 1] + _NEAR
+    """Extend a run of samples to those up to `_MARGIN_TIME` before and after it."""
+    first, last = time[run.start] - _MARGIN_TIME, time[run.stop - 1] + _MARGIN_TIME
     return slice(int(np.searchsorted(time, first)), int(np.searchsorted(time, last, side="right")))
 
 
-def _named(reason: str, shares: Mapping[str, Floats], around: slice) -> str:
+def _named(reason: str, shares: Mapping[str, Floats], window: slice) -> str:
     """The reason in words: for a corner the limits used up around it, those for the longest time first."""
     if reason != _CORNER:
         return reason
-    return ", ".join(used_up(shares, around)[:_NAMED]) or _CORNER
+    return ", ".join(used_up(shares, window)[:_NAMED]) or _CORNER
 
 
 def _peak(
@@ -220,8 +220,8 @@ def _peak(
     """Compare the flight's peak at sample `top`, in the samples `basin`, with the machine's largest load near it."""
     size, machine_size = flight.size[basin], machine.size[basin]
     peak = top - basin.start
-    (around,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)
-    i = around.start + int(np.argmax(machine_size[around]))
+    (stretch,) = (run for run in true_runs(size >= _DIP * size[peak]) if run.start <= peak < run.stop)
+    i = stretch.start + int(np.argmax(machine_size[stretch]))
     load, reproduced = float(size[peak]), float(machine_size[i])
     # Sizes at the times of either peak, directions at that of the machine's.
     aim = flight.load[basin.start + i] * (load / size[i])
@@ -239,10 +239,12 @@ def _peak(
     )
 
 
-def _overloads(edges: Floats, time: Floats, size: Floats, machine_size: Floats, most: Floats) -> Iterator[Overload]:
-    """Yield the stretches in which the machine's load exceeds `most` (t,), each with its largest excess."""
-    for run in true_runs(machine_size > most):
-        i = run.start + int(np.argmax((machine_size - most)[run]))
+def _overloads(
+    edges: Floats, time: Floats, size: Floats, machine_size: Floats, upper_limit: Floats
+) -> Iterator[Overload]:
+    """Yield the stretches in which the machine's load exceeds `upper_limit` (t,), each with its largest excess."""
+    for run in true_runs(machine_size > upper_limit):
+        i = run.start + int(np.argmax((machine_size - upper_limit)[run]))
         ends = float(edges[run.start]), float(edges[run.stop])
         yield Overload(*ends, float(time[i]), float(machine_size[i]), float(size[i]))
 
@@ -263,8 +265,8 @@ def largest_load(time: Floats, base: Any, points: Mapping[str, Floats], origin: 
     away = np.array([-origin, 0.0, 0.0])
     loads = np.array([np.linalg.norm(shift_base(base, place + away).a_WO_B, axis=-1) for place in points.values()])
     place, i = np.unravel_index(int(np.argmax(loads)), loads.shape)
-    alike = np.ptp(loads[:, i]) <= _ALIKE * loads[place, i]
-    return float(loads[place, i]), float(time[i]), "" if alike else list(points)[place]
+    same_everywhere = np.ptp(loads[:, i]) <= _ALIKE * loads[place, i]
+    return float(loads[place, i]), float(time[i]), "" if same_everywhere else list(points)[place]
 
 
 def largest_pair(flight: Largest, machine: Largest) -> PeakPair:

@@ -54,7 +54,7 @@ def _compared_times(flight: Quantities, machine: Quantities, during: slice) -> F
 
 
 def _stresses_at(at: str, flight: Quantities, machine: Quantities, during: slice) -> PeakPair:
-    """Largest stress at a named point over the flight's times in each run; NaN if either has none there."""
+    """Largest stress at a named point over the flight's times in each run, or NaN if either has none there."""
     peaks = list[Peak]()
     for run, part in ((flight, _compared_times(flight, machine, during)), (machine, during)):
         stress = run.stress_at("stress_at", at)
@@ -162,7 +162,7 @@ def compare(
         raise InputError("centrifuge", "has no time in common with the flight", "compute both for the same times")
 
     short = time[0] > span[0] + slack or time[-1] < span[1] - slack
-    whole = span if short and flight.whole is None else flight.whole
+    whole_span = span if short and flight.whole is None else flight.whole
 
     def in_flight(values: Floats) -> Floats:
         return interpolated(time, flight.time, values)
@@ -186,13 +186,13 @@ def compare(
     first_name, second_name = (run.name or run.environment for run in (flight, centrifuge))
     names = first_name, second_name if second_name != first_name else f"the second {second_name}"
     growth = in_flight(gradients(flown.base.w_WB_B, flown.base.alpha_WB_B))
-    turning = gradients(spun.base.w_WB_B[during], spun.base.alpha_WB_B[during])
+    rotation_gradients = gradients(spun.base.w_WB_B[during], spun.base.alpha_WB_B[during])
     run = None if axes is None else axes.imitated
     if run is None or not _has_flight_load(run, flight.time[_compared_times(flown, spun, during)], flown.base):
         # By the steps of the responses.
         run = Imitated(centrifuge.time, _interpolated(centrifuge.time, flight.time, flown.base), spun.base, axes)
-    within = float(time[0]), float(time[-1])
-    accounting, load = judge(run, within, centrifuge.ends, tolerance=tolerance, tolerance_of=tolerance_of)
+    run_span = float(time[0]), float(time[-1])
+    accounting, load = judge(run, run_span, centrifuge.ends, tolerance=tolerance, tolerance_of=tolerance_of)
     margins = [margin for margin in (flown.margin, spun.margin) if margin is not None]
     return Comparison(
         flight=names[0],
@@ -210,13 +210,13 @@ def compare(
         accounting=accounting,
         accept=limits,
         stations=_statistics(time, covered, reference, actual, spun, tip),
-        load_difference=_load_difference(covered, spun, (turning - growth)[..., 0], tip),
+        load_difference=_load_difference(covered, spun, (rotation_gradients - growth)[..., 0], tip),
         root=root,
         shock=shock,
         fatigue=fatigue(flown, spun, damage_at),
         yield_strength=spun.yield_strength,
         margins_of_materials=(margins[0], margins[1]) if len(margins) == 2 else None,
-        whole=whole,
+        whole=whole_span,
         scale=flight.scale,
         exceeded="" if axes is None else axes.largest_excess,
         kept_every=centrifuge.kept_every,
@@ -240,12 +240,12 @@ def _interpolated(time: Floats, times: Floats, base: Base) -> Base:
 
 
 def _largest(values: Floats, covered: Flags) -> Floats:
-    """Largest absolute values (...) of histories (t, ...) over the times covered; NaN if there are none."""
+    """Largest absolute values (...) of histories (t, ...) over the times covered, or NaN if there are none."""
     return np.abs(values[covered]).max(axis=0) if covered.any() else np.full(values.shape[1:], np.nan)
 
 
 def _rms(values: Floats, covered: Flags) -> Floats:
-    """Root mean squares (...) of histories (t, ...) over the times covered; NaN if there are none."""
+    """Root mean squares (...) of histories (t, ...) over the times covered, or NaN if there are none."""
     return np.sqrt(np.mean(values[covered] ** 2, axis=0)) if covered.any() else np.full(values.shape[1:], np.nan)
 
 
@@ -350,7 +350,7 @@ def _weights(control: Mapping[str, float] | None, run: Quantities) -> dict[str, 
 
 
 def _felt(run: Quantities, sensors: Mapping[str, Sensor]) -> Floats | None:
-    """Accelerations (t, p, 3) of all points, or what their sensors read; None if they are not known."""
+    """Accelerations (t, p, 3) of all points, or what their sensors read, or None if they are not known."""
     if run.acceleration is None or not sensors:
         return run.acceleration
     felt = np.array(run.acceleration)

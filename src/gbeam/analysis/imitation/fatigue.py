@@ -52,14 +52,14 @@ def places_of(response: Response) -> dict[str, Cyclic]:
     for name, body in response.bodies.items():
         loads, solid = sections_of(body), body.solid
         if solid is not None:
-            places |= _worst(solid, f"{name}'s " if several else "")
+            places |= _largest_stresses(solid, f"{name}'s " if several else "")
         elif loads is not None:
             places[f"of the root of {name}" if several else "of the root"] = _section_stress(loads, 0)
     return places
 
 
 def cyclic_stress(run: Quantities, at: str) -> Cyclic | None:
-    """Normal stress and exponent at a named point; None if the point is neither on a beam nor on a mesh."""
+    """Normal stress and exponent at a named point, or None if the point is neither on a beam nor on a mesh."""
     solid, loads, k = run.stressed("damage_at", at)
     if solid is not None:
         return Cyclic(solid.point_normal[:, k], float(solid.point_exponent[k]))
@@ -72,8 +72,10 @@ def _section_stress(loads: Loads, section: int) -> Cyclic:
     return Cyclic(loads.fibre[:, section], loads.fatigue_exponent)
 
 
-def _worst(solid: SolidStress, owner: str) -> dict[str, Cyclic]:
-    """Stress where each material of a mesh is stressed most, by the place in words; empty where that is not known."""
+def _largest_stresses(solid: SolidStress, owner: str) -> dict[str, Cyclic]:
+    """Stress where each material of a mesh is stressed most, by the place in words,
+    or empty where that is not known.
+    """
     if not solid.known:
         return {}
     stresses = dict[str, Cyclic]()

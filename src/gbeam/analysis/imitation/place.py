@@ -53,8 +53,8 @@ class _Carried:
 
     def base(self, t: Any) -> Base:
         load = self.centrifuge.actual(t)
-        none = namespace(load).zeros_like(load)
-        return Base(load, none, none)
+        zeros = namespace(load).zeros_like(load)
+        return Base(load, zeros, zeros)
 
     def corners(self, step: float) -> Floats:
         return self.centrifuge.corners(step)
@@ -76,13 +76,13 @@ def verify(
 ) -> tuple[Verification, ...]:
     """Simulate the flight and machines, by the names of their control points, and compare each with the flight."""
     settings = replace(settings, estimate=False)  # a verification states no errors
-    mode, across = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
+    mode, axes = answers.mode, slice(1 if answers.specimen.straight else 0, 3)
 
-    def simulated(motion: Any, what: str) -> Response:
+    def simulated(motion: Any, words: str) -> Response:
         """Response to a motion; ComputationError if it is not done."""
 
         def report(doing: str, share: float) -> None:
-            tell(progress, f"checking {what}: {doing}", share)
+            tell(progress, f"checking {words}: {doing}", share)
 
         response = simulate(system, motion, settings, progress=report)
         if response.outcome != "done":
@@ -115,12 +115,12 @@ def verify(
             swing = of_tip - interpolated(response.time, carried[motion].time, free)
             swing -= low_pass(swing, step, cutoff)
             difference = comparison.difference[comparison.covered]
-            vibration = float(np.linalg.norm(swing[compared][:, across], axis=1).max(initial=0.0))
-            moved = float(np.linalg.norm(difference[:, across], axis=1).max(initial=0.0))
+            vibration = float(np.linalg.norm(swing[compared][:, axes], axis=1).max(initial=0.0))
+            moved = float(np.linalg.norm(difference[:, axes], axis=1).max(initial=0.0))
         force, moment = np.nan, np.nan
         if comparison.root is not None:
-            force = float(comparison.root.force_difference[across].max())
-            moment = float(comparison.root.moment_difference[across].max())
+            force = float(comparison.root.force_difference[axes].max())
+            moment = float(comparison.root.moment_difference[axes].max())
         verifications.append(Verification(name, float(place[0]), moved, vibration, moment, force))
     return tuple(verifications)
 
@@ -213,12 +213,12 @@ def place(
         refine(lambda width: trials(first.candidate.mounting, width, first.turn), tuple(choice.widths))
     if choice.between:
         trials.search_turn()
-    ranked, before = trials.ranked(), trials.assess(current, at=np.array(current.place))
-    best, specimen = ranked[0], trials.answers.specimen
+    ranked, present = trials.ranked(), trials.assess(current, at=np.array(current.place))
+    best_trial, specimen = ranked[0], trials.answers.specimen
     middle = np.where(trials.moved, specimen.extent.mean(axis=0), current.place)
-    allowed = not (best.candidate.exceeded and choice.limited)
-    places = {"best": (best, np.array(best.candidate.place)), "current": (before, np.array(current.place))}
-    places["middle"] = best, middle
+    allowed = not (best_trial.candidate.exceeded and choice.limited)
+    places = {"best": (best_trial, np.array(best_trial.candidate.place)), "current": (present, np.array(current.place))}
+    places["middle"] = best_trial, middle
     machines = {name: trial.centrifuge.altered(control_point=_written(at)) for name, (trial, at) in places.items()}
 
     def sizes(total: bool) -> dict[str, dict[str, float]]:
@@ -233,12 +233,12 @@ def place(
         centrifuge=names[1],
         weights=dict(weights),
         length=float(np.ptp(specimen.extent, axis=0).max()),
-        best=best.candidate,
+        best=best_trial.candidate,
         options=tuple(trial.candidate for trial in ranked),
-        current=before.candidate.control_point,
+        current=present.candidate.control_point,
         values=sizes(False),
         totals=sizes(True),
-        before=before.candidate,
+        before=present.candidate,
         verifications=verify(system, flight, machines, settings, trials.answers, progress) if check and allowed else (),
         refused=tuple(trials.refused),
         widths=(choice.widths[0], choice.widths[-1]),
@@ -261,9 +261,9 @@ def default_turns(system: System) -> Ways:
     return "own" if beams and len(system.bodies) == 1 else "right-angles"
 
 
-def _written(at: Floats) -> Any:
+def _written(position: Floats) -> Any:
     """A place (3,) m as a centrifuge takes it: one number if it lies on the positive x axis."""
-    return at if np.any(at[1:]) or at[0] < 0 else float(at[0])
+    return position if np.any(position[1:]) or position[0] < 0 else float(position[0])
 
 
 @dataclass(frozen=True)
@@ -310,8 +310,10 @@ class _Trials:
         self.reasons: list[InputError] = []
 
     def __call__(self, mounting: str, width: float, turn: Turn | None = None) -> tuple[float, float]:
-        """Evaluate a candidate, unless it has been. Return its total error at the best control point and the largest
-        share of a limit (0 if limits do not count); both are infinite if the machine cannot be made.
+        """Evaluate a candidate, unless it has been.
+
+        Returns its total error at the best control point and the largest share of a limit, 0 if limits do not count.
+        Both are infinite if the machine cannot be made.
         """
         key, options = (mounting, width, turn), (mounting, width) if turn is None else (mounting, width, turn)
         if key not in self.evaluated:
@@ -331,13 +333,13 @@ class _Trials:
         import scipy.optimize
         from scipy.spatial.transform import Rotation
 
-        best = self.ranked()[0]
-        begun = Rotation.from_rotvec(best.centrifuge.turn)
+        best_trial = self.ranked()[0]
+        begun = Rotation.from_rotvec(best_trial.centrifuge.turn)
 
         def error(tilt: Floats) -> float:
             # About two axes of the module: a roll about axis 3 changes nothing.
             direction = (Rotation.from_rotvec([0.0, *tilt]) * begun).as_matrix()[0]
-            value, share = self(best.candidate.mounting, best.candidate.smoothing, turn_to_axis(direction))
+            value, share = self(best_trial.candidate.mounting, best_trial.candidate.smoothing, turn_to_axis(direction))
             return value if share <= 1 else np.inf
 
         simplex = TILT * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -380,7 +382,7 @@ class _Trials:
         uses = machine.usage()
         times = times_between(*(float(end) for end in machine.extent))
         placed = machine.altered(control_point=_written(at))
-        most = max(uses, key=lambda use: use.share)
+        largest_use = max(uses, key=lambda use: use.share)
         return _Evaluated(
             Candidate(
                 mounting=machine.mounting,
@@ -391,9 +393,9 @@ class _Trials:
                 difference=size(at),
                 total_error=size(at, True),
                 accelerations=accelerations,
-                share=most.share,
+                share=largest_use.share,
                 exceeded=exceeded(uses),
-                most_used=most,
+                most_used=largest_use,
                 tracking=sum(w * histories[name].error for name, w in judged.items()),
                 largest_load=largest_pair(self.in_flight, largest_load(times, placed.base(times), self.points)),
             ),

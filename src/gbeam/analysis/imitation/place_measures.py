@@ -94,7 +94,7 @@ class Altered:
 
 
 def width_of(centrifuge: Centrifuge) -> float:
-    """Width of the smoothing of a centrifuge's target, s; zero without smoothing."""
+    """Width of the smoothing of a centrifuge's target, s, or zero without smoothing."""
     return float(centrifuge.smoothing or 0.0)
 
 
@@ -145,9 +145,9 @@ def choice_of(
     widths = coarse(ends[0], ends[-1])
 
     choice("turns", turns, get_args(Ways))
-    others = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)
+    other_mountings = tuple(name for name in MOUNTINGS if name != centrifuge.mounting)
     return Choice(
-        Altered(centrifuge), (centrifuge.mounting, *others), widths, len(widths) > 1, limited,
+        Altered(centrifuge), (centrifuge.mounting, *other_mountings), widths, len(widths) > 1, limited,
         turns_of(centrifuge.turn, turns), between=turns == "any",
     )  # fmt: skip
 
@@ -161,11 +161,11 @@ def turns_of(turn: Turn, ways: Ways) -> tuple[Turn, ...]:
     if ways == "own":
         return ()
     grid = [steps for steps in product((1, 0, -1), repeat=3) if steps > (0, 0, 0)]
-    turns, along = [turn], [rotation_of(turn)[0]]
+    turns, beam_axes = [turn], [rotation_of(turn)[0]]
     for steps in sorted(grid, key=np.count_nonzero):
         direction = np.array(steps) / np.linalg.norm(steps)
-        if (np.count_nonzero(steps) == 1 or ways == "any") and max(np.abs(along @ direction)) < 1 - SAME:
-            along.append(direction)
+        if (np.count_nonzero(steps) == 1 or ways == "any") and max(np.abs(beam_axes @ direction)) < 1 - SAME:
+            beam_axes.append(direction)
             turns.append(turn_to_axis(direction))
     return tuple(turns)
 
@@ -180,9 +180,10 @@ def turn_to_axis(direction: Floats) -> Turn:
 
 @dataclass(frozen=True)
 class Histories:
-    """Histories (t, ..., k) of a measure over the times compared: its answers to the load's error at the control point,
-    to the error of the load's growth, and to unit shifts of the control point (3, t, ..., k). `scale` is its peak in
-    flight.
+    """Histories (t, ..., k) of a measure over the times compared. `scale` is the measure's peak in flight.
+
+    They are its answers to the load's error at the control point, to the error of the load's growth, and to unit shifts
+    of the control point (3, t, ..., k).
     """
 
     at_control_point: Floats
@@ -295,8 +296,8 @@ class Answers:
             measures["tip"] = quasi_static(specimen.displacement[self.tip])
             measures["vibration"] = histories(self.mode.force, self._vibration(covered), measures["tip"].scale)
         measures["load"] = self._loads(covered, error, growing, columns)
-        turning = np.abs(axes.accelerations).max(axis=0)
-        largest = float(turning[0]), float(turning[1]), float(turning[2])
+        angular_size = np.abs(axes.accelerations).max(axis=0)
+        largest = float(angular_size[0]), float(angular_size[1]), float(angular_size[2])
         return {name: measure for name, measure in measures.items() if measure.scale > 0}, largest
 
     def _vibration(self, covered: Flags) -> Callable[[Floats], Floats]:
@@ -313,12 +314,14 @@ class Answers:
     def _loads(self, covered: Flags, error: Floats, growing: Floats, columns: Floats) -> Histories:
         """Histories of the load at all ends of the specimen, thinned out in time so that they fit in memory."""
         ends = np.array([*self.specimen.ends.values()])
-        some = np.flatnonzero(covered)[:: max(1, math.ceil(3 * len(ends) * len(error) / MOST))]
-        in_flight = self.load[some, None] + ends @ self.growth[some].swapaxes(1, 2)
-        at_ends = np.broadcast_to(error[some, None], in_flight.shape)
-        return Histories(at_ends, ends @ growing[some].swapaxes(1, 2), columns[:, some, None], _largest(in_flight))
+        thinned = np.flatnonzero(covered)[:: max(1, math.ceil(3 * len(ends) * len(error) / MOST))]
+        in_flight = self.load[thinned, None] + ends @ self.growth[thinned].swapaxes(1, 2)
+        at_ends = np.broadcast_to(error[thinned, None], in_flight.shape)
+        return Histories(
+            at_ends, ends @ growing[thinned].swapaxes(1, 2), columns[:, thinned, None], _largest(in_flight)
+        )
 
 
 def _largest(values: Floats) -> float:
-    """Largest norm of vectors (..., k); zero if there are none."""
+    """Largest norm of vectors (..., k), or zero if there are none."""
     return float(np.linalg.norm(values, axis=-1).max(initial=0.0))

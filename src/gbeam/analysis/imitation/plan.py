@@ -134,15 +134,22 @@ def axis_commands(motion: Centrifuge, sample: Seconds) -> Commands:
     -5.52 s to 13.52 s
     """
     (first, _), (begin, end) = motion.target.span, motion.extent
-    still = motion.ends.start != "idle"
+    starts_at_rest = motion.ends.start != "idle"
     # Samples before the flight's first time and after it.
-    before = np.ceil(float(first - begin) / sample - 1e-9)
-    after = float(end - first) / sample
-    after = np.ceil(after - 1e-9) if still else np.floor(after * (1 + 1e-12))
-    refuse_more("sample", "samples", before + after, SAMPLES, 300.0, f"give {(end - begin) / SAMPLES:.2g} s or more")
-    between = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
-    steps = np.arange(-int(before) * between, int(after) * between + 1)
-    time = np.asarray(first + sample / between * steps, dtype=np.float64)
+    samples_before = np.ceil(float(first - begin) / sample - 1e-9)
+    samples_after = float(end - first) / sample
+    samples_after = np.ceil(samples_after - 1e-9) if starts_at_rest else np.floor(samples_after * (1 + 1e-12))
+    refuse_more(
+        "sample",
+        "samples",
+        samples_before + samples_after,
+        SAMPLES,
+        300.0,
+        f"give {(end - begin) / SAMPLES:.2g} s or more",
+    )
+    substeps = int(np.ceil(sample / _FINE))  # axis 1's angle is an integral: finer than the samples
+    steps = np.arange(-int(samples_before) * substeps, int(samples_after) * substeps + 1)
+    time = np.asarray(first + sample / substeps * steps, dtype=np.float64)
     axes = motion.axes(time)
     histories = axis_angles(axes, time), axes.rates, axes.accelerations
-    return Commands(sample, time[::between], *(column[::between] for column in histories))
+    return Commands(sample, time[::substeps], *(column[::substeps] for column in histories))

@@ -25,10 +25,10 @@ UNKNOWN = math.nan, math.nan
 
 @dataclass(frozen=True)
 class Quantities:
-    """Quantities of a run by which it is compared: displacements (t, p, 3) m of a specimen's points from their
-    undeformed places relative to the base, their absolute accelerations (t, p, 3) m/s², and force and moment (t, 3) of
-    the `root` on the base, in the base's axes.
+    """Quantities of a run by which it is compared.
 
+    They are displacements (t, p, 3) m of a specimen's points from their undeformed places relative to the base, their
+    absolute accelerations (t, p, 3) m/s², and force and moment (t, 3) of the `root` on the base, in the base's axes.
     The last two are None where a run has no loads. `body` is the only one, where the base holds it by its root.
     """
 
@@ -125,8 +125,8 @@ class Quantities:
     def _recorded(self, point: int) -> dict[str, VectorPeaks]:
         """Peaks over all steps that the response has, by name. "tip" is the point of number `point`."""
         if self.body is None:
-            most = self.response.maxima
-            return {} if most is None else {"root_force": most.ground_force, "root_moment": most.ground_moment}
+            maxima = self.response.maxima
+            return {} if maxima is None else {"root_force": maxima.ground_force, "root_moment": maxima.ground_moment}
         moved, loads = self.body.peaks.displacement, self.body.peaks.loads
         peaks = dict[str, VectorPeaks]()
         if moved is not None:
@@ -151,19 +151,19 @@ class Quantities:
 
     @property
     def root_stress(self) -> Floats:
-        """Largest normal stress at the roots of bodies with sections, (t,) Pa; NaN without any."""
+        """Largest normal stress at the roots of bodies with sections, (t,) Pa, or NaN without any."""
         roots = [loads.stress[:, 0] for loads in map(sections_of, self.response.bodies.values()) if loads is not None]
         return np.max(roots, axis=0) if roots else np.full(len(self.response.time), math.nan)
 
     @property
     def yield_strength(self) -> float | None:
-        """Yield strength of the bodies with sections, Pa; None where it differs, or others have stress, too."""
+        """Yield strength of the bodies with sections, Pa, or None where it differs, or others have stress, too."""
         strengths = {loads.yield_strength for loads in map(sections_of, self.response.bodies.values()) if loads}
         return strengths.pop() if len(strengths) == 1 and not solids_of(self.response) else None
 
     @property
     def margin(self) -> float | None:
-        """Least margin on yield of the materials of solids; None where that of some body is not known."""
+        """Least margin on yield of the materials of solids, or None where that of some body is not known."""
         solids = solids_of(self.response)
         if not all(solid.known for solid in solids) or any(map(sections_of, self.response.bodies.values())):
             return None
@@ -219,15 +219,15 @@ def largest(time: Floats, values: Floats) -> Peak:
 
 
 def _peak_in_part(time: Floats, extremes: Extremes, k: Any = ()) -> Peak | None:
-    """A peak over all of a run, the `k`-th of several; None if unknown, or outside the part with times (t,), s."""
-    value, when = float(extremes.value[k]), float(extremes.time[k])
-    return (value, when) if np.isfinite(value) and time[0] <= when <= time[-1] else None
+    """A peak over all of a run, the `k`-th of several, or None if unknown, or outside the part with times (t,), s."""
+    value, peak_time = float(extremes.value[k]), float(extremes.time[k])
+    return (value, peak_time) if np.isfinite(value) and time[0] <= peak_time <= time[-1] else None
 
 
 def _largest_peak(values: Floats, times: Floats) -> Peak:
     """Largest of values (k,), and its time."""
-    most = int(np.argmax(values))
-    return float(values[most]), float(times[most])
+    index = int(np.argmax(values))
+    return float(values[index]), float(times[index])
 
 
 def _peak_size(peak: Peak) -> float:

@@ -43,10 +43,10 @@ class Answer(NamedTuple):
         unit = np.eye(9).reshape(3, 3, 3, 3)
         symmetric_part = (unit + unit.swapaxes(2, 3)) / 2
         odd = (unit - unit.swapaxes(2, 3)) / 2
-        turning = np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)  # α of each unit growth
+        angular = np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)  # α of each unit growth
         trace = np.trace(symmetric_part, axis1=2, axis2=3)[..., None, None]
         pairs = symmetric_part - trace / 2 * np.eye(3)  # ω ωᵀ of each
-        return cls(a, np.tensordot(turning, alpha, 1) + np.tensordot(pairs, ww, 2))
+        return cls(a, np.tensordot(angular, alpha, 1) + np.tensordot(pairs, ww, 2))
 
     def map(self, values: Any) -> Answer:
         """Return the answer with its values mapped by a matrix (..., k)."""
@@ -160,10 +160,10 @@ def _answers(local: Point) -> tuple[Answer, Answer, Answer]:
     """
     eye = np.eye(3)
     pairs = [eye[i] + (eye[j] if i != j else 0.0) for i, j in PAIRS]
-    none, count = np.zeros((3, 3)), 13
-    a = np.concatenate([np.zeros((1, 3)), eye, none, none, none])
-    alpha = np.concatenate([np.zeros((1, 3)), none, eye, none, none])
-    w = np.concatenate([np.zeros((1, 3)), none, none, pairs])
+    zeros, count = np.zeros((3, 3)), 13
+    a = np.concatenate([np.zeros((1, 3)), eye, zeros, zeros, zeros])
+    alpha = np.concatenate([np.zeros((1, 3)), zeros, eye, zeros, zeros])
+    w = np.concatenate([np.zeros((1, 3)), zeros, zeros, pairs])
     inputs = each_leaf(lambda leaf: np.broadcast_to(leaf, (count, *np.shape(leaf))), local.inputs)
     inputs = replace(inputs, ground=replace(inputs.ground, a=a, alpha=alpha, w=w))
     y, yd, ydd = (np.broadcast_to(state, (count, len(state))) for state in (local.y, local.yd, local.ydd))

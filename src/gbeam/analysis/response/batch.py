@@ -44,7 +44,7 @@ class _Case:
 
     @property
     def shape(self) -> Hashable | None:
-        """Key, equal for cases that can be integrated together; None for a case to be integrated alone."""
+        """Key, equal for cases that can be integrated together, or None for a case to be integrated alone."""
         if 3 * self.run.q.size * len(self.run.steps) * TOGETHER > LONGEST:
             return None
         return self.run.shape
@@ -75,12 +75,12 @@ def simulate_batch(
 ) -> Iterator[tuple[int, Any]]:
     """Compute the responses of many cases.
 
-    Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes: of one
-    model with equal numbers of shapes, in environments of one kind, and about as many steps. Where steps are
-    automatic, or errors are estimated, the runs that this takes are: a case goes on to its next one beside those that
-    need about as many steps. A machine that spins up, a system with controllers, runs with error control, very long
-    ones, and those whose corrections fail are integrated alone. No more cases are taken from `cases` than wait for
-    others of their shape.
+    Cases of one shape are integrated together, some at a time, by the same steps that :func:`simulate` takes. Such
+    cases have one model with equal numbers of shapes, environments of one kind, and about as many steps. Where steps
+    are automatic, or errors are estimated, a case takes several runs: it goes on to the next one beside cases that need
+    about as many steps. A machine that spins up, a system with controllers, runs with error control, very long ones,
+    and those whose corrections fail are integrated alone. No more cases are taken from `cases` than wait for others of
+    their shape.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def _responses(
     waiting: dict[Hashable, list[_Case]] = {}
 
     def enqueue(case: _Case) -> list[_Case]:
-        """Put a case into its queue; return the queue if it is full, else an empty list."""
+        """Put a case into its queue. Returns the queue if it is full, else an empty list."""
         queue = waiting.setdefault(case.shape, [])
         queue.append(case)
         return waiting.pop(case.shape) if len(queue) == together else []
@@ -187,9 +187,15 @@ def _responses(
         if traced or holds_jax(subject.motion):
             raise InputError("simulate_batch", "is given what JAX traces", "map simulate over it with jax.vmap")
         start = begun(subject, settings, settings.start)
-        *longer, (kept, most) = tries(subject, settings, start)
-        posed = None if longer else pose(subject, settings, kept, most, start)
-        if posed is None or posed.before or posed.after or posed.controllers is not None or not len(start.y):
+        *longer, (result_step, limit) = tries(subject, settings, start)
+        posed = None if longer else pose(subject, settings, result_step, limit, start)
+        if (
+            posed is None
+            or posed.steps_before
+            or posed.steps_after
+            or posed.controllers is not None
+            or not len(start.y)
+        ):
             yield index, simulate(structure, subject.motion, settings)
             continue
         common = [body.equations for body in posed.system.flexible.values()] if one_structure else None
@@ -212,7 +218,7 @@ def _advance(
     run: Run | None = None,
     known: dict[str, Any] | None = None,
 ) -> _Case | _Ended:
-    """Send a run to a plan; return the case with the run that it wants next, or ended.
+    """Send a run to a plan, and return the case with the run that it wants next, or ended.
 
     `known` belongs to the run that is sent, and is kept if the plan chooses that run. Runs that cannot be integrated
     together are made at once.
@@ -235,7 +241,10 @@ def _advance(
 
 
 def _integrate_queue(queue: list[_Case], together: int) -> Iterator[_Case | tuple[int, Any]]:
-    """Integrate a queue; yield cases that wait for another run, and index and response of those that have ended."""
+    """Integrate a queue.
+
+    Yields the cases that wait for another run, and index and response of those that have ended.
+    """
     from gbeam.integrate.side_by_side import integrate_together
 
     # Filled up with the last case: one compiled program serves queues of any length, without a change of digits.
@@ -248,7 +257,10 @@ def _integrate_queue(queue: list[_Case], together: int) -> Iterator[_Case | tupl
 
 
 def _read(queue: list[_Case], trajectories: list[Trajectory | None]) -> Iterator[_Case | tuple[int, Any]]:
-    """Send the cases their trajectories; yield those that wait for another run, and the responses of the others."""
+    """Send the cases their trajectories.
+
+    Yields the cases that wait for another run, and the responses of the others.
+    """
     ended = []
     for case, trajectory, moved in zip(queue, trajectories, _displaced(queue, trajectories), strict=True):
         posed, known = case.posed, dict[str, Any]()
@@ -273,7 +285,7 @@ def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> lis
         if trajectory is not None:
             for name, body in case.posed.system.flexible.items():
                 completed.append((k, body, case.posed.columns(name), name, trajectory))
-    for group in _alike(completed, lambda item: (id(item[1]), len(item[-1].time))):
+    for group in _group_by(completed, lambda item: (id(item[1]), len(item[-1].time))):
         body = group[0][1]
         q = np.stack([trajectory.q[:, columns] for _, _, columns, _, trajectory in group])
         for (k, _, _, name, _), moved in zip(group, np.asarray(body.displacement(q)), strict=True):
@@ -282,7 +294,7 @@ def _displaced(queue: list[_Case], trajectories: list[Trajectory | None]) -> lis
 
 
 def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Any]]:
-    """Indices and responses of cases that have ended; peaks are computed together for each structure and grid."""
+    """Indices and responses of cases that have ended. Peaks are computed together for each structure and grid."""
 
     completed = [
         (k, name, body, case.posed.columns(name))
@@ -296,7 +308,7 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Any]]:
         return id(body), columns.start, ended[k].run.flight.time.tobytes()
 
     known: list[dict[str, Any]] = [{} for _ in ended]
-    for group in _alike(completed, key):
+    for group in _group_by(completed, key):
         first, name, body, columns = group[0]
         moved = np.stack([ended[k].known[name] for k, *_ in group])
         trajectories, late = [ended[k].run.flight for k, *_ in group], ended[first].posed.settings.residual_from
@@ -307,7 +319,7 @@ def _responses_of(ended: list[_Ended]) -> Iterator[tuple[int, Any]]:
         yield case.index, response_of(case.run, case.errors, "", known=known_bodies)
 
 
-def _alike(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:
+def _group_by(items: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[list[Item]]:
     """Group items by equal keys, in the order of the first of each."""
     groups: dict[Hashable, list[Item]] = {}
     for item in items:

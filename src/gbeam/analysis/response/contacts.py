@@ -24,8 +24,10 @@ LITTLE = 1e-3  # of a coordinate's way: less is no creep
 def creeping(
     system: System, run: Trajectory, inputs: Callable[[], Inputs], inertia: Callable[[str, int], float]
 ) -> tuple[str, ...]:
-    """Warn of coordinates that creep, or are driven, at rates at which friction has less than its size; `inertia`
-    returns, kg or kg m², what an effort on a local coordinate, by its name, accelerates at a step.
+    """Warn of coordinates that creep, or are driven, at rates at which friction has less than its size.
+
+    `inertia` returns the mass, kg or kg m², that an effort on a local coordinate accelerates at a step. The coordinate
+    is given by its name.
     """
     if not any(joint.frictions for joint in system.joints.values()):
         return ()
@@ -61,8 +63,8 @@ def _creeping(name: str, way: float, time: float, felt: float, friction: float, 
     share = f"{felt:.4g} of {friction:.4g} {unit_of_effort(kind)} at most"
     if driven:
         return f"{name} moves by {far} in {time:.4g} s so slowly that its drive feels {share}: {smooth}"
-    held = f"{name} creeps by {far} in {time:.4g} s in which friction would hold it with {share}"
-    return f"{held}: {smooth}; rate = 0 holds what should not move"
+    problem = f"{name} creeps by {far} in {time:.4g} s in which friction would hold it with {share}"
+    return f"{problem}: {smooth}; rate = 0 holds what should not move"
 
 
 def _states(
@@ -82,8 +84,9 @@ def _states(
 
 
 def _held_coordinates(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:
-    """Yield name, joint, held coordinates (t, h) over the times of a run and their rates; of a ball the rotation vector
-    is held.
+    """Yield the name of each joint, the joint, and its held coordinates (t, h) and their rates over the times of a run.
+
+    Of a ball the rotation vector is held.
     """
     for name, joint, link, q, qd in _states(system, run, inputs):
         # Rates are derivatives along time, by a complex step.
@@ -99,17 +102,17 @@ def missed_stop(system: System, run: Trajectory, inputs: Callable[[], Inputs]) -
     from scipy.interpolate import CubicHermiteSpline  # which takes a while to import
 
     for name, joint, values, rates in _held_coordinates(system, run, inputs()):
-        held = zip(joint.values, values.T, rates.T, joint.holder.low, joint.holder.high, strict=True)
-        for value, q, qd, low, high in held:
+        components = zip(joint.values, values.T, rates.T, joint.holder.low, joint.holder.high, strict=True)
+        for value, q, qd, low, high in components:
             for sign, end in ((1.0, high), (-1.0, -low)):
                 if not np.isfinite(end):
                     continue
-                between = CubicHermiteSpline(run.time, sign * q, sign * qd)
-                turns = between.derivative().roots(extrapolate=False)
+                spline = CubicHermiteSpline(run.time, sign * q, sign * qd)
+                turns = spline.derivative().roots(extrapolate=False)
                 step = np.clip(np.searchsorted(run.time, turns, side="right") - 1, 0, len(q) - 2)
                 ends = sign * q[step], sign * q[step + 1]
-                beyond = (between(turns) > end + BEYOND * np.ptp(q)) & (np.abs(np.subtract(*ends)) < math.pi)
-                missed = turns[beyond & (np.minimum(*ends) <= end)]
+                is_beyond = (spline(turns) > end + BEYOND * np.ptp(q)) & (np.abs(np.subtract(*ends)) < math.pi)
+                missed = turns[is_beyond & (np.minimum(*ends) <= end)]
                 if missed.size:
                     words = f"{name}.{value} meets a stop and leaves it within one step, at {missed[0]:.4g} s"
                     return (f"{words}: the steps may miss it, and their error is not known; give a smaller step",)

@@ -1,7 +1,7 @@
 """Responses with a little less and a little more of a parameter, by the derivative of one run.
 
-The derivative of every step is exact. The two responses are made of q ± ½ w ∂q/∂p as any response is, so that the
-difference of any figure between them, over the width w, is its derivative, but for terms of second order in w. A peak
+The derivative of every step is exact. The two responses are made of q ± ½ w ∂q/∂p, as any response is. The difference
+of any figure between them, over the width w, is therefore its derivative, but for terms of second order in w. A peak
 needs no rule of its own, since to first order it does not matter when it occurs.
 
 The equations of motion are linearised about the run. A parameter enters by pairs of problems, a little less and a
@@ -36,7 +36,7 @@ from gbeam.results.errors import StepErrors
 from gbeam.results.machine import AxesResult
 
 Pair = tuple[Posed, Posed]  # the problems with less and with more of a parameter
-Within = tuple[Scheme, Steps]  # a scheme and its fitted steps
+Fitted = tuple[Scheme, Steps]  # a scheme and its fitted steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,22 +58,22 @@ class _Linear:
         return np.asarray(forces[..., 0] - f)
 
 
-def _residual(posed: Posed, within: Within | None) -> Any:
-    """The residual of a problem or, `within` fitted steps, that of the modified equations which these solve."""
+def _residual(posed: Posed, fitted: Fitted | None) -> Any:
+    """The residual of a problem or, `fitted` fitted steps, that of the modified equations which these solve."""
     equations: Any = posed.equations
     if not isinstance(equations, LinearEquations):
-        return equations.residual if within is None else fitted_residual(equations, *within, len(posed.start.y))
-    return _Linear(equations, *(() if within is None else fitting_terms(equations, within[0], within[1].longest)))
+        return equations.residual if fitted is None else fitted_residual(equations, *fitted, len(posed.start.y))
+    return _Linear(equations, *(() if fitted is None else fitting_terms(equations, fitted[0], fitted[1].longest)))
 
 
-def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, within: Within | None = None) -> Tangent:
+def linearised(nominal: Posed, pairs: Sequence[Pair], width: Floats, fitted: Fitted | None = None) -> Tangent:
     """Return a function of times and states of the nominal problem that gives M, C, K (t, n, n) and forces (t, n, p).
 
-    Forces are those by p parameters, each of which differs by its `width` (p,) in a pair. `within` are the fitted steps
+    Forces are those by p parameters, each of which differs by its `width` (p,) in a pair. `fitted` are the fitted steps
     as in `_residual`.
     """
-    residual = _residual(nominal, within)
-    residuals = [[_residual(posed, within) for posed in pair] for pair in pairs]
+    residual = _residual(nominal, fitted)
+    residuals = [[_residual(posed, fitted) for posed in pair] for pair in pairs]
 
     def system(time: Floats, q: Floats, qd: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         inputs = nominal.equations.drive(time)
@@ -114,8 +114,8 @@ class Grid:
         if settings.step is not None:
             return Grid(done.step, 1)
         subject = prepared(structure, motion, settings)
-        kept = first_step(subject, begun(subject, settings, settings.start), settings)
-        return Grid(done.step, max(1, round(kept / done.step)))
+        result_step = first_step(subject, begun(subject, settings, settings.start), settings)
+        return Grid(done.step, max(1, round(result_step / done.step)))
 
 
 class Differentiated:
@@ -142,13 +142,13 @@ class Differentiated:
         self.jumps = self._jumps(self.nominal)
         self.steps = self.nominal.steps(grid.step)
         # Derivatives need the states at all ends of split steps, too.
-        every = replace(self.steps, kept=np.ones(len(self.steps), dtype=bool))
+        every_step = replace(self.steps, kept=np.ones(len(self.steps), dtype=bool))
         start = self.nominal.start
-        self.run = integrate_steps(self.nominal.equations, self.scheme, start.y, start.yd, every)
+        self.run = integrate_steps(self.nominal.equations, self.scheme, start.y, start.yd, every_step)
 
-    def pair(self, less: Variant, more: Variant) -> Pair:
+    def pair(self, lower: Variant, upper: Variant) -> Pair:
         """Pose the problems with a little less and a little more of a parameter."""
-        return self._varied(less), self._varied(more)
+        return self._varied(lower), self._varied(upper)
 
     def jumps_move(self, pair: Pair) -> bool:
         """True if the jumps of either problem are not at the nominal times: steps fixed at those would miss them."""
@@ -180,24 +180,27 @@ class Differentiated:
 
     def _slopes(self, pairs: Sequence[Pair], width: Floats) -> tuple[Floats, ...]:
         """Derivatives of q, q̇, q̈ (t, n, p) at the ends of kept steps."""
-        less, more = zip(*pairs, strict=True)
+        lower, upper = zip(*pairs, strict=True)
         q, qd = (
-            np.stack([getattr(b.start, x) - getattr(a.start, x) for a, b in zip(less, more, strict=True)], 1) / width
+            np.stack([getattr(b.start, x) - getattr(a.start, x) for a, b in zip(lower, upper, strict=True)], 1) / width
             for x in ("y", "yd")
         )
         system = linearised(self.nominal, pairs, width)
-        within = linearised(self.nominal, pairs, width, (self.scheme, self.steps))
-        histories = tangent(system, self.scheme, self.steps, self.run, q, qd, within=within)
-        kept = np.append(True, self.steps.kept)
-        return tuple(x[kept] for x in histories)
+        variation = linearised(self.nominal, pairs, width, (self.scheme, self.steps))
+        histories = tangent(system, self.scheme, self.steps, self.run, q, qd, linear_system=variation)
+        is_recorded = np.append(True, self.steps.kept)
+        return tuple(x[is_recorded] for x in histories)
 
-    def _response(self, posed: Posed, by: tuple[Floats, ...] | None) -> Any:
-        """Response of a problem by the nominal run's histories, at the ends of kept steps, changed `by` q, q̇ and q̈."""
-        kept = np.append(True, self.steps.kept)
-        histories = [x[kept] for x in (self.run.q, self.run.qd, self.run.qdd)]
-        if by is not None:
-            histories = [x + dx for x, dx in zip(histories, by, strict=True)]
-        moved = Trajectory(self.run.time[kept], *histories)
+    def _response(self, posed: Posed, slopes: tuple[Floats, ...] | None) -> Any:
+        """Response of a problem by the nominal run's histories at the ends of recorded steps.
+
+        These are changed by the `slopes` of q, q̇ and q̈, if there are any.
+        """
+        is_recorded = np.append(True, self.steps.kept)
+        histories = [x[is_recorded] for x in (self.run.q, self.run.qd, self.run.qdd)]
+        if slopes is not None:
+            histories = [x + dx for x, dx in zip(histories, slopes, strict=True)]
+        moved = Trajectory(self.run.time[is_recorded], *histories)
         return response_of(Run(moved, self.grid.step, posed), StepErrors(), self.name, axes_of=self._axes)
 
     def _axes(self, motion: Any, time: Floats) -> AxesResult | None:

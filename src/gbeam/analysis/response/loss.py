@@ -1,8 +1,8 @@
-"""When the frozen equations of a body in a run stop being stable.
+"""The time from which the frozen equations of a body in a run are no longer stable.
 
-The straight beam (of a complete model, the bent one) is stable while its stiffness, with the terms of the base's motion
-and of the loads, is positive definite; where loads follow the beam the eigenvalues decide. A disturbance grows by
-exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its size.
+The straight beam is stable while its stiffness, with the terms of the base's motion and of the loads, is positive
+definite. Of a complete model it is the bent beam. Where loads follow the beam, the eigenvalues decide. A disturbance
+grows by exp ∫ Re λ dt: a load that acts for a moment does nothing, whatever its size.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Excitation(NamedTuple):
 
 
 def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss | None:
-    """Find the stretch of time in which a disturbance grows most about q (t, n); None if none grows.
+    """Find the stretch of time in which a disturbance grows most about q (t, n), or None if none grows.
 
     Of a complete model, growth that ends within a stretch does not count: there it is on its way to a stable shape.
     """
@@ -68,41 +68,41 @@ def worst_loss(structure: Structure, time: Array, base: Base, q: Array) -> Loss 
 
     def loss(part: Array) -> Loss | None:
         """Loss over a stretch of indices, by growth rates at some of them."""
-        some = part[:: -(-len(part) // _MOST)]
-        until = np.append(some[1:], min(part[-1] + 1, len(time) - 1))
-        rate = np.array([growth_rate(*matrices(i)) for i in some])
+        looked_at = part[:: -(-len(part) // _MOST)]
+        until = np.append(looked_at[1:], min(part[-1] + 1, len(time) - 1))
+        rate = np.array([growth_rate(*matrices(i)) for i in looked_at])
         run = np.cumsum(np.diff(rate > 0, prepend=False))  # numbers of runs of growth and of decay
-        growth = np.bincount(run, rate * (time[until] - time[some]))
+        growth = np.bincount(run, rate * (time[until] - time[looked_at]))
         if not structure.linear:
             growth[: run[-1]] = 0.0
         if not growth.any():
             return None
-        worst = np.flatnonzero(run == growth.argmax())
-        first = int(some[worst[0]])
-        before = int(some[worst[0] - 1]) if worst[0] else max(first - 1, 0)
-        margins = stability_margin(*matrices(before)), stability_margin(*matrices(first))
+        steepest = np.flatnonzero(run == growth.argmax())
+        first = int(looked_at[steepest[0]])
+        previous = int(looked_at[steepest[0] - 1]) if steepest[0] else max(first - 1, 0)
+        margins = stability_margin(*matrices(previous)), stability_margin(*matrices(first))
         share = margins[0] / (margins[0] - margins[1]) if margins[0] > 0 > margins[1] else 1.0
         return Loss(
-            start=float(time[before] + share * (time[first] - time[before])),
-            end=float(time[until[worst[-1]]]),
+            start=float(time[previous] + share * (time[first] - time[previous])),
+            end=float(time[until[steepest[-1]]]),
             growth=float(growth.max()),
             flutter=unsymmetric(matrices(first)[2]),
-            causes=_causes(structure, excitation.interpolate(before, first, share), matrices(first)),
+            causes=_causes(structure, excitation.interpolate(previous, first, share), matrices(first)),
         )
 
     if not c.size:
         return None
-    doubtful, most = _doubtful(c, excitation)
+    doubtful, score = _doubtful(c, excitation)
     stretches = np.split(doubtful, np.flatnonzero(np.diff(doubtful) > 1) + 1) if len(doubtful) else []
-    stretches.sort(key=lambda part: -most[part].sum())
+    stretches.sort(key=lambda part: -score[part].sum())
     losses = [loss(part) for part in stretches[:_STRETCHES]]
     return max(filter(None, losses), key=lambda stretch: stretch.growth, default=None)
 
 
 def holds(structure: Structure, time: float, base: Base, q: Array) -> bool:
     """True if a structure that rests at coordinates `q` (n,) at a time, s, stays there in a motion (3,) of its root."""
-    now = structure.at_time(time)
-    c, values = expanded(now, q)[0], now.load_values
+    frozen = structure.at_time(time)
+    c, values = expanded(frozen, q)[0], frozen.load_values
     damping, stiffness = c.frozen(base.a_WO_B, base.w_WB_B, base.alpha_WB_B, values)
     # Loads that follow the beam may shake it, which inertia decides.
     return positive_definite(stiffness) if values is None else stability_margin(c.mass, damping, stiffness) > 0
@@ -115,23 +115,23 @@ def _doubtful(c: Coefficients, excitation: Excitation) -> tuple[Array, Array]:
     the beam, which these bounds do not cover, make the growth infinite.
     """
     scale = np.linalg.inv(np.linalg.cholesky(c.stiffness))  # by which the elastic stiffness is one
-    w, most = excitation.w_WB_B, np.zeros(len(excitation.w_WB_B))
+    w, bound = excitation.w_WB_B, np.zeros(len(excitation.w_WB_B))
     terms = [c.k_a, c.k_al, c.k_ww[_ROW, _COLUMN], c.k_ww[range(3), range(3)]]
     sizes = [excitation.a_WO_B, excitation.alpha_WB_B, 2 * w[:, _ROW] * w[:, _COLUMN], w**2]
     if excitation.loads is not None and c.loads is not None:
         slope, values = c.loads.slope[:, :, 6:].reshape(-1, c.size, c.size), excitation.loads.reshape(len(w), -1)
         terms.append(-slope)
         sizes.append(values)
-        most[np.any(values[:, [unsymmetric(matrix) for matrix in slope]], axis=1)] = np.inf
+        bound[np.any(values[:, [unsymmetric(matrix) for matrix in slope]], axis=1)] = np.inf
     size = np.concatenate(sizes, axis=1)
     driven = size.any(axis=0)
     size, term = size[:, driven], symmetric(np.concatenate(terms)[driven])
     share = np.linalg.eigvalsh(scale @ term @ scale.T)
-    taken = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
-    large = np.flatnonzero((taken >= 1.0) & (most == 0))
+    removed = np.maximum(size, 0) @ np.maximum(-share[:, 0], 0) + np.maximum(-size, 0) @ np.maximum(share[:, -1], 0)
+    large = np.flatnonzero((removed >= 1.0) & (bound == 0))
     for block in (large[i : i + _BLOCK] for i in range(0, len(large), _BLOCK)):
-        most[block] = np.sqrt(np.maximum(-lowest_over_time(c, excitation.select(block)), 0))
-    return np.flatnonzero(most), most
+        bound[block] = np.sqrt(np.maximum(-lowest_over_time(c, excitation.select(block)), 0))
+    return np.flatnonzero(bound), bound
 
 
 def lowest_over_time(c: Coefficients, excitation: Excitation) -> Array:

@@ -42,7 +42,7 @@ class Ending:
         return self.outcome == "done"
 
     def name_body(self, body: str) -> Ending:
-        """Name a body in the message and the warnings; leave them as they are where the name is empty."""
+        """Name a body in the message and the warnings. They stay as they are where the name is empty."""
         if not body:
             return self
         message = f"{body}: {self.message}" if self.message else ""
@@ -50,8 +50,10 @@ class Ending:
 
 
 def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats) -> Ending:
-    """Outcome of a run. Of the bodies on which nothing hangs or acts but their loads, `bodies` have the motion of the
-    root (t, 3) and the coordinates (t, n) at times (t,) s: what makes these lose their stability.
+    """Describe how a run ended.
+
+    `bodies` are those on which nothing hangs or acts but their loads. Each has the motion of its root (t, 3) and its
+    coordinates (t, n) at times (t,) s, which tell when it loses its stability.
     """
     trajectory, system = run.trajectory, run.posed.system
     end = trajectory.time[-1]
@@ -65,9 +67,9 @@ def ending_of(run: Run, bodies: Mapping[str, tuple[Base, Floats]], time: Floats)
             return Ending(MASSLESS, words)
         doubts = (f"{words}; what moves so grows without bound where steps resolve it",)
     if not (trajectory.stopped or trajectory.converged):
-        other = "" if system.controllers else ', or response.integrator = "generalized-alpha" with rho_inf = 0.8'
+        alternative = "" if system.controllers else ', or response.integrator = "generalized-alpha" with rho_inf = 0.8'
         problem = f"no acceleration satisfies the equations in the step after t = {end:.4g} s"
-        return Ending("not converged", f"{problem}; try a smaller response.step{other}")
+        return Ending("not converged", f"{problem}; try a smaller response.step{alternative}")
     named = len(run.deforming) > 1
     endings = [
         _ending_of(run, body, name, bodies.get(name), time).name_body(name if named else "")
@@ -82,7 +84,7 @@ def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Fl
     """Outcome of a run for one body, by its states at times (t,) s, if what they would tell is all that it feels."""
     end, q_end = run.trajectory.time[-1], run.trajectory.q[-1:, run.posed.columns(name)]
     stopped = run.trajectory.stopped and run.posed.far(structure, structure.displacement(q_end)).any()
-    loss, lost, bent = None, "", ""
+    loss, instability, bent = None, "", ""
     if states is not None:
         base, q = states
         begun = each_leaf(lambda values: values[0], base), q[0]
@@ -90,19 +92,19 @@ def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Fl
         if loss is not None:
             first = int(np.searchsorted(time, loss.start))
             state = "equilibrium is not stable" if loss.flutter else "stiffness is not positive definite"
-            lost = f"{structure.kind}'s {state} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
+            instability = f"{structure.kind}'s {state} from t = {loss.start:.4g} s, where {' and '.join(loss.causes)}"
         bent = first_order_clause(elastic_bend(structure, each_leaf(lambda values: values[first], base)))
     if bent and loss is not None and (stopped or loss.growth > GROWN):
-        return Ending(NOT_KNOWN, f"whether it diverges is not known: {lost}, but {bent}")
+        return Ending(NOT_KNOWN, f"whether it diverges is not known: {instability}, but {bent}")
     particles = structure.field is None  # they have no other model, nor a length that bounds their displacement
     if stopped and particles:
-        cause = f": {lost}" if lost else "; give a smaller response.step"
+        cause = f": {instability}" if instability else "; give a smaller response.step"
         return Ending("diverged", f"the displacement exceeded {BOUNDLESS:.0e} m at t = {end:.4g} s{cause}")
     if stopped:
-        better = "FOAM or exact" if structure.kind == "TLAM" else "exact"
-        why = f"use {better}"
-        if lost:
-            why = f"{lost}: the model is not valid beyond that; {why}"
+        better_models = "FOAM or exact" if structure.kind == "TLAM" else "exact"
+        why = f"use {better_models}"
+        if instability:
+            why = f"{instability}: the model is not valid beyond that; {why}"
             if structure.kind != "TLAM":
                 why += ", and `gbeam critical-speed` to see whether the exact model loses its equilibrium as well"
         length = f"{structure.length:.4g} m"
@@ -116,11 +118,11 @@ def _ending_of(run: Run, structure: Structure, name: str, states: tuple[Base, Fl
         problem = (
             "whatever deviates grows more than a thousandfold meanwhile, and no real beam stays where this run has it"
         )
-        return Ending("diverged", f"{lost}, to t = {loss.end:.4g} s: {problem}; {cure}")
+        return Ending("diverged", f"{instability}, to t = {loss.end:.4g} s: {problem}; {cure}")
     warnings, unknown = [], f"; that is not known, for {bent}" if bent else ""
     if loss is not None and loss.growth > NOTICED:
         grows = f"whatever deviates grows {math.exp(loss.growth):.2g}-fold meanwhile{unknown}"
-        warnings.append(f"{lost}, to t = {loss.end:.4g} s: {grows}")
+        warnings.append(f"{instability}, to t = {loss.end:.4g} s: {grows}")
     elif states is not None and run.posed.settings.begin.settled and not holds(structure, time[0], *begun):
         warnings.append(
             "the run starts from an equilibrium that is not stable, which no beam would keep"
@@ -146,10 +148,13 @@ def far_bent(structure: Structure, size: float) -> tuple[str, ...]:
 def stressed_and_bent(run: Run, bodies: Mapping[str, BodyResponse]) -> tuple[str, ...]:
     """Warn of bodies that yield, bend too far for their models, or lack a stiffness by what loads them."""
     subject, warnings = run.posed.subject, list[str]()
-    for body, each in bodies.items():
-        warnings += yield_warnings(each.peaks.loads, "" if subject.body else f" of {body}")
+    for body, body_response in bodies.items():
+        warnings += yield_warnings(body_response.peaks.loads, "" if subject.body else f" of {body}")
         if body == subject.body:
-            warnings += [*far_bent(subject.structure, each.peaks.max_size), *stretched(subject.structure, each.q)]
+            warnings += [
+                *far_bent(subject.structure, body_response.peaks.max_size),
+                *stretched(subject.structure, body_response.q),
+            ]
     return (*warnings, *(() if subject.body else run.solution(1).stiffness_warnings))
 
 
@@ -191,11 +196,11 @@ def yield_warnings(peaks: LoadPeaks | None, of: str = "") -> list[str]:
     if peaks is None or strength is None:
         return []
     stress = peaks.stress
-    worst = int(np.argmax(stress.value))
-    if not stress.value[worst] > strength:
+    largest = int(np.argmax(stress.value))
+    if not stress.value[largest] > strength:
         return []
     return [
-        f"the stress reaches {1e-6 * stress.value[worst]:.4g} MPa at {peaks.stations[worst]:.4g} m{of}, t = "
-        f"{stress.time[worst]:.4g} s, above the yield strength, {1e-6 * strength:.4g} MPa: the material yields, and "
+        f"the stress reaches {1e-6 * stress.value[largest]:.4g} MPa at {peaks.stations[largest]:.4g} m{of}, t = "
+        f"{stress.time[largest]:.4g} s, above the yield strength, {1e-6 * strength:.4g} MPa: the material yields, and "
         "the response, which is elastic, means nothing from there on"
     ]

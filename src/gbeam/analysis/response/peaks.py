@@ -32,8 +32,10 @@ _ROUNDING = 1e-16  # of the places: a displacement that is less is none
 def displacement_peaks(
     structure: Structure, trajectories: Sequence[Trajectory], columns: slice, moved: Any, residual_from: float | None
 ) -> list[Peaks]:
-    """Peaks of the displacement in each trajectory, from samples `moved` (b, t, s, 3) m and, between steps, the model
-    at quintic Hermite polynomials of q; where JAX traces it, the tip's largest samples.
+    """Peaks of the displacement in each trajectory.
+
+    They follow from samples `moved` (b, t, s, 3) m and, between steps, from the model at quintic Hermite polynomials of
+    q. Where JAX traces it, they are the tip's largest samples.
     """
     time = trajectories[0].time
     start = 0 if residual_from is None else int(np.searchsorted(time, residual_from))
@@ -57,14 +59,14 @@ def displacement_peaks(
     if late:
         highest, _ = largest(start, lambda u: np.concatenate([u[..., -1, :], -u[..., -1, :]], axis=-1))
         residual = (highest[:, :3] + highest[:, 3:]) / 2
-    vectors = [_vectors(value, when, stations) for value, when in zip(*largest(0, sizes), strict=True)]
+    vectors = [_vectors(value, instant, stations) for value, instant in zip(*largest(0, sizes), strict=True)]
     return [_station_peaks(*run) for run in zip(vectors, residual, strict=True)]
 
 
 def _nearby_accelerations(trajectory: Trajectory, samples: Indices) -> Floats:
-    """Accelerations (t, n) at samples (u,) and their neighbours; NaN elsewhere."""
-    qdd, near = np.full(trajectory.q.shape, np.nan), np.unique(samples[:, None] + np.arange(-1, 2))
-    qdd[near] = trajectory.select(near).qdd
+    """Accelerations (t, n) at samples (u,) and their neighbours, or NaN elsewhere."""
+    qdd, neighbours = np.full(trajectory.q.shape, np.nan), np.unique(samples[:, None] + np.arange(-1, 2))
+    qdd[neighbours] = trajectory.select(neighbours).qdd
     return qdd
 
 
@@ -87,14 +89,17 @@ def _samples(time: Floats, tip: Any, start: int | None) -> Peaks:
     size, times = xp.abs(tip), xp.asarray(time)
     length = xp.sqrt((tip**2).sum(axis=1).max())
     residual = np.full(3, np.nan) if start is None else (tip[start:].max(axis=0) - tip[start:].min(axis=0)) / 2
-    when = times[(tip**2).sum(axis=1).argmax()]
-    return Peaks(size.max(axis=0), times[size.argmax(axis=0)], residual, length, when)
+    peak_time = times[(tip**2).sum(axis=1).argmax()]
+    return Peaks(size.max(axis=0), times[size.argmax(axis=0)], residual, length, peak_time)
 
 
 def load_peaks(
     loads: Loads, time: Floats, loads_at: Callable[[Indices], Loads | None] | None = None, stride: int = 1
 ) -> LoadPeaks:
-    """Peaks of loads known at every `stride`-th of the times; `loads_at` computes them at others, near peaks."""
+    """Peaks of loads known at every `stride`-th of the times.
+
+    `loads_at` computes the loads at other times, near peaks.
+    """
     s, supports = loads.section_force.shape[1], 0 if loads.supports is None else len(loads.supports)
     count = 2 * (s + supports)  # of vectors
     table, steps = _table(loads), np.arange(0, len(time), stride)
@@ -108,20 +113,20 @@ def load_peaks(
     chosen = near_maxima(time[steps], measure(table))
     if loads_at is not None and stride > 1 and chosen.size:
         # Beside the samples that may be the largest, the loads are computed at every step.
-        near = steps[chosen][:, None] + np.arange(-stride - FEWEST // 2, stride + FEWEST // 2 + 1)
-        new = np.setdiff1d(np.clip(near, 0, len(time) - 1), steps)
-        more = loads_at(new)
-        assert more is not None
-        table, steps = np.concatenate([table, _table(more)]), np.concatenate([steps, new])
+        neighbours = steps[chosen][:, None] + np.arange(-stride - FEWEST // 2, stride + FEWEST // 2 + 1)
+        added = np.setdiff1d(np.clip(neighbours, 0, len(time) - 1), steps)
+        added_loads = loads_at(added)
+        assert added_loads is not None
+        table, steps = np.concatenate([table, _table(added_loads)]), np.concatenate([steps, added])
         order = np.argsort(steps)
         table, steps = table[order], steps[order]
         chosen = near_maxima(time[steps], measure(table))
         chosen = chosen[steps[chosen + 1] - steps[chosen - 1] == 2]
-    t, between = seven_point(time[steps], table, chosen)
-    value, when = maxima(time[steps], measure(table), t, measure(between))
+    t, refined = seven_point(time[steps], table, chosen)
+    value, peak_time = maxima(time[steps], measure(table), t, measure(refined))
     if not np.isfinite(loads.stress_tension).all():
-        value[4 * count : 4 * count + 2 * s] = when[4 * count : 4 * count + 2 * s] = np.nan
-    vectors, v, w = _vectors(value, when, count), value[4 * count :], when[4 * count :]
+        value[4 * count : 4 * count + 2 * s] = peak_time[4 * count : 4 * count + 2 * s] = np.nan
+    vectors, v, w = _vectors(value, peak_time, count), value[4 * count :], peak_time[4 * count :]
     on_supports = vectors[2 * s :]
     return LoadPeaks(
         force=vectors[:s],
@@ -150,8 +155,8 @@ def maxima_of(system: System, time: Floats, over_time: Mapping[str, Floats]) -> 
     highest, when_highest = (values.reshape(4, -1) for values in column_peaks(time, np.concatenate(columns, axis=1)))
     on_ground = vector_peaks(time, np.stack([over_time["ground_force"], over_time["ground_moment"]]))
     force, moment = (
-        VectorPeaks(Extremes(value[:3], when[:3]), Extremes(value[3], when[3]))
-        for value, when in zip(*on_ground, strict=True)
+        VectorPeaks(Extremes(value[:3], peak_time[:3]), Extremes(value[3], peak_time[3]))
+        for value, peak_time in zip(*on_ground, strict=True)
     )
     return Maxima(
         points=system.points,
@@ -176,24 +181,26 @@ def maxima_of(system: System, time: Floats, over_time: Mapping[str, Floats]) -> 
 
 
 def half_ranges(time: Floats, values: Any, start: float) -> Any:
-    """Half of the range (k,) of each history (t, k) from a time on; NaN where there are not two samples."""
-    after = time >= start
-    if after.sum() < 2:
+    """Half of the range (k,) of each history (t, k) from a time on, or NaN where there are not two samples."""
+    is_residual = time >= start
+    if is_residual.sum() < 2:
         return np.full(values.shape[1], np.nan)
-    time, values = time[after], values[after]
+    time, values = time[is_residual], values[is_residual]
     if is_jax(values):
         return (values.max(axis=0) - values.min(axis=0)) / 2
     signed = np.concatenate([values, -values], axis=1)
-    t, between = seven_point(time, values, near_maxima(time, signed))
-    value, _ = maxima(time, signed, t, np.concatenate([between, -between], axis=2))
+    t, refined = seven_point(time, values, near_maxima(time, signed))
+    value, _ = maxima(time, signed, t, np.concatenate([refined, -refined], axis=2))
     return value.reshape(2, -1).sum(axis=0) / 2
 
 
 def peaks_of_coordinates(trajectory: Trajectory, vectors: Floats, vector: Callable[[Floats], Floats]) -> Floats:
     """Largest sizes (4,) of components and length of a `vector` of q, which has the values `vectors` (t, 3)."""
     time, measured = trajectory.time, sizes(vectors[:, None])
-    near = near_maxima(time, measured)
-    t, q = quintic_hermite(time, trajectory.q, trajectory.qd, _nearby_accelerations(trajectory, near), near)
+    maxima_indices = near_maxima(time, measured)
+    t, q = quintic_hermite(
+        time, trajectory.q, trajectory.qd, _nearby_accelerations(trajectory, maxima_indices), maxima_indices
+    )
     value, _ = maxima(time, measured, t, sizes(vector(q)[:, :, None]))
     return value
 
@@ -204,8 +211,8 @@ def _table(loads: Loads) -> Floats:
     """
     torque = [] if loads.beam_torque is None else [loads.beam_torque[:, None]]
     of_supports = () if loads.support_force is None else (loads.support_force, loads.support_moment)
-    every = loads.section_force, loads.section_moment, *of_supports
-    vectors = [np.asarray(vector).reshape(len(vector), -1) for vector in every]
+    histories = loads.section_force, loads.section_moment, *of_supports
+    vectors = [np.asarray(vector).reshape(len(vector), -1) for vector in histories]
     stresses = (np.nan_to_num(x) for x in (loads.stress_tension, -loads.stress_compression))
     sheared = [np.asarray(loads.von_mises)] if _sheared(loads) else []
     return np.concatenate([*vectors, *stresses, *sheared, *torque], axis=1)
@@ -216,7 +223,9 @@ def _sheared(loads: Loads) -> bool:
     return loads.von_mises is not None and bool(np.isfinite(loads.von_mises).all())
 
 
-def _vectors(value: Floats, when: Floats, count: int) -> VectorPeaks:
-    """Peaks of `count` vectors from values and times (4 count, ...), in the order of `sizes`; more is left out."""
-    v, t = (x[: 4 * count].reshape(count, 4) for x in (value, when))
+def _vectors(value: Floats, times: Floats, count: int) -> VectorPeaks:
+    """Peaks of `count` vectors from values and times (4 count, ...), in the order of `sizes`. Further values are left
+    out.
+    """
+    v, t = (x[: 4 * count].reshape(count, 4) for x in (value, times))
     return VectorPeaks(Extremes(v[:, :3], t[:, :3]), Extremes(v[:, 3], t[:, 3]))

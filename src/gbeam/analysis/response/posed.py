@@ -60,18 +60,19 @@ class Begun:
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A system in an environment posed from the state `start`, to be run by any step; `kept`, s, is that of the
-    results. The settings' times are the flight's: a machine spins up in `before` steps of the results ahead of these,
-    and down in `after` of them behind.
+    """A system in an environment posed from the state `start`, to be run by any step.
+
+    `result_step`, s, is the step of the results. The settings' times are the flight's. A machine spins up in
+    `steps_before` steps of the results ahead of these, and down in `steps_after` of them behind.
     """
 
     subject: Subject
     settings: ResponseSettings
     start: Begun
-    kept: float
+    result_step: float
     limit: int = MAX_STEPS  # steps of a run at most
-    before: int = 0
-    after: int = 0
+    steps_before: int = 0
+    steps_after: int = 0
     slip: float = SLIP  # rad/s or m/s, rate below which friction is smooth
 
     @property
@@ -81,22 +82,22 @@ class Posed:
 
     @property
     def motion(self) -> Motion | None:
-        """Motion of the ground; None where it rests."""
+        """Motion of the ground, or None where it rests."""
         return self.subject.ground
 
     @property
     def begin(self) -> float:
         """Time at which the run begins, s."""
-        return self.settings.start - self.before * self.kept
+        return self.settings.start - self.steps_before * self.result_step
 
     @property
     def end(self) -> float:
         """Time at which the run ends, s."""
-        return self.settings.start + self.settings.duration + self.after * self.kept
+        return self.settings.start + self.settings.duration + self.steps_after * self.result_step
 
     @cached_property
     def controllers(self) -> SystemControllers | None:
-        """Controllers in the loop; None without any."""
+        """Controllers in the loop, or None without any."""
         return SystemControllers(self.system) if self.system.controllers else None
 
     def drive(self, t: Array) -> Inputs:
@@ -117,8 +118,10 @@ class Posed:
 
     def driven_as(self, other: Posed) -> bool:
         """True if all that drives it is the same objects as in another problem."""
-        mine, others = self._drives, other._drives
-        return len(mine) == len(others) and all(one is another for one, another in zip(mine, others, strict=True))
+        mine, other_drives = self._drives, other._drives
+        return len(mine) == len(other_drives) and all(
+            drive is other_drive for drive, other_drive in zip(mine, other_drives, strict=True)
+        )
 
     @property
     def _drives(self) -> list[Any]:
@@ -133,7 +136,7 @@ class Posed:
     @cached_property
     def felt(self) -> Corners:
         """Corners and jumps of the inputs, and jumps of the controllers' commands."""
-        felt = Corners.from_times(corners(self.subject, self.kept), self.drive, self.begin, self.end)
+        felt = Corners.from_times(corners(self.subject, self.result_step), self.drive, self.begin, self.end)
         if self.controllers is None:
             return felt
         commands = self.commands.time
@@ -154,17 +157,21 @@ class Posed:
         length that does not divide the duration goes beyond its end, where nothing spins down.
         """
         count = math.ceil(self.settings.duration / step - 1e-6)
-        whole = math.isclose(count * step, self.settings.duration, rel_tol=1e-6)
-        return self.before, count, self.after if whole else 0
+        is_whole = math.isclose(count * step, self.settings.duration, rel_tol=1e-6)
+        return self.steps_before, count, self.steps_after if is_whole else 0
 
     def steps(self, step: float, cut: Corners | None = None) -> Steps:
         """Steps of a run, of a length, s, in the flight, of the results' in a machine's spin-up and spin-down, `cut` at
         corners, by default those that the scheme feels.
         """
         cut = self.felt.felt_by(scheme_of(self.settings)) if cut is None else cut
-        before, count, after = self.counts(step)
-        start, kept = self.settings.start, self.kept
-        parts = (self.begin, kept, before), (start, step, count), (start + self.settings.duration, kept, after)
+        steps_before, count, steps_after = self.counts(step)
+        start, result_step = self.settings.start, self.result_step
+        parts = (
+            (self.begin, result_step, steps_before),
+            (start, step, count),
+            (start + self.settings.duration, result_step, steps_after),
+        )
         return join_steps([make_steps(*part, cut) for part in parts if part[-1]])
 
     def integrated(self, step: float, cut: Corners | None = None, progress: Any = None) -> Trajectory:
@@ -176,8 +183,8 @@ class Posed:
     def plan(self) -> Plan[Any]:
         """Plan the runs that the settings need."""
         if not len(self.system.tree.unknowns):  # nothing is integrated
-            return plan_one_run(self.kept, StepErrors(0.0, 0.0, 0.0))
-        return plan_runs(self.settings, self.kept, self.limit)
+            return plan_one_run(self.result_step, StepErrors(0.0, 0.0, 0.0))
+        return plan_runs(self.settings, self.result_step, self.limit)
 
     def columns(self, body: str) -> slice:
         """Coordinates that deform a body, among the unknown ones."""
@@ -186,8 +193,8 @@ class Posed:
 
     def steps_in_bounds(self, y: Floats, moved: Mapping[str, Floats] = MappingProxyType({})) -> int | None:
         """Number of steps until the displacement of a body exceeds the length of a beam, or the bound of particles,
-        where its model ceases to hold; None if none does. `moved` (t, s, 3) m are the displacements of bodies by name
-        at unknowns y (t, n), where they are known.
+        where its model ceases to hold, or None if none does. `moved` (t, s, 3) m are the displacements of bodies by
+        name at unknowns y (t, n), where they are known.
         """
         far = np.zeros(len(y), dtype=bool)
         for name, body in self.system.flexible.items():
@@ -209,8 +216,9 @@ class Posed:
 
 
 def prepared(structure: Structure | System, motion: Motion | None, settings: ResponseSettings) -> Subject:
-    """Subject of a response, with its motion over the flight's times; InputError where it has no motion, or one too
-    many.
+    """Subject of a response, with its motion over the flight's times.
+
+    An InputError says that it has no motion, or one too many.
     """
     if motion is not None:
         motion = motion.over(settings.start, settings.start + settings.duration)
@@ -231,8 +239,8 @@ def prepared(structure: Structure | System, motion: Motion | None, settings: Res
 def poses(subject: Subject, settings: ResponseSettings) -> Iterator[Posed]:
     """Yield the problem with each of the steps of results to try, the longest first."""
     start = begun(subject, settings, settings.start)
-    for kept, most in tries(subject, settings, start):
-        yield pose(subject, settings, kept, most, start)
+    for result_step, limit in tries(subject, settings, start):
+        yield pose(subject, settings, result_step, limit, start)
 
 
 def tries(subject: Subject, settings: ResponseSettings, start: Begun) -> list[tuple[float, int]]:
@@ -242,16 +250,19 @@ def tries(subject: Subject, settings: ResponseSettings, start: Begun) -> list[tu
 
 
 def pose(
-    subject: Subject, settings: ResponseSettings, kept: float, limit: int = MAX_STEPS, start: Begun | None = None
+    subject: Subject, settings: ResponseSettings, result_step: float, limit: int = MAX_STEPS, start: Begun | None = None
 ) -> Posed:
-    """Pose a problem with a step of the results, s, from the start of a machine's spin-up; InputError if too long. The
-    `start` of the flight serves where nothing spins up.
+    """Pose a problem with a step of the results, s, from the start of a machine's spin-up.
+
+    The `start` of the flight serves where nothing spins up. An InputError refuses a run that is too long.
     """
-    before, after = (0, 0) if subject.ground is None else steps_beyond(subject.ground, settings, kept)
-    refuse_long(subject.system, settings, kept)
-    if start is None or before:
-        start = begun(subject, settings, settings.start - before * kept)
-    return Posed(subject, settings, start, kept, limit, before, after)
+    steps_before, steps_after = (
+        (0, 0) if subject.ground is None else steps_beyond(subject.ground, settings, result_step)
+    )
+    refuse_long(subject.system, settings, result_step)
+    if start is None or steps_before:
+        start = begun(subject, settings, settings.start - steps_before * result_step)
+    return Posed(subject, settings, start, result_step, limit, steps_before, steps_after)
 
 
 def corners(subject: Subject, step: float) -> Floats:
@@ -272,17 +283,23 @@ def begun(subject: Subject, settings: ResponseSettings, time: float) -> Begun:
 def begun_in_words(system: System, initial: Initial) -> str:
     """Sentence on the state in which a system begins."""
     floating = [name for name in system.flexible if name in system.floating]
-    held = [name for name in system.flexible if name not in floating]
+    held_bodies = [name for name in system.flexible if name not in floating]
     if not any(link.steps for link in system.tree.links):
         return str(initial)
     if initial.displaces:
         return f"{initial}, joints at their initial values"
-    how = STATE_WORDS[initial.state]
+    state_words = STATE_WORDS[initial.state]
     if initial.state == "equilibrium" and floating:
-        of_held = f"with {', '.join(held)} in relative equilibrium, {', '.join(floating)} " if held else ""
-        how = f"{of_held}undeformed ({'it floats' if len(floating) == 1 else 'they float'})"
+        of_held = (
+            f"with {', '.join(held_bodies)} in relative equilibrium, {', '.join(floating)} " if held_bodies else ""
+        )
+        state_words = f"{of_held}undeformed ({'it floats' if len(floating) == 1 else 'they float'})"
     deforms = system.flexible or unknown_at_start(system, initial.state)[0].any()
-    return f"begins {how}, joints at their initial values" if deforms else "begins with joints at their initial values"
+    return (
+        f"begins {state_words}, joints at their initial values"
+        if deforms
+        else "begins with joints at their initial values"
+    )
 
 
 def refuse_long(system: System, settings: ResponseSettings, step: float) -> None:
@@ -298,15 +315,17 @@ def refuse_long(system: System, settings: ResponseSettings, step: float) -> None
         raise InputError("integrator", f"is {settings.integrator!r}", fix)
     stations = sum(len(body.stations) for body in system.flexible.values())
     size = 8.0 * (3 * system.tree.size + 16 * len(system.points) + 9 * stations)  # bytes of a step
-    most = min(STEPS, int(HISTORY_BYTES / size))
-    fix = f"give {most * step:.3g} s or less, longer steps, or fewer stations"
-    refuse_more("response.duration", "steps", settings.duration / step, most, size, fix)
+    largest_count = min(STEPS, int(HISTORY_BYTES / size))
+    fix = f"give {largest_count * step:.3g} s or less, longer steps, or fewer stations"
+    refuse_more("response.duration", "steps", settings.duration / step, largest_count, size, fix)
 
 
 def first_step(subject: Subject, start: Begun, settings: ResponseSettings) -> float:
-    """Step of the results, s: that of the settings, rounded to a whole number of steps. If automatic, 500 steps or more
-    and twenty to the period of the slowest vibration on a ground that rests, none longer than from corner to corner; of
-    equations that are not linear LOADS_STEPS at most, and of those vibrations that these would resolve.
+    """Step of the results, s: that of the settings, rounded to a whole number of steps.
+
+    An automatic one divides the response into 500 steps or more, and the period of the slowest vibration on a ground
+    that rests into twenty. It is no longer than the time from corner to corner. Equations that are not linear have
+    LOADS_STEPS at most, and only vibrations that these would resolve count.
     """
     if settings.step is not None:
         return settings.duration / max(1, round(settings.duration / settings.step))
@@ -317,12 +336,12 @@ def first_step(subject: Subject, start: Begun, settings: ResponseSettings) -> fl
         return settings.duration / even_steps(largest, bends(largest), settings)
     _, k, _, m = Point(system.tree, start.y, start.yd, 0 * start.y, _resting(subject, settings.start)).local.slopes()
     square = np.abs(np.linalg.eigvals(np.linalg.solve(m, k)))
-    most = math.inf if is_linear(system.tree) else LOADS_STEPS
+    largest_count = math.inf if is_linear(system.tree) else LOADS_STEPS
     oscillating = np.sqrt(square[square > 1e-9 * square.max(initial=0.0)])
-    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * most]
+    oscillating = oscillating[oscillating * settings.duration < 2 * math.pi * largest_count]
     if oscillating.size:
         largest = min(largest, 2 * math.pi / float(oscillating.min()) / PER_PERIOD)
-    return settings.duration / min(even_steps(largest, bends(largest), settings), most)
+    return settings.duration / min(even_steps(largest, bends(largest), settings), largest_count)
 
 
 def _resting(subject: Subject, time: float) -> Inputs:

@@ -46,9 +46,10 @@ AxesOf = Callable[[Any, Floats], AxesResult | None]
 
 
 def influence(structure: Structure) -> Influence:
-    """Static tip displacements and root loads of the straight beam by unit accelerations of the base: uniform (3,), and
-    growing with x: centripetal (−ω² x) and angular (α_z x, −α_y x). Where supports hold the tip, the displacements are
-    those of the station that moves farthest.
+    """Static tip displacements and root loads of the straight beam by unit accelerations of the base.
+
+    One acceleration is uniform (3,). The others grow with x: the centripetal one (−ω² x) and the angular one (α_z x,
+    −α_y x). Where supports hold the tip, the displacements are those of the station that moves farthest.
     """
     c = structure.coefficients
     linear = np.stack([-c.f_ww[2, 2], c.f_al[2], -c.f_al[1]])
@@ -59,14 +60,14 @@ def influence(structure: Structure) -> Influence:
         return np.diagonal(per_q @ np.linalg.solve(c.stiffness, load.T))
 
     mass, first, second = float(c.rigid[0]), float(c.rigid[1]), float(c.rigid[4])  # and moments ∫ x dm, ∫ x² dm
-    across = np.array([0.0, 1.0, 1.0])
+    lateral = np.array([0.0, 1.0, 1.0])
     return Influence(
         tip_uniform=tip(c.f_a),
         tip_linear=tip(linear),
         force_uniform=np.full(3, -mass),
         force_linear=np.full(3, -first),
-        moment_uniform=-first * across,
-        moment_linear=-second * across,
+        moment_uniform=-first * lateral,
+        moment_linear=-second * lateral,
         station=station,
     )
 
@@ -75,14 +76,14 @@ def influence(structure: Structure) -> Influence:
 class Histories:
     """Quantities of a run at steps that are looked at: `over_time` by key, and the states of `bodies` by name.
 
-    Those at the indices `kept` are the response's. Every `every`-th step of the flight is among them.
+    Those at the indices `recorded` are the response's. Every `spacing`-th step of the flight is among them.
     """
 
     run: Run
     name: str
-    every: int
+    spacing: int
     steps: Indices
-    kept: Any  # indices of the response's times among these, or a slice
+    recorded: Any  # indices of the response's times among these, or a slice
     over_time: Mapping[str, Any]
     bodies: Mapping[str, Carried]
     known: Known
@@ -91,10 +92,10 @@ class Histories:
     def from_run(cls, run: Run, name: str, known: Known = MappingProxyType({})) -> Histories:
         """Read a run at every step, or at 50,000 of more: the steps near peaks are looked at again."""
         fewest = min(run.stride, -(-len(run.flight.time) // LOADS_STEPS))
-        every = next(count for count in range(fewest, run.stride + 1) if run.stride % count == 0)
-        steps = run.recorded_steps(every)
-        kept = slice(None) if every == run.stride else np.searchsorted(steps, run.recorded_steps(run.stride))
-        return cls(run, name, every, steps, kept, *run.histories(steps), known)
+        spacing = next(count for count in range(fewest, run.stride + 1) if run.stride % count == 0)
+        steps = run.recorded_steps(spacing)
+        recorded = slice(None) if spacing == run.stride else np.searchsorted(steps, run.recorded_steps(run.stride))
+        return cls(run, name, spacing, steps, recorded, *run.histories(steps), known)
 
     @property
     def time(self) -> Floats:
@@ -104,14 +105,14 @@ class Histories:
     @property
     def flown(self) -> slice:
         """The flight among the steps that are looked at."""
-        return self.run.flight_slice(self.every)
+        return self.run.flight_slice(self.spacing)
 
     def body(self, name: str) -> BodyResponse:
         """Describe a body that deforms, or a rigid specimen."""
         run, posed, traced = self.run, self.run.posed, self.run.traced
         structure, state, settings = posed.system.flexible[name], self.bodies[name], posed.settings
         motion = posed.subject.motion if name == posed.subject.body else None  # what carries a body that is alone
-        kept, columns = state.select(self.kept), posed.columns(name)
+        recorded, columns = state.select(self.recorded), posed.columns(name)
         if name in self.known:
             moved, peaks = self.known[name]
         else:
@@ -119,9 +120,11 @@ class Histories:
             (peaks,) = displacement_peaks(structure, [run.flight], columns, moved[None], settings.residual_from)
         loads = self._loads_in(name, state, self.time) if settings.loads else None
         if loads is not None and not traced:
-            at = self._load_reader(name)
-            peaks = replace(peaks, loads=load_peaks(loads.select_times(self.flown), run.flight.time, at, self.every))
-        beyond = len(run.trajectory.time) > len(run.flight.time)
+            read_loads = self._load_reader(name)
+            peaks = replace(
+                peaks, loads=load_peaks(loads.select_times(self.flown), run.flight.time, read_loads, self.spacing)
+            )
+        runs_beyond = len(run.trajectory.time) > len(run.flight.time)
         source, acceleration = structure.source, None
         if loads is not None:
             acceleration = loads.acceleration[:, 1:] if structure.sections is not None else accelerations(
@@ -129,40 +132,40 @@ class Histories:
             )  # fmt: skip
         straight = structure.recovery is None and (source is None or source.beam.line is None)
         drawn = settings.loads and not traced
-        time = self.time[self.kept]
+        time = self.time[self.recorded]
         return BodyResponse(
             model=structure.kind,
-            base=kept.base,
+            base=recorded.base,
             stations=np.asarray(structure.stations),
             points=structure.points if traced or source is None else names_at(source.beam, structure.stations),
-            displacement=structure.displacement(kept.q) if beyond else moved[:: run.stride],
-            q=kept.q,
-            qd=kept.qd,
-            qdd=kept.qdd,
+            displacement=structure.displacement(recorded.q) if runs_beyond else moved[:: run.stride],
+            q=recorded.q,
+            qd=recorded.qd,
+            qdd=recorded.qdd,
             peaks=peaks,
-            acceleration=None if acceleration is None else acceleration[self.kept],
-            loads=None if loads is None else loads.select_times(self.kept),
+            acceleration=None if acceleration is None else acceleration[self.recorded],
+            loads=None if loads is None else loads.select_times(self.recorded),
             frequencies=structure.rest[0],
             damping_ratio=structure.damping_ratio,
             shapes=None if source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
             influence=influence(structure) if isinstance(motion, Centrifuge) and straight and not traced else None,
-            outline=outline_of(structure, motion, time, kept.q) if drawn else None,
+            outline=outline_of(structure, motion, time, recorded.q) if drawn else None,
             **(self._recovered(name, state, peaks) if drawn else {}),
         )
 
     def reading(self, bodies: Mapping[str, BodyResponse]) -> Reading | None:
-        """Readings over the flight, of the bodies that are judged, for their errors; None without loads."""
+        """Readings over the flight, of the bodies that are judged, for their errors, or None without loads."""
         run = self.run
         if not run.posed.settings.loads:
             return None
         flown = run.flight_slice(run.stride)
-        out: dict[Quantity, Floats] = {PLACE: self.over_time["place"][self.kept][flown]}
+        readings: dict[Quantity, Floats] = {PLACE: self.over_time["place"][self.recorded][flown]}
         for name, body in judged_bodies(run.posed.system).items():
             response = bodies[name]
             assert response.loads is not None
-            time = self.time[self.kept][flown]
-            out |= reading_of(name, body, time, response.q[flown], response.loads.select_times(flown))
-        return out
+            time = self.time[self.recorded][flown]
+            readings |= reading_of(name, body, time, response.q[flown], response.loads.select_times(flown))
+        return readings
 
     def _loads_in(self, name: str, state: Carried, time: Floats) -> Loads:
         """Loads along a body in a state at times (t,) s, of a beam on a hub with the torque on it."""
@@ -190,28 +193,29 @@ class Histories:
         parts = structure.recovery.parts(self.time, state.base, causes, **names)
         if "specimen" in parts:
             parts["specimen"] = replace(parts["specimen"], root=peaks.loads)
-        if "solid" in parts and self.every < self.run.stride:
-            parts["solid"] = parts["solid"].sampled(self.kept)
+        if "solid" in parts and self.spacing < self.run.stride:
+            parts["solid"] = parts["solid"].sampled(self.recorded)
         return parts
 
     def hub(self, base: Base | None, bodies: Mapping[str, BodyResponse]) -> HubResult | None:
-        """Motion of the hub that carries the body, by that of the ground, which rests under a free one; None without a
-        hub.
+        """Motion of the hub that carries the body, or None without a hub.
+
+        It follows from the motion of the ground, which rests under a free hub.
         """
-        over_time, time = self.over_time, self.time[self.kept]
+        over_time, time = self.over_time, self.time[self.recorded]
         motion: Any = self.run.posed.subject.motion
         if motion is None or motion.kind != "hub":
             return None
         if base is None:
-            angle, rate = (over_time[key][self.kept][:, 0] for key in ("q", "qd"))
-            acceleration = self.run.trajectory.select(self.steps[self.kept]).qdd[:, 0]
+            angle, rate = (over_time[key][self.recorded][:, 0] for key in ("q", "qd"))
+            acceleration = self.run.trajectory.select(self.steps[self.recorded]).qdd[:, 0]
             fastest = 0.0 if self.run.traced else float(np.abs(self.run.flight.qd[:, 0]).max())
             return HubResult(angle, rate, acceleration, motion.torque(time), fastest=fastest)
         axis = motion.mount.R_HB[2]
         loads = [body.loads for body in bodies.values() if body.loads is not None]
         torque = loads[0].drive_torque if loads else None
         level = None if self.run.traced else level_of(motion)
-        on_ground = over_time["ground_force"][self.kept], over_time["ground_moment"][self.kept]
+        on_ground = over_time["ground_force"][self.recorded], over_time["ground_moment"][self.recorded]
         return HubResult(
             motion.angle(time), base.w_WB_B @ axis, base.alpha_WB_B @ axis, torque,
             level=level, imbalance=imbalance_of(motion, level, time, *on_ground),
@@ -219,8 +223,9 @@ class Histories:
 
     @property
     def residual(self) -> Floats | None:
-        """Half ranges (p, 3) m after the residual's start, of flexible bodies' points relative to their roots, of
-        others about the ground; None without one.
+        """Half ranges (p, 3) m after the residual's start, or None without one.
+
+        Those of flexible bodies' points are relative to their roots, those of others about the ground.
         """
         system, settings = self.run.posed.system, self.run.posed.settings
         if settings.residual_from is None:
@@ -233,15 +238,15 @@ class Histories:
 
     def sampled(self) -> dict[str, Any]:
         """Histories of points, coordinates, efforts and the ground's load at the response's times, by field."""
-        every = _during(self.over_time, self.kept)
-        if "energy" not in every:
-            return every
+        histories = _during(self.over_time, self.recorded)
+        if "energy" not in histories:
+            return histories
         names = "momentum", "angular_momentum", "energy"
-        kept, steps = ([values.pop(name) for name in names] for values in (every, dict(self.over_time)))
+        recorded, steps = ([values.pop(name) for name in names] for values in (histories, dict(self.over_time)))
         changes = (
             [] if self.run.traced else [_change(steps[0]), _change(steps[1]), _change(steps[2].sum(axis=1), steps[2])]
         )
-        return every | {"invariants": Invariants(*kept, *changes)}
+        return histories | {"invariants": Invariants(*recorded, *changes)}
 
 
 def response_of(
@@ -260,7 +265,7 @@ def response_of(
     posed, traced, entire = run.posed, run.traced, run.trajectory
     subject, system, settings = posed.subject, posed.system, posed.settings
     motion, read = subject.motion, Histories.from_run(run, name, known)
-    time = read.time[read.kept]
+    time = read.time[read.recorded]
     bodies = {body: read.body(body) for body in system.flexible}
     base = None if posed.motion is None else posed.motion.base(time)
     axes = None if traced or not isinstance(motion, Centrifuge) else axes_of(motion, time)
@@ -281,7 +286,7 @@ def response_of(
     flown = motion.flight if isinstance(motion, Centrifuge) else motion
     span = settings.start, settings.start + settings.duration
     felt_at_steps = None
-    if read.every < run.stride and settings.loads and not traced:
+    if read.spacing < run.stride and settings.loads and not traced:
         felt_at_steps = read.time[read.flown], read.over_time["acceleration"][read.flown]
     return Response(
         name=name,
@@ -296,7 +301,7 @@ def response_of(
         units=units_of(system),
         bodies=bodies,
         base=base,
-        loop=None if run.loop is None else run.loop.select_times(read.steps[read.kept]),
+        loop=None if run.loop is None else run.loop.select_times(read.steps[read.recorded]),
         hub=read.hub(base, bodies),
         axes=axes,
         assembly=assembly_of(system) if settings.loads and not traced else None,

@@ -59,7 +59,7 @@ class Run:
     @property
     def stride(self) -> int:
         """Number of steps of the flight in one step of the results."""
-        return 1 if self.posed.settings.step is not None else max(1, round(self.posed.kept / self.step))
+        return 1 if self.posed.settings.step is not None else max(1, round(self.posed.result_step / self.step))
 
     @property
     def reached_end(self) -> bool:
@@ -74,8 +74,12 @@ class Run:
     @property
     def in_flight(self) -> slice:
         """The steps of the flight; all where a machine's spin-up failed before it."""
-        before, count, _ = self.posed.counts(self.step)
-        return slice(before, before + count + 1) if len(self.trajectory.time) > before + 1 else slice(0, None)
+        steps_before, count, _ = self.posed.counts(self.step)
+        return (
+            slice(steps_before, steps_before + count + 1)
+            if len(self.trajectory.time) > steps_before + 1
+            else slice(0, None)
+        )
 
     @cached_property
     def flight(self) -> Trajectory:
@@ -86,8 +90,8 @@ class Run:
         """Indices of the steps of spin-up and spin-down, and of every `stride`-th of the flight."""
         steps, flight = np.arange(len(self.trajectory.time)), self.in_flight
         inside = steps[flight]
-        after = steps[flight.stop :] if flight.stop is not None else inside[:0]
-        return np.concatenate([steps[: flight.start], inside[::stride], after])
+        later_steps = steps[flight.stop :] if flight.stop is not None else inside[:0]
+        return np.concatenate([steps[: flight.start], inside[::stride], later_steps])
 
     def flight_slice(self, stride: int) -> slice:
         """Slice of the flight among the :meth:`recorded_steps`."""
@@ -113,12 +117,12 @@ class Run:
         In long runs of several bodies `enough` is the aim for deflections: small ones that commands or blows make ring
         would need many times the steps.
         """
-        count = sum(kind == DEFLECTION for _, kind in self._moving)
+        count = sum(kind == DEFLECTION for _, kind in self._moving_quantities)
         of_deflections = aim if count < 2 or len(self.flight.time) <= LONG else enough
-        return [of_deflections if kind == DEFLECTION else aim for _, kind in self._moving]
+        return [of_deflections if kind == DEFLECTION else aim for _, kind in self._moving_quantities]
 
     @property
-    def _moving(self) -> list[Quantity]:
+    def _moving_quantities(self) -> list[Quantity]:
         """Quantities of :attr:`displacements`: deflections of bodies, and places where joints move or shift."""
         deforming = [(name, DEFLECTION) for name in self.deforming]
         jointed = any(link.steps for link in self.posed.system.tree.links)
@@ -132,7 +136,7 @@ class Run:
         A rigid body without points off its root has three more. Displacements that are rounding are zero.
         """
         solution, histories = self.solution(1), list[Floats]()
-        for name, kind in self._moving:
+        for name, kind in self._moving_quantities:
             if kind == DEFLECTION:
                 body = self.posed.system.flexible[name]
                 bent = deflections(body, self.flight.q[:, self.posed.columns(name)])
@@ -161,13 +165,13 @@ class Run:
         Force and moment are zero where they are rounding. The stress is that at every section (t, s, 1), or a solid's
         (t, c).
         """
-        out, solution = list[Floats](), self.solution(stride)
+        histories, solution = list[Floats](), self.solution(stride)
         for name, state in solution.states(self.deforming)[1].items():
             body = self.posed.system.flexible[name]
             loads = loads_of(body, state, solution.trajectory.time)
             force, moment = held_loads(loads)
             sizes = np.abs(force).max() * body.length, np.abs(moment).max()
-            out += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
+            histories += [force * (sizes[0] > NOTHING * sizes[1]), moment * (sizes[1] > NOTHING * sizes[0])]
             sides = [loads.stress_tension, loads.stress_compression]
             if loads.von_mises is not None and np.isfinite(loads.von_mises).all():
                 sides.append(loads.von_mises)  # under torsion alone the normal stresses are rounding
@@ -175,13 +179,13 @@ class Run:
             if body.recovery is not None:
                 applied = loads_at(body, solution.trajectory.time)
                 stress = np.asarray(body.recovery.felt(causes_of(body, state.q, applied)))
-            out.append(stress)
-        return out
+            histories.append(stress)
+        return histories
 
     def _step_errors(self, errors: StepErrors) -> dict[Quantity, float]:
-        """Errors of the steps by quantity; root force and moment of a body have the larger of theirs."""
+        """Errors of the steps by quantity. Root force and moment of a body have the larger of their two errors."""
         by_step = dict.fromkeys([PLACE, *((name, DEFLECTION) for name in self.deforming)], errors.displacement)
-        by_step |= dict(zip(self._moving, errors.moved, strict=False))
+        by_step |= dict(zip(self._moving_quantities, errors.moved, strict=False))
         rigid = self.posed.system.flexible.keys() - self.deforming.keys()
         by_step |= dict.fromkeys([(name, load) for name in rigid for load in LOADS[:2]], errors.loads)
         for k, (name, body) in enumerate(self.deforming.items()):
@@ -214,12 +218,12 @@ class Run:
         tell(progress, say, 0.0)
         of_loads = [(name, load) for name in self.deforming for load in LOADS]
         rubbed = self._friction_errors(partial(tell, progress, "errors of the smooth law of friction"))
-        friction = dict(zip((*self._moving, *of_loads), rubbed, strict=False))
-        more: Any = {"peaks_by_step": dict(zip(of_loads, of_steps.peaks, strict=False)), "friction": friction}
-        more |= {"stride": judged.stride, "tolerance": settings.tolerance, "starting": self._starting}
-        more |= {"computed": computed if judged is self else None}
+        friction = dict(zip((*self._moving_quantities, *of_loads), rubbed, strict=False))
+        details: Any = {"peaks_by_step": dict(zip(of_loads, of_steps.peaks, strict=False)), "friction": friction}
+        details |= {"stride": judged.stride, "tolerance": settings.tolerance, "starting": self._starting}
+        details |= {"computed": computed if judged is self else None}
         by_runs = rerun if posed.system.controllers else None
-        stated, doubts = system_errors(judged.solution, by_runs, by_step, **more)
+        stated, doubts = system_errors(judged.solution, by_runs, by_step, **details)
         if not friction and posed.system.rubbing:
             stated = replace(stated, note="; ".join(filter(None, (stated.note, UNSMOOTHED))))
         if posed.system.controllers:
@@ -238,15 +242,15 @@ class Run:
         """
         if self.stride == 1:
             return self
-        rough = Run.by_steps(self.posed, self.posed.kept)
+        rough = Run.by_steps(self.posed, self.posed.result_step)
         return rough if rough.reached_end else self
 
     @property
     def _starting(self) -> Starting | None:
-        """Start of richer systems; None where all is in equilibrium with a motion that is prescribed."""
+        """Start of richer systems, or None where all is in equilibrium with a motion that is prescribed."""
         posed, begin = self.posed, self.posed.settings.begin
         jointed = len(posed.system.tree.unknowns) > sum(body.size for body in self.deforming.values())
-        if not jointed and (posed.before or begin.settled):
+        if not jointed and (posed.steps_before or begin.settled):
             return None
 
         def state(other: System) -> tuple[Floats, Floats]:
@@ -265,15 +269,17 @@ class Run:
         if not self.posed.system.rubbing:
             return []
         for factor, share in ((0.5, 2.0), (2.0, 1.0)):  # of the rate, and of the difference that it makes
-            other = Run.by_steps(replace(self.posed, slip=factor * self.posed.slip), self.step, progress)
-            if other.reached_end:
-                mine, others = ((*run.displacements, *run.loads(self.stride)) for run in (self, other))
-                return [share * difference(a, b, 1) for a, b in zip(others, mine, strict=True)]
+            comparison = Run.by_steps(replace(self.posed, slip=factor * self.posed.slip), self.step, progress)
+            if comparison.reached_end:
+                histories, other_histories = (
+                    (*run.displacements, *run.loads(self.stride)) for run in (self, comparison)
+                )
+                return [share * difference(a, b, 1) for a, b in zip(other_histories, histories, strict=True)]
         return []
 
     @cached_property
     def loop(self) -> Loop | None:
-        """Record of the controllers at the times of the run; None without controllers."""
+        """Record of the controllers at the times of the run, or None without controllers."""
         controllers, samples = self.posed.controllers, self.trajectory.samples
         if controllers is None or samples is None or not samples.has_begun:
             return None
@@ -290,11 +296,11 @@ class Run:
         if not any(isinstance(link.body, LinearBody) for link in system.tree.links):
             return None
         steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
-        q, qd, still = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])
-        if Point(system.tree, q[0], qd[0], still[0], self.inputs(system, steps[0])).minimal:
+        q, qd, zeros = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])
+        if Point(system.tree, q[0], qd[0], zeros[0], self.inputs(system, steps[0])).minimal:
             mass = masses(system.tree, q, qd, self.inputs(system, steps))
         else:  # by Euler parameters it is singular
-            states = ((q[k], qd[k], still[k], self.inputs(system, step)) for k, step in enumerate(steps))
+            states = ((q[k], qd[k], zeros[k], self.inputs(system, step)) for k, step in enumerate(steps))
             mass = np.array([Point(system.tree, *state).local.slopes()[3] for state in states])
         if positive_definite(mass):
             return None
@@ -302,15 +308,15 @@ class Run:
 
     @cached_property
     def event_warnings(self) -> tuple[str, ...]:
-        """Warning of a stop that the steps may miss; empty if there is none."""
+        """Warning of a stop that the steps may miss, or empty if there is none."""
         return missed_stop(self.posed.system, self.trajectory, lambda: self.all_inputs)
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """Warnings of stops, of springs that a ball turns over, and of friction that lets creep."""
         system, run = self.posed.system, self.trajectory
-        over = half_turn_warnings(system, run, lambda: self.all_inputs)
-        return self.event_warnings + over + creeping(system, run, lambda: self.all_inputs, self._inertia)
+        half_turns = half_turn_warnings(system, run, lambda: self.all_inputs)
+        return self.event_warnings + half_turns + creeping(system, run, lambda: self.all_inputs, self._inertia)
 
     def _inertia(self, name: str, step: int) -> float:
         """Inertia, kg or kg m², that an effort on a local coordinate accelerates at a step, the others being free."""
@@ -345,8 +351,8 @@ class Run:
         system, inertial = self.posed.system, self.posed.motion is None
         columns, bodies = dict[str, list[Floats]](), {name: list[Carried]() for name in system.flexible}
         for part in pieces(len(steps), system.tree.size):  # for memory: all frames of a part are held at once
-            at, inputs = self.trajectory.select(steps[part]), self.inputs(system, steps[part])
-            values, of_bodies = histories(system, at.q, at.qd, at.qdd, inputs, inertial=inertial)
+            state, inputs = self.trajectory.select(steps[part]), self.inputs(system, steps[part])
+            values, of_bodies = histories(system, state.q, state.qd, state.qdd, inputs, inertial=inertial)
             for key, value in values.items():
                 columns.setdefault(key, []).append(value)
             for name, of_body in of_bodies.items():
@@ -357,14 +363,15 @@ class Run:
 
 
 def _tip(body: Structure, columns: slice, y: Floats) -> Floats:
-    """Displacement (..., 3) m of the end of a body; components that are rounding, as under a torque alone, are zero."""
+    """Displacement (..., 3) m of the end of a body. Components that are rounding, as under a torque alone, are zero."""
     tip = np.asarray(body.tip(y[..., columns]))
     return np.where(np.abs(tip) > UNMOVED * body.length, tip, 0.0)
 
 
 def _moment(body: Structure, columns: slice, y: Floats) -> Floats:
-    """Root moment (..., 3) N m of a straight body by the inertia that balances the elastic forces K q; zero where it
-    does not bend.
+    """Root moment (..., 3) N m of a straight body, or zero where it does not bend.
+
+    It is the moment of the inertia that balances the elastic forces K q.
     """
     c = body.coefficients
     moment = np.asarray(y[..., columns] @ (c.f_al @ np.linalg.solve(c.mass, c.stiffness)).T)

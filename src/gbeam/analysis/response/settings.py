@@ -21,7 +21,7 @@ NO_LOADS = "no loads are computed, nor whether the material yields: the settings
 
 
 class Settings(TypedDict, total=False):
-    """Keywords of :class:`ResponseSettings`, as :func:`gbeam.simulate` takes them; quantities may be text."""
+    """Keywords of :class:`ResponseSettings`, as :func:`gbeam.simulate` takes them. Quantities may be text."""
 
     duration: Annotated[float | str, Quantity("time")]
     start: Annotated[float | str, Quantity("time")]
@@ -126,7 +126,7 @@ class ResponseSettings(Value):
 
     @property
     def not_estimated(self) -> str:
-        """Sentence about the errors that are not estimated; "" if all are."""
+        """Sentence about the errors that are not estimated, or "" if all are."""
         lacking = "shapes and models are not judged" if self.step is None else "no error is estimated"
         return "" if self.estimate else f"{lacking}: the settings say estimate = false"
 

@@ -35,11 +35,11 @@ def simulate(
 ) -> Response:
     """Compute the response of a beam in one environment, or of a system of bodies.
 
-    It starts in relative equilibrium with the base's motion at the start (a free hub at rest), and what floats
-    undeformed, unless ``initial`` of the settings says otherwise: ``"undeformed"``, ``"relief"``, or an
-    :class:`Initial` state. A machine's run covers its whole motion on the flight's clock: spin-up comes before `start`,
-    and spin-down after the duration, in whole steps of the results' grid. The step is chosen, and error and peaks are,
-    for the flight's times.
+    It starts in relative equilibrium with the base's motion at the start (a free hub at rest). What floats starts
+    undeformed. ``initial`` of the settings may say otherwise: ``"undeformed"``, ``"relief"``, or an :class:`Initial`
+    state. A machine's run covers its whole motion on the flight's clock: spin-up comes before `start`, and spin-down
+    after the duration, in whole steps of the results' grid. The step, the error and the peaks are those of the flight's
+    times.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def simulate(
         if settings.step is None:
             raise InputError("step", "is automatic, and a traced run has no numbers to choose it by", "give a step, s")
         posed = pose(subject, settings, settings.duration / max(1, round(settings.duration / settings.step)))
-        run, errors = Run(posed.integrated(posed.kept, posed.commands), posed.kept, posed), StepErrors()
+        run, errors = Run(posed.integrated(posed.result_step, posed.commands), posed.result_step, posed), StepErrors()
     else:
         run, errors = _answered(subject, settings, progress)
     return response_of(run, errors, name, progress)
@@ -105,13 +105,13 @@ def _answered(subject: Subject, settings: ResponseSettings, progress: Progress) 
     return run, errors
 
 
-def _run(posed: Posed, progress: Progress, step: float, what: str) -> Run:
-    """Run a problem by steps of a length, s, telling its progress as `what`."""
-    return Run.by_steps(posed, step, partial(tell, progress, what))
+def _run(posed: Posed, progress: Progress, step: float, words: str) -> Run:
+    """Run a problem by steps of a length, s, telling its progress as `words`."""
+    return Run.by_steps(posed, step, partial(tell, progress, words))
 
 
 def settings_of(settings: ResponseSettings | None, options: Settings) -> ResponseSettings:
-    """The settings given as an object, or by keywords; InputError if both or neither are given."""
+    """Return the settings given as an object, or by keywords. An InputError says that both or neither are given."""
     for name in options:
         choice("keyword", name, Settings.__annotations__)
     if settings is not None:

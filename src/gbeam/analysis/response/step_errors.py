@@ -64,7 +64,7 @@ class Stepped(Protocol):
         ...
 
     def aims(self, aim: float, enough: float) -> Sequence[float]:
-        """Errors of each history of :attr:`displacements` at which automatic steps aim; `enough` is the largest."""
+        """Errors of each history of :attr:`displacements` at which automatic steps aim. `enough` is the largest."""
         ...
 
     def loads(self, stride: int) -> Sequence[Floats]:
@@ -80,15 +80,15 @@ def difference(coarse: Floats, fine: Floats, ratio: int) -> float:
     return float(apart / size) if size > 0 else 0.0
 
 
-def observed_order(before: float, now: float, ratios: tuple[int, int], highest: float) -> float:
+def observed_order(coarse: float, fine: float, ratios: tuple[int, int], highest: float) -> float:
     """Order p of three runs, steps 1, 1/r₁, 1/(r₁ r₂): errors C hᵖ differ as (r₁ᵖ − 1)/(1 − r₂⁻ᵖ)."""
     first, second = ratios
 
     def lack(p: float) -> float:
         """Observed difference before the last one, less the difference that an order p implies. It falls with p."""
-        return before - now * (first**p - 1) / (1 - second**-p)
+        return coarse - fine * (first**p - 1) / (1 - second**-p)
 
-    if not (math.isfinite(before) and math.isfinite(now)) or lack(LOWEST_ORDER) <= 0:
+    if not (math.isfinite(coarse) and math.isfinite(fine)) or lack(LOWEST_ORDER) <= 0:
         return LOWEST_ORDER
     if lack(highest) >= 0:
         return highest
@@ -142,7 +142,7 @@ class Estimate:
     def from_runs(runs: Sequence[Stepped], order: int) -> Estimate:
         """Estimate the errors of the last of several runs with falling steps, by a scheme of an order."""
         pairs = [(ratio(a, b), a.displacements, b.displacements) for a, b in pairwise(runs)]
-        differences = [[difference(a, b, jump) for a, b in zip(*both, strict=True)] for jump, *both in pairs]
+        differences = [[difference(a, b, jump) for a, b in zip(*histories, strict=True)] for jump, *histories in pairs]
         peaks = max(
             (_relative_difference(a, b) for a, b in zip(runs[-2].peaks, runs[-1].peaks, strict=True)), default=0.0
         )
@@ -150,8 +150,8 @@ class Estimate:
         moved = tuple(remaining_error(runs, of_history, highest) for of_history in zip(*differences, strict=True))
         return Estimate(
             moved,
-            peaks * share(runs, [each[0] for each in differences], order),
-            moved if runs[-1].bends else tuple(each / (jump**highest - 1) for each in differences[-1]),
+            peaks * share(runs, [entry[0] for entry in differences], order),
+            moved if runs[-1].bends else tuple(entry / (jump**highest - 1) for entry in differences[-1]),
             peaks / (jump**order - 1),
         )
 
@@ -162,30 +162,33 @@ def _relative_difference(coarse: Floats, fine: Floats) -> float:
 
 
 def estimate_step_errors(runs: Sequence[Stepped], order: int) -> StepErrors:
-    """Estimate the errors of the last run: of displacements, of the roots' loads and of stress; NaN if not known."""
+    """Estimate the errors of the last run: of displacements, of the roots' loads and of stress, or NaN if not known."""
     moved = Estimate.from_runs(runs, order).displacements
-    known = StepErrors(max(moved, default=0.0), moved=moved)
+    errors_of_moved = StepErrors(max(moved, default=0.0), moved=moved)
     if not all(run.reached_end for run in runs[-2:]):
-        return known
+        return errors_of_moved
     runs, differences, of_peaks = runs if runs[0].reached_end else runs[-2:], [], []
     for coarse, fine in pairwise(runs):
         stride = max(1, (len(coarse.flight.time) - 1) // _SAMPLES)
-        time, both = coarse.flight.time[::stride], (coarse.loads(stride), fine.loads(stride * ratio(coarse, fine)))
-        differences.append([difference(a, b, 1) for a, b in zip(*both, strict=True)])
-        of_peaks.append([_difference_of_peaks(time, a, b) for a, b in zip(*both, strict=True)])
+        time, loads_of_both = (
+            coarse.flight.time[::stride],
+            (coarse.loads(stride), fine.loads(stride * ratio(coarse, fine))),
+        )
+        differences.append([difference(a, b, 1) for a, b in zip(*loads_of_both, strict=True)])
+        of_peaks.append([_difference_of_peaks(time, a, b) for a, b in zip(*loads_of_both, strict=True)])
     errors = [remaining_error(runs, of_history, 4 / order) for of_history in zip(*differences, strict=True)]
     if not errors:
-        return known
+        return errors_of_moved
     if len(runs) > 2:  # peaks may agree by chance: as much is left as the order says of the runs before
         times = ratio(*runs[:2]) ** order
         of_peaks[-1] = [max(now, before / times) for before, now in zip(*of_peaks[-2:], strict=True)]
-    peaks = tuple(remaining_error(runs, each, 4 / order) for each in zip(*of_peaks, strict=True))
+    peaks = tuple(remaining_error(runs, quantity, 4 / order) for quantity in zip(*of_peaks, strict=True))
     # Force, moment and stress of each body in turn.
     loads, stress = (
         max(errors[::3] + errors[1::3]),
-        max((each for each in errors[2::3] if not math.isnan(each)), default=math.nan),
+        max((quantity for quantity in errors[2::3] if not math.isnan(quantity)), default=math.nan),
     )
-    return replace(known, loads=loads, stress=stress, each=tuple(errors), peaks=peaks)
+    return replace(errors_of_moved, loads=loads, stress=stress, each=tuple(errors), peaks=peaks)
 
 
 def _difference_of_peaks(time: Floats, coarse: Floats, fine: Floats) -> float:

@@ -1,4 +1,7 @@
-"""The scheme and the step, which is divided until the error, estimated from several runs, is within the tolerance."""
+"""The scheme and its step, which is divided until the error is within the tolerance.
+
+The error is estimated from several runs.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,7 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
     takes = tuple(inspect.signature(scheme).parameters)
     for name in settings.parameters:
         if name not in takes:
-            owners = [owner for owner, each in SCHEMES.items() if name in inspect.signature(each).parameters]
+            owners = [owner for owner, candidate in SCHEMES.items() if name in inspect.signature(candidate).parameters]
             fix = f'give integrator = "{owners[0]}" with it' if owners else "leave it out: it has no parameters"
             if takes:
                 fix = advise(name, takes, listed="it takes")
@@ -52,14 +55,14 @@ def scheme_of(settings: ResponseSettings) -> Scheme:
 
 
 def steps_to_try(
-    step: float, most: int, corners: Callable[[float], Floats], settings: ResponseSettings
+    step: float, limit: int, corners: Callable[[float], Floats], settings: ResponseSettings
 ) -> list[tuple[float, int]]:
     """Return the steps of the results to try, s, each with the most steps of a run.
 
     Where `step` asks for many steps, fewer ones are tried first, unless they could miss a pulse: they are enough for
     motions that hardly vibrate. `corners` returns the times, s, that steps of a length should not pass unseen.
     """
-    tries = [(step, most)]
+    tries = [(step, limit)]
     if settings.step is None and step < settings.duration / MANY:
         for count in FEW[::-1]:
             bends = corners(settings.duration / count)
@@ -84,7 +87,7 @@ def even_steps(largest: float, corners: Floats, settings: ResponseSettings) -> i
 
 
 def run_plan(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErrors]:
-    """Compute the runs that a plan asks for, one after the other; return the run that counts, and its errors."""
+    """Compute the runs that a plan asks for, one after the other, and return the run that counts with its errors."""
     try:
         wanted = next(plan)
         while True:
@@ -94,15 +97,15 @@ def run_plan(plan: Plan[R], run: Callable[[float, str], R]) -> tuple[R, StepErro
         return chosen, errors
 
 
-def plan_runs(settings: ResponseSettings, step: float, most: int = MAX_STEPS) -> Plan[R]:
+def plan_runs(settings: ResponseSettings, step: float, limit: int = MAX_STEPS) -> Plan[R]:
     """Plan the runs that settings ask for, from the `step` of the results, s.
 
-    If the step is automatic, the steps become ever finer, `most` in a run. Otherwise the runs have that step and, for
+    If the step is automatic, the steps become ever finer, `limit` in a run. Otherwise the runs have that step and, for
     an estimate, two longer ones.
     """
     order = scheme_of(settings).order
     if settings.step is None:
-        return (yield from plan_refinement(step, order, settings, most))
+        return (yield from plan_refinement(step, order, settings, limit))
     if settings.estimate:
         return (yield from plan_check(step, order))
     return (yield from plan_one_run(step, StepErrors()))
@@ -126,7 +129,7 @@ def plan_refinement(coarse: float, order: int, settings: ResponseSettings, limit
     """Plan runs with ever finer steps, from twice the results' step, until the errors are within their aims.
 
     Displacements and peaks have the aims of the settings. The aim of the root's loads is a third of the tolerance, as
-    far as LOADS_STEPS reach it; it is the aim of all where the results have as many steps as `limit`.
+    far as LOADS_STEPS reach it. Where the results have as many steps as `limit`, all have this aim.
     """
     aims, third = (settings.aim, settings.aim_of_peaks), settings.tolerance / 3
     if round(settings.duration / coarse) == limit:
@@ -137,23 +140,23 @@ def plan_refinement(coarse: float, order: int, settings: ResponseSettings, limit
 
     runs = [(yield 2 * coarse, "integrating"), (yield refinement(coarse))]
     while True:
-        left, promised = _remaining_errors(runs[-3:], order, aims, third)
-        both, new = runs[-2].reached_end and runs[-1].reached_end, runs[-1]
-        if both and promised <= 1 and (more := _check_needed(runs, left)):
-            checked = yield more, f"checking with {1e3 * more:.3g} ms"
+        remaining, promised = _remaining_errors(runs[-3:], order, aims, third)
+        both_ended, last_run = runs[-2].reached_end and runs[-1].reached_end, runs[-1]
+        if both_ended and promised <= 1 and (check_step := _check_needed(runs, remaining)):
+            checked = yield check_step, f"checking with {1e3 * check_step:.3g} ms"
             runs = sorted([*runs, checked], key=lambda run: -run.step)
-            left, _ = _remaining_errors(runs[-3:], order, aims, third)
-        excess, most = promised, limit
-        if both and left <= 1 and not new.event_warnings and not (new.bends and len(runs) < 3):
+            remaining, _ = _remaining_errors(runs[-3:], order, aims, third)
+        excess, step_limit = promised, limit
+        if both_ended and remaining <= 1 and not last_run.event_warnings and not (last_run.bends and len(runs) < 3):
             errors = estimate_step_errors(runs[-3:], order)
-            excess, most = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
+            excess, step_limit = 3 * errors.loads / settings.tolerance, min(limit, LOADS_STEPS)
             if not excess > 1:  # errors of loads that are NaN are not followed
-                return new, errors
-        finer = min(finer_by(excess, order), BENT if new.bends else JUMPS[-1])
-        stuck = not (runs[-2].reached_end or new.reached_end) and (new.flight.stopped or len(runs) > 3)
-        if stuck or settings.duration / new.step * finer > most:
+                return last_run, errors
+        finer = min(finer_by(excess, order), BENT if last_run.bends else JUMPS[-1])
+        stuck = not (runs[-2].reached_end or last_run.reached_end) and (last_run.flight.stopped or len(runs) > 3)
+        if stuck or settings.duration / last_run.step * finer > step_limit:
             break
-        runs.append((yield refinement(new.step / finer)))
+        runs.append((yield refinement(last_run.step / finer)))
     return runs[-1], estimate_step_errors(runs[-3:], order)
 
 
@@ -176,24 +179,24 @@ def _remaining_errors(
     return excess(error.displacements, error.peaks), excess(error.promised_displacements, error.promised_peaks)
 
 
-def _check_needed(runs: Sequence[Stepped], left: float) -> float | None:
-    """Step, s, of a cheaper run that checks whether errors fall by the order; None if no check is needed.
+def _check_needed(runs: Sequence[Stepped], remaining: float) -> float | None:
+    """Step, s, of a cheaper run that checks whether errors fall by the order, or None if no check is needed.
 
     After a large jump of the step unresolved modes may make the error look too small.
     """
-    jump, new = ratio(*runs[-2:]), runs[-1]
-    if new.bends or (left <= 1 and jump <= 4):
+    jump, last_run = ratio(*runs[-2:]), runs[-1]
+    if last_run.bends or (remaining <= 1 and jump <= 4):
         return None
     if jump > 3:
-        return (4 if jump > 6 else jump // 2) * new.step
-    return 4 * new.step if len(runs) == 2 else None
+        return (4 if jump > 6 else jump // 2) * last_run.step
+    return 4 * last_run.step if len(runs) == 2 else None
 
 
 def steps_beyond(motion: Motion, settings: ResponseSettings, step: float) -> tuple[int, int]:
     """Number of steps of the results in a machine's spin-up and spin-down."""
-    beyond = motion.beyond(settings.start, settings.start + settings.duration)
-    if is_traced(*beyond):
+    spin_times = motion.beyond(settings.start, settings.start + settings.duration)
+    if is_traced(*spin_times):
         fix = 'give spin_up and spin_down, or start = "idle"'
         raise InputError("spin_up", "is found from the load, and JAX traces the machine", fix)
-    before, after = (math.ceil(float(time) / step - 1e-6) for time in beyond)
+    before, after = (math.ceil(float(time) / step - 1e-6) for time in spin_times)
     return before, after

@@ -31,7 +31,7 @@ from gbeam.results.errors import PARTS, ErrorEstimate, FrequencyErrors
 from gbeam.results.modal import Campbell, Crossing, Unstable
 
 NEARNESS = 0.2  # of a MAC: modes that are alike are told apart by their frequencies
-BESIDE = 1e-3  # of a critical speed: so near to it the equilibrium is looked at
+MARGIN = 1e-3  # of a critical speed: so near to it the equilibrium is looked at
 ENDS = 14  # halvings of a step in which a stretch of speed ends
 CONFIDENT = 0.9  # MAC: a mode less like itself from one speed to the next is looked at in between
 SURE = 0.95  # of a critical speed: nearer, a frequency goes to zero and has no relative error
@@ -50,12 +50,12 @@ class _Speed(NamedTuple):
     modes: Complex
     subject: Subject
 
-    def direction(self, which: Any) -> tuple[str, ...]:
+    def direction(self, index: Any) -> tuple[str, ...]:
         """Directions in which the modes chosen by an index move most."""
-        return self.subject.directions(self.state, self.modes[:, which])
+        return self.subject.directions(self.state, self.modes[:, index])
 
 
-def _alike(before: _Speed, after: _Speed) -> tuple[Floats, Floats]:
+def _likeness(before: _Speed, after: _Speed) -> tuple[Floats, Floats]:
     """MACs (k, l) of modes at two speeds, and scores of the pairs: the MACs, less a penalty for frequencies that differ
     by more than the speeds.
 
@@ -72,7 +72,7 @@ def _alike(before: _Speed, after: _Speed) -> tuple[Floats, Floats]:
 
 def _paired(before: _Speed, after: _Speed) -> tuple[np.ndarray, Floats]:
     """For each mode of `before` the index of the most similar one of `after`, or −1 if none is left, and their MAC."""
-    macs, scores = _alike(before, after)
+    macs, scores = _likeness(before, after)
     match, value = matched(scores)[0], np.full(len(scores), np.nan)
     value[match >= 0] = macs[match >= 0, match[match >= 0]]
     return match, value
@@ -87,13 +87,13 @@ def _fill(modes_at: Callable[[float], _Speed], low: _Speed, high: _Speed, count:
     return [*_fill(modes_at, low, middle, count, depth - 1), middle, *_fill(modes_at, middle, high, count, depth - 1)]
 
 
-def _tracked(speeds: Sequence[_Speed], kept: int) -> tuple[Floats, list[np.ndarray]]:
+def _tracked(speeds: Sequence[_Speed], followed: int) -> tuple[Floats, list[np.ndarray]]:
     """Follow the first modes from speed to speed: frequency, damping ratio and MAC, (3, v, k), and their numbers at
     each speed, −1 where none resembles them.
 
     A mode that has ceased to oscillate goes on with one that begins to.
     """
-    values, track = np.full((3, len(speeds), kept), np.nan), np.arange(kept)
+    values, track = np.full((3, len(speeds), followed), np.nan), np.arange(followed)
     values[2, 0], index = 1.0, [track]
     for before, after in pairwise(speeds):
         match, likeness = _paired(before, after)
@@ -188,7 +188,7 @@ def campbell(
         raise InputError("to", f"is {end:g} rad/s, from {start:g} rad/s", "give a range of speeds that ascends from 0")
     if modes < 1:
         raise InputError("modes", f"is {modes}", "give 1 or more")
-    lost = first_lost_speed(subject, replace(path, held=True), end, progress)  # which knows the states
+    loss = first_lost_speed(subject, replace(path, held=True), end, progress)  # which knows the states
 
     @cache
     def point_at(rate: float) -> SteadySystem:
@@ -196,38 +196,38 @@ def campbell(
 
     @cache
     def growth_at(rate: float) -> float:
-        """Rate of growth, 1/s; NaN without an equilibrium, zero of one that is stable."""
+        """Rate of growth, 1/s, or NaN without an equilibrium, zero of one that is stable."""
         try:
             return float(point_at(rate).moving.growing.real.max(initial=0.0))
         except (ComputationError, np.linalg.LinAlgError):
             return math.nan
 
-    decided = lost.outcome == "done"
-    limit = lost.value if decided else lost.searched_to
+    decided = loss.outcome == "done"
+    limit = loss.value if decided else loss.searched_to
     critical = limit if limit is not None and limit > start else math.inf
-    beyond = grid[grid > critical]
-    path.prepare(system, beyond.tolist())
+    faster = grid[grid > critical]
+    path.prepare(system, faster.tolist())
     # Short of a critical speed, where a frequency is zero, unless a speed beyond it is known and stable.
-    ends = len(beyond) > 0 and (not decided or all(growth_at(rate) != 0.0 for rate in beyond.tolist()))
+    ends = len(faster) > 0 and (not decided or all(growth_at(rate) != 0.0 for rate in faster.tolist()))
     last = start + (critical - start) * (1 - 1e-6) if ends else end
 
     @cache  # crossings ask again for speeds beside them
     def modes_at(rate: float) -> _Speed:
         tell(progress, f"frequencies at {rate:.4g} rad/s", (rate - start) / (end - start))
         state = point_at(rate)
-        moving = state.moving.oscillating(slice(subject.resolved))
-        damping, modes = -moving.value.real / moving.frequency, moving.modes
-        frequency = moving.frequency / (2 * np.pi)
+        vibrations = state.moving.oscillating(slice(subject.resolved))
+        damping, modes = -vibrations.value.real / vibrations.frequency, vibrations.modes
+        frequency = vibrations.frequency / (2 * np.pi)
         return _Speed(rate, frequency, damping, modes.T, state.linear.mass, state, modes, subject)
 
     rates = start + (grid - start) * (last - start) / (end - start)
     if critical < last:
-        rates = np.sort(np.append(rates, critical * (1 + BESIDE * np.array([-1.0, 1.0]))))
+        rates = np.sort(np.append(rates, critical * (1 + MARGIN * np.array([-1.0, 1.0]))))
     path.prepare(system, rates.tolist())
     coarse = [modes_at(rate) for rate in rates.tolist() if not math.isnan(growth_at(rate))]
     kept = min(modes, len(coarse[0].frequency))
     if not kept:
-        held = "; ".join(lost.warnings) or "ask `gbeam modes` what holds or damps it"
+        held = "; ".join(loss.warnings) or "ask `gbeam modes` what holds or damps it"
         raise InputError("modes", f"have nothing to follow: nothing oscillates at {start:g} rad/s", held)
     followed = coarse[:1]
     for low, high in pairwise(coarse):
@@ -254,17 +254,17 @@ def campbell(
             for crossing, mode, slope in met
         ]
     fast = subject.unstiffened and subject.base(point_at(last))  # where the missing stiffness is largest
-    doubts = subject.doubts(name, fast or None) if subject.body else lost.warnings
+    doubts = subject.doubts(name, fast or None) if subject.body else loss.warnings
     warnings = doubts + (() if errors is None else doubtful(errors))
     warnings += doubtful_crossings(crossings, "" if errors is None else errors.theory)
     added = len(coarse[-1].frequency) - len(coarse[0].frequency)
     if added > 0:
         begun = "a motion begins" if added == 1 else f"{added} motions begin"
         warnings += (f"{begun} to oscillate as it turns faster, and is not followed from {start:g} rad/s: begin later",)
-    if lost.message:
-        warnings += (lost.message,)
-    if lost.value is not None:
-        warnings += tuple(warning for warning in lost.warnings if warning not in warnings)
+    if loss.message:
+        warnings += (loss.message,)
+    if loss.value is not None:
+        warnings += tuple(warning for warning in loss.warnings if warning not in warnings)
     return Campbell(
         motion=name,
         model=subject.kind,
@@ -275,7 +275,7 @@ def campbell(
         direction=coarse[0].direction(slice(kept)),
         orders=tuple(orders),
         crossings=tuple(sorted(crossings, key=lambda crossing: crossing.speed)),
-        critical=lost if lost.value is not None else None,
+        critical=loss if loss.value is not None else None,
         unstable=unstable,
         **_framed(followed, index),
         errors=errors,
@@ -320,12 +320,12 @@ def _framed(speeds: Sequence[_Speed], index: Sequence[np.ndarray]) -> dict[str, 
             modes, frequency, whirl = speed.modes[:, track], speed.frequency[track], speed.state.whirl
             values = frequency if whirl is None else whirl.in_ground(frequency, modes)
             row[:] = np.where(track >= 0, values, np.nan)
-    known = np.isfinite(in_ground).any()
-    return {"frame": "turning", "ground_frequency": in_ground if known else np.zeros((0, 0))}
+    is_known = np.isfinite(in_ground).any()
+    return {"frame": "turning", "ground_frequency": in_ground if is_known else np.zeros((0, 0))}
 
 
 def _errors(richer: RicherModels, point: Any, speed: _Speed, track: np.ndarray) -> FrequencyErrors:
-    """Errors of the followed modes at one speed, by their indices `track`; NaN if they no longer oscillate."""
+    """Errors of the followed modes at one speed, by their indices `track`, or NaN if they no longer oscillate."""
     oscillating = track >= 0
     chosen = track[oscillating]
     value = 2j * np.pi * speed.frequency[chosen]
@@ -357,7 +357,7 @@ def _crossings(
         def difference(rate: float, mode: _Speed = mode) -> float:
             """Frequency of the mode most like this one, minus that of the order, Hz."""
             speed = modes_at(rate)
-            like = int(_alike(mode, speed)[1].argmax())
+            like = int(_likeness(mode, speed)[1].argmax())
             return float(speed.frequency[like] - order * rate / (2 * np.pi))
 
         ends = difference(rates[i]), difference(rates[i + 1])
@@ -366,7 +366,7 @@ def _crossings(
         else:  # the mode veers within the step: interpolate the curve
             rate = rates[i] - gap[i] * (rates[i + 1] - rates[i]) / (gap[i + 1] - gap[i])
         speed = modes_at(rate)
-        like = int(_alike(mode, speed)[1].argmax())
+        like = int(_likeness(mode, speed)[1].argmax())
         crossing = Crossing(track, order, float(rate), order * float(rate) / (2 * np.pi), speed.direction([like])[0])
         slope = 2 * np.pi * (frequency[i + 1] - frequency[i]) / (rates[i + 1] - rates[i])
         crossings.append((crossing, speed.coordinates[like], float(slope)))
@@ -389,16 +389,16 @@ def crossing_errors(
 
     first = gaps(speed)
 
-    def root(which: int) -> float:
+    def root(index: int) -> float:
         """Speed of the crossing in a model: a Newton step with the judged slope and, if long, a secant step."""
-        newton = speed - first[which] / (slope - order)
+        newton = speed - first[index] / (slope - order)
         if not 0 < newton < math.inf or abs(newton / speed - 1) < LIMIT:
             return newton if newton > 0 else math.inf
         try:
-            second = gaps(newton)[which]
+            second = gaps(newton)[index]
         except ComputationError:
             return math.inf
-        secant = newton - second * (newton - speed) / (second - first[which])
+        secant = newton - second * (newton - speed) / (second - first[index])
         return secant if 0 < secant < math.inf else math.inf
 
     exact = root(1)
@@ -412,18 +412,18 @@ def crossing_errors(
 
 def doubtful_crossings(crossings: Sequence[Crossing], theory: str) -> tuple[str, ...]:
     """Warn of crossings whose speeds are wrong by more than 1 %."""
-    above = [crossing for crossing in crossings if crossing.errors.total > LIMIT]
-    if not above:
+    doubtful = [crossing for crossing in crossings if crossing.errors.total > LIMIT]
+    if not doubtful:
         return ()
-    worst = max(above, key=lambda crossing: crossing.errors.total)
-    where = f"mode {worst.track + 1} meets {worst.order} × speed"
-    if len(above) > 1:
-        where += f", and {len(above) - 1} more where modes meet multiples,"
-    if math.isinf(worst.errors.total):
-        whose = reference_model(worst.errors)
-        return (f"the speed at which {where} is {'not' if len(above) == 1 else 'in part not'} one of {whose}'s",)
-    size = percent(worst.errors.total) + (" at most" if len(above) > 1 else "")
-    return (error_warning(f"the speed at which {where}", size, worst.errors, theory),)
+    largest = max(doubtful, key=lambda crossing: crossing.errors.total)
+    where = f"mode {largest.track + 1} meets {largest.order} × speed"
+    if len(doubtful) > 1:
+        where += f", and {len(doubtful) - 1} more where modes meet multiples,"
+    if math.isinf(largest.errors.total):
+        whose = reference_model(largest.errors)
+        return (f"the speed at which {where} is {'not' if len(doubtful) == 1 else 'in part not'} one of {whose}'s",)
+    size = percent(largest.errors.total) + (" at most" if len(doubtful) > 1 else "")
+    return (error_warning(f"the speed at which {where}", size, largest.errors, theory),)
 
 
 _SAMPLES = 501

@@ -45,17 +45,21 @@ def doubtful(errors: FrequencyErrors) -> tuple[str, ...]:
     warnings = []
     if errors.growth:
         warnings.append(f"not stable with more shapes: a motion grows with {errors.growth:.4g} 1/s; {MORE_SHAPES}")
-    above = np.flatnonzero(errors.total > LIMIT)
-    if above.size:
-        worst = int(above[errors.total[above].argmax()])
-        modes = f"mode {above[0] + 1}" if len(above) == 1 else f"{len(above)} modes, from mode {above[0] + 1} on,"
-        parts = ErrorEstimate(**{part: float(getattr(errors, part)[worst]) for part in PARTS})
-        size = percent(float(errors.total[worst])) + (" at most" if len(above) > 1 else "")
+    above_limit = np.flatnonzero(errors.total > LIMIT)
+    if above_limit.size:
+        largest = int(above_limit[errors.total[above_limit].argmax()])
+        modes = (
+            f"mode {above_limit[0] + 1}"
+            if len(above_limit) == 1
+            else f"{len(above_limit)} modes, from mode {above_limit[0] + 1} on,"
+        )
+        parts = ErrorEstimate(**{part: float(getattr(errors, part)[largest]) for part in PARTS})
+        size = percent(float(errors.total[largest])) + (" at most" if len(above_limit) > 1 else "")
         warnings.append(error_warning(f"the frequency of {modes}", size, parts, errors.theory))
     if errors.unseen:
         named = ", ".join(f"{frequency:.4g}" for frequency in errors.unseen[:SHOWN])
-        others = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
-        warnings.append(f"there are modes of bending and twist at {named} Hz{others} besides: {TORSION}")
+        further = f" and {len(errors.unseen) - SHOWN} more" if len(errors.unseen) > SHOWN else ""
+        warnings.append(f"there are modes of bending and twist at {named} Hz{further} besides: {TORSION}")
     return tuple(warnings)
 
 
@@ -113,7 +117,7 @@ class RicherModels:
         )
 
     def model_share(self, share: Any) -> Any:
-        """Return a share of an error that is the model's; NaN where no body has another model."""
+        """Return a share of an error that is the model's, or NaN where no body has another model."""
         return np.nan * share if self.one_model else share
 
     def references(
@@ -121,29 +125,30 @@ class RicherModels:
     ) -> tuple[Floats, Floats, Floats, float]:
         """Circular frequencies (k,) of the modes most like these (k, n) in three other models.
 
-        The models are the same with more shapes, the exact one, and one with coarser meshes; NaN if one is lacking or
-        has no equilibrium. Last comes the rate, 1/s, at which a motion grows in the exact one; zero where none does.
+        The models are the same with more shapes, the exact one, and one with coarser meshes, or NaN if one is lacking
+        or has no equilibrium. Last comes the rate, 1/s, at which a motion grows in the exact one, or zero where none
+        does.
         """
         growth = 0.0
 
         def reference(richer: More | None) -> Floats:
-            """Frequencies in one of the models; NaN if it is lacking or has no equilibrium."""
+            """Frequencies in one of the models, or NaN if it is lacking or has no equilibrium."""
             nonlocal growth
             unknown = np.full(len(coordinates), np.nan)
             if richer is None:
                 return unknown
             try:
-                other = transfer(state, richer.model)
-                moving = other.vibrations(gyroscopic=gyroscopic)
+                richer_state = transfer(state, richer.model)
+                vibrations = richer_state.vibrations(gyroscopic=gyroscopic)
             except (ComputationError, np.linalg.LinAlgError):
                 return unknown
             if richer is self.exact:
-                growth = float(moving.growing.real.max(initial=0.0))
-            rate, modes = moving.frequency, moving.modes[other.first :].T
+                growth = float(vibrations.growing.real.max(initial=0.0))
+            rate, modes = vibrations.frequency, vibrations.modes[richer_state.first :].T
             if not rate.size:
                 return unknown
-            lifted = among([richer.renamed.get(name, name) for name in state.names], other.names, coordinates)
-            mass = other.linear.mass[state.first :, state.first :]
+            lifted = among([richer.renamed.get(name, name) for name in state.names], richer_state.names, coordinates)
+            mass = richer_state.linear.mass[state.first :, state.first :]
             return np.asarray(rate[mac(lifted, modes, mass).argmax(axis=1)])
 
         exact = reference(self.exact)
@@ -165,7 +170,7 @@ class RicherModels:
         return [with_beams(system, dict(zip(self.theories, beams, strict=True))) for beams in kinds], plates
 
     def theory_errors(self, point: Any, coordinates: Complex, *, gyroscopic: bool = True) -> ByTheory:
-        """Errors of the frequencies of modes (k, n) by the theory of slender beams; NaN if they are not known."""
+        """Errors of the frequencies of modes (k, n) by the theory of slender beams, or NaN if they are not known."""
         k = len(coordinates)
         if not self.theories:
             return ByTheory(np.full(k, np.nan), "", ())
@@ -176,7 +181,7 @@ class RicherModels:
         except (ComputationError, np.linalg.LinAlgError):
             return ByTheory(np.full(k, np.nan), "", ())
         # Frequencies, and modes in coordinates of each model.
-        (slender, shape), (thick, deep), (plated, flat) = by_model
+        (slender, shape), (thick, deep), (plated, plate_shape) = by_model
         of_slender, of_thick = states[:2]
         mass = of_thick.linear.mass[point.first :, point.first :]
         mode = among(point.names, of_thick.names, coordinates)
@@ -184,7 +189,7 @@ class RicherModels:
         chosen = mac(mode, shape, mass).argmax(axis=1)
         lower = slice(None, chosen.max(initial=-1) + 1)
         like = matched(mac(shape[lower], deep, mass))[0]
-        like_plated = matched(mac(shape[lower], flat, mass))[0]
+        like_plated = matched(mac(shape[lower], plate_shape, mass))[0]
         pairs = (thick, like), (plated, like_plated)
         shares = np.max([np.abs(slender[chosen] / rate[match[chosen]] - 1) for rate, match in pairs], axis=0)
         # Modes of thick beams that no slender one resembles, and that bend enough to be excited.
@@ -193,8 +198,8 @@ class RicherModels:
         energy = np.einsum("ki,ij,kj->k", bending.conj(), mass[np.ix_(shared, shared)], bending).real
         unmatched = np.setdiff1d(np.arange(len(thick)), like)
         unseen = [j for j in unmatched if energy[j] > BENT and thick[j] < slender[lower].max(initial=0.0)]
-        worst = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
-        words = self.in_words(of_slender, of_thick, mode[worst], slender[chosen[worst]], plates)
+        largest = np.zeros(0, dtype=int) if not k else np.array([np.nan_to_num(shares).argmax()])
+        words = self.in_words(of_slender, of_thick, mode[largest], slender[chosen[largest]], plates)
         return ByTheory(shares, words, tuple(float(thick[j]) / (2 * np.pi) for j in unseen))
 
     def in_words(
@@ -234,13 +239,15 @@ def among(names: Sequence[str], others: Sequence[str], modes: Complex) -> Comple
 
 def pole_errors(state: Any) -> tuple[Floats, FrequencyErrors]:
     """Frequencies (k,) Hz of the oscillating poles about a steady state, in ascending order, and their errors."""
-    moving = state.moving
-    errors = RicherModels(state).errors(state, moving.value, moving.modes[state.first :].T)
-    return moving.frequency / (2 * np.pi), errors
+    vibrations = state.moving
+    errors = RicherModels(state).errors(state, vibrations.value, vibrations.modes[state.first :].T)
+    return vibrations.frequency / (2 * np.pi), errors
 
 
 def unknown_errors(system: System, count: int) -> FrequencyErrors | None:
-    """Errors of `count` frequencies that are NaN, with the reason why they are unknown; None if there is no reason."""
+    """Errors of `count` frequencies that are NaN, with the reason why they are unknown,
+    or None if there is no reason.
+    """
     note, unknown = left_unjudged(system), np.full(count, np.nan)
     return FrequencyErrors(unknown, unknown, unknown, unknown, unknown, note=note) if note else None
 
@@ -250,16 +257,16 @@ def _enriched(state: SteadySystem, *, exact: bool) -> More:
 
     A beam alone, which turns about one axis at most, gets none in a plane in which it has none.
     """
-    system, along = state.system, dict[str, Directions]()
+    system, directions = state.system, dict[str, Directions]()
     bases = state.solution.bases(judged_bodies(system))
     for name, body in system.flexible.items():
         if len(system.flexible) == 1 and len(system.tree.unknowns) <= body.size + 1:
-            along[name] = True, body.counts[1] > 0, body.counts[2] > 0
-    rich = richer(system, bases, exact=exact, along=along)
+            directions[name] = True, body.counts[1] > 0, body.counts[2] > 0
+    rich = richer(system, bases, exact=exact, bent_directions=directions)
     return More(rich.system, rich.renamed)
 
 
 def _oscillating(state: Steady, *, gyroscopic: bool) -> tuple[Floats, Complex]:
     """Circular frequencies (k,) of the oscillating modes, ascending, and the modes (k, n) in bodies' coordinates."""
-    moving = state.vibrations(gyroscopic=gyroscopic)
-    return moving.frequency, moving.modes[state.first :].T
+    vibrations = state.vibrations(gyroscopic=gyroscopic)
+    return vibrations.frequency, vibrations.modes[state.first :].T

@@ -67,15 +67,16 @@ class JudgedLoops:
 
     def _other_loops(self, state: SteadySystem, model: More) -> Other:
         """The same laws around another model, about its state under the same drives."""
-        other, count = transfer(state, model.model), len(state.names)
-        first = np.array([other.names.index(model.renamed.get(name, name)) for name in state.names], dtype=int)
-        of_laws = np.arange(2 * count, len(self.loops.closed.a)) + 2 * (len(other.names) - count)  # and of commands
-        return Other(self.loops.rebuild(other), np.concatenate([first, first + len(other.names), of_laws]))
+        transferred, count = transfer(state, model.model), len(state.names)
+        first = np.array([transferred.names.index(model.renamed.get(name, name)) for name in state.names], dtype=int)
+        added = len(transferred.names) - count
+        of_laws = np.arange(2 * count, len(self.loops.closed.a)) + 2 * added  # and of commands
+        return Other(self.loops.rebuild(transferred), np.concatenate([first, first + len(transferred.names), of_laws]))
 
     @property
     def unstable(self) -> tuple[str, ...]:
         """Warning if the closed loop decays, but one around a richer system grows; else empty."""
-        growing = {name: other.loops.growth for name, other in self.others.items() if other.loops.growth}
+        growing = {name: model.loops.growth for name, model in self.others.items() if model.loops.growth}
         if self.loops.growth or not growing:
             return ()
         name, growth = next(iter(growing.items()))
@@ -91,8 +92,8 @@ class JudgedLoops:
             stated: dict[str, Any] = {f"{name}_error": float(e) for name, e in zip(MARGINS, errors, strict=True)}
             unknown = np.flatnonzero(errors > UNKNOWN)
             names = [MARGINS[i] for i in unknown]
-            lost = [*names, *(f"{name}_frequency" for name in names if name in ("gain", "phase"))]
-            stated |= dict.fromkeys(lost, math.nan)
+            unjudged = [*names, *(f"{name}_frequency" for name in names if name in ("gain", "phase"))]
+            stated |= dict.fromkeys(unjudged, math.nan)
             margins.append(replace(margin, unknown=", ".join(names), **stated))
             if names and not self.unstable:
                 cause = max(of_drive, key=lambda name: of_drive[name][unknown].max())
@@ -102,12 +103,12 @@ class JudgedLoops:
                 warnings.append(f"margins of {margin.drive} are not known: {words}{CURES.get(cause, '')}")
         decay, oscillation = np.sum([*self._errors(self._poles).values()], axis=0).T
         poles: dict[str, Any] = {"decay_error": decay, "oscillation_error": oscillation}
-        none = np.zeros(0)
-        note = FrequencyErrors(none, none, none, none, none, note=self.note) if self.note else None
+        empty = np.zeros(0)
+        note = FrequencyErrors(empty, empty, empty, empty, empty, note=self.note) if self.note else None
         return replace(computed, margins=tuple(margins), warnings=tuple(warnings), errors=note, **poles)
 
     def _errors(self, read: Callable[[str], Floats]) -> dict[str, Floats]:
-        """Relative errors by cause of the values that `read` gives for a loop's name; NaN where they are unknown."""
+        """Relative errors by cause of the values that `read` gives for a loop's name, or NaN where they are unknown."""
         computed = read(OWN)
         if not self.known:
             return {MORE: np.full_like(computed, np.nan)}
@@ -153,7 +154,7 @@ def _modes(a: Floats) -> tuple[Complex, Complex, Complex]:
 
 
 def _relative_difference(values: Floats, references: Floats) -> Floats:
-    """Relative differences of values from references; infinite where only one of both is finite and not zero."""
+    """Relative differences of values from references, or infinite where only one of both is finite and not zero."""
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.abs(values / references - 1)
     return np.where(values == references, 0.0, np.where(np.isfinite(shares), shares, np.inf))
@@ -162,8 +163,8 @@ def _relative_difference(values: Floats, references: Floats) -> Floats:
 def _margin_words(kind: str, margin: Margin, other: Margin, cause: str) -> str:
     """A margin of a kind, and the one of another loop, in the words of tables."""
     word, factor, unit = SHOWN[kind]
-    computed, better = (f"{factor * getattr(of_loop, kind):.4g}{unit}" for of_loop in (margin, other))
-    return f"{word} {computed}, {better} {cause}"
+    computed, reference = (f"{factor * getattr(of_loop, kind):.4g}{unit}" for of_loop in (margin, other))
+    return f"{word} {computed}, {reference} {cause}"
 
 
 def unstable_richer_loop(system: System, motion: Motion | None, time: float) -> tuple[str, ...]:

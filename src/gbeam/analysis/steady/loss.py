@@ -95,11 +95,11 @@ def first_loss_along(
 
     root = brentq(margin, grid[first - 1], grid[first], xtol=1e-11, rtol=1e-9, maxiter=200)
     state = _state(path, system, root) or path(system, grid[first - 1])
-    beyond = _state(path, system, root * (1 + 1e-5))
-    if beyond is None:
+    lost_state = _state(path, system, root * (1 + 1e-5))
+    if lost_state is None:
         kind, direction = "no equilibrium", ""
     else:
-        grown = instabilities(beyond, beyond.moving, subject.directions)
+        grown = instabilities(lost_state, lost_state.moving, subject.directions)
         kind, direction = (grown[0].kind, grown[0].direction) if grown else ("divergence", "")
     if kind == "divergence":
         # Only symmetric parts store energy.
@@ -133,8 +133,8 @@ def with_frequencies(critical: Critical, path: Path, system: System, progress: P
             lowest = vibrations(undamped, zero=max(state.zero, ZERO)).frequency[:LOWEST]
             row[: len(lowest)] = lowest / (2 * np.pi)
             last = state
-    turning = last is not None and last.whirl is not None and last.whirl.turning
-    return replace(critical, followed=values, frequency=frequency, frame="turning" if turning else "ground")
+    is_turning = last is not None and last.whirl is not None and last.whirl.turning
+    return replace(critical, followed=values, frequency=frequency, frame="turning" if is_turning else "ground")
 
 
 # Shares of the critical value at which richer models are tried, ascending.
@@ -151,26 +151,30 @@ def judged(critical: Critical, path: Path, subject: Subject, progress: Progress 
     if critical.value is None:
         doubts = _unseen(critical, path, system, progress)
         return replace(critical, warnings=critical.warnings + doubts)
-    at = critical.value
-    point = path(system, (1 - CLOSE) * at)
+    critical_value = critical.value
+    point = path(system, (1 - CLOSE) * critical_value)
     richer = RicherModels(point)
     count = 5 if richer.theories else 2
-    exact = loss_of_model(richer.exact.model, path, at, progress, part=(0, count))
+    exact = loss_of_model(richer.exact.model, path, critical_value, progress, part=(0, count))
     same = (
-        exact if richer.same is richer.exact else loss_of_model(richer.same.model, path, at, progress, part=(1, count))
+        exact
+        if richer.same is richer.exact
+        else loss_of_model(richer.same.model, path, critical_value, progress, part=(1, count))
     )
-    errors = _errors(at, same, exact)
+    errors = _errors(critical_value, same, exact)
     if richer.rough is not None:
-        errors = errors.adding(mesh=relative_difference(loss_of_model(richer.rough.model, path, at, progress), at))
+        errors = errors.adding(
+            mesh=relative_difference(loss_of_model(richer.rough.model, path, critical_value, progress), critical_value)
+        )
     if not richer.theories:
         errors = replace(errors, model=richer.model_share(errors.model))
         doubts = doubtful_loss(critical.quantity, critical.model, errors)
         return replace(critical, errors=errors, warnings=critical.warnings + doubts)
     models, plates = richer.systems_by_theory(system)
     slender, *thick = (
-        loss_of_model(model, path, at, progress, part=(k, count)) for k, model in enumerate(models, start=2)
+        loss_of_model(model, path, critical_value, progress, part=(k, count)) for k, model in enumerate(models, start=2)
     )
-    beam_theory = max(relative_difference(at if math.isinf(slender) else slender, value) for value in thick)
+    beam_theory = max(relative_difference(critical_value if math.isinf(slender) else slender, value) for value in thick)
     errors = errors.adding(beam_theory=0.0 if math.isinf(errors.model) else beam_theory)
     words = _in_words(richer, point, models, plates)
     model = critical.model if subject.body else "the system"
@@ -178,17 +182,17 @@ def judged(critical: Critical, path: Path, subject: Subject, progress: Progress 
     return replace(critical, errors=errors, warnings=critical.warnings + doubts)
 
 
-def _errors(at: float, same: float, exact: float) -> ErrorEstimate:
-    """Errors of the critical value `at`, from those of the same model and of the exact one with more shapes."""
+def _errors(value: float, same: float, exact: float) -> ErrorEstimate:
+    """Errors of a critical `value`, from those of the same model and of the exact one with more shapes."""
     if math.isinf(exact):
         model = total = math.inf
     else:
-        model, total = abs(same / exact - 1), abs(at / exact - 1)
-    return ErrorEstimate(0.0, abs(at / same - 1), model, total=total)
+        model, total = abs(same / exact - 1), abs(value / exact - 1)
+    return ErrorEstimate(0.0, abs(value / same - 1), model, total=total)
 
 
 def _in_words(richer: RicherModels, point: Any, models: Sequence[Any], plates: Mapping[str, Floats]) -> str:
-    """Causes of the beam theory's error in words, by the mode with the least stiffness; "" without equilibrium."""
+    """Causes of the beam theory's error in words, by the mode with the least stiffness, or "" without equilibrium."""
     try:
         slender, thick = (transfer(point, model) for model in models[:2])
     except ComputationError:
@@ -206,22 +210,23 @@ def _unseen(critical: Critical, path: Path, system: System, progress: Progress) 
     rich = richer.exact.model
     if richer.theories:
         (_, rich, *_), lacked = richer.systems_by_theory(system)[0], "shear and twist"
-    lost = loss_of_model(rich, path, critical.searched_to, progress, shares)
-    if math.isinf(lost):
+    rich_loss = loss_of_model(rich, path, critical.searched_to, progress, shares)
+    if math.isinf(rich_loss):
         return ()
-    value = f"{lost:.4g} {critical.unit}"
+    value = f"{rich_loss:.4g} {critical.unit}"
     return (f"with {lacked}, which this model has not, the equilibrium is lost at an estimated {value}",)
 
 
 def loss_of_model(
     rich: System,
     path: Path,
-    near: float,
+    expected: float,
     progress: Progress,
     shares: Sequence[float] = SHARES,
     part: tuple[int, int] = (0, 1),
 ) -> float:
-    """Value at which a richer model loses its equilibrium; infinite if it keeps it up to the last share of `near`.
+    """Value at which a richer model loses its equilibrium, or infinite if it keeps it up to the last share of
+    `expected`.
 
     `part` has the number of models done and the number of all, for the progress.
     """
@@ -235,11 +240,11 @@ def loss_of_model(
     from scipy.optimize import brentq
 
     low, kinds = 0.0, " and ".join(sorted({body.kind for body in rich.flexible.values()}))
-    for i, value in enumerate(_in_turn(path, rich, [share * near for share in shares])):
+    for i, value in enumerate(_in_turn(path, rich, [share * expected for share in shares])):
         done = (part[0] + i / len(shares)) / part[1]
         tell(progress, f"errors of the critical value, by {kinds} with more shapes", done)
         if margin(value) < 0:
-            return brentq(margin, low, value, xtol=CLOSE * near, maxiter=200)
+            return brentq(margin, low, value, xtol=CLOSE * expected, maxiter=200)
         low = value
     return math.inf
 

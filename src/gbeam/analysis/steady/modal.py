@@ -32,31 +32,32 @@ STILL = 1e-9  # of the largest coordinate of a body in any mode: it does not def
 
 
 def modes_of(
-    subject: Subject, state: SteadySystem, moving: Vibrations, *, gyroscopic: bool = True, name: str = ""
+    subject: Subject, state: SteadySystem, vibrations: Vibrations, *, gyroscopic: bool = True, name: str = ""
 ) -> Modes:
-    """Describe those modes of a system about a steady state that are among `moving`. Each is scaled so that the largest
-    component of its points and of its bodies' stations and edges is one.
+    """Describe those modes of a system about a steady state that are among the `vibrations`.
+
+    Each is scaled so that the largest component of its points and of its bodies' stations and edges is one.
     """
     system = state.system
-    rigid = len(state.local.y) - len(moving.value) - (len(moving.diverging) + len(moving.decaying)) // 2
+    rigid = len(state.local.y) - len(vibrations.value) - (len(vibrations.diverging) + len(vibrations.decaying)) // 2
     # Static shapes of a body bring modes where others hang on it, and beside others those that are not its own.
     hung = {joint.on.partition(".")[0] for joint in system.joints.values()}
     static = 0
     if len(system.flexible) == 1:
         ((name_of_body, body_alone),) = system.flexible.items()
         static = 0 if name_of_body in hung else body_alone.size - body_alone.resolved
-    moving = moving.oscillating(slice(len(state.local.y) - static - rigid))
-    shape, turn = (np.einsum("pan,nk->kpa", slopes, moving.modes) for slopes in state.slopes_of_frames)
+    vibrations = vibrations.oscillating(slice(len(state.local.y) - static - rigid))
+    shape, turn = (np.einsum("pan,nk->kpa", slopes, vibrations.modes) for slopes in state.slopes_of_frames)
     bodies = dict[str, tuple[Structure, Floats, Complex]]()
     for body_name, structure in system.flexible.items():
         columns = deforming(state.names, body_name)
         if columns:
-            bodies[body_name] = structure, state.q[columns], moving.modes[columns]
+            bodies[body_name] = structure, state.q[columns], vibrations.modes[columns]
     moved = [shape, *(part for of_body in bodies.values() for part in _mode_displacements(*of_body))]
-    flat = [part.reshape(len(part), int(np.prod(part.shape[1:]))) for part in moved]
-    largest = largest_component(np.concatenate(flat, axis=1))
+    components = [part.reshape(len(part), int(np.prod(part.shape[1:]))) for part in moved]
+    largest = largest_component(np.concatenate(components, axis=1))
     scale = np.where(largest == 0, 1, largest)
-    of_frame = framed(state.whirl, moving.frequency / (2 * np.pi), moving.modes)
+    of_frame = framed(state.whirl, vibrations.frequency / (2 * np.pi), vibrations.modes)
     warnings, time = subject.warnings(state, name), state.drive.time
     if state.changing:
         of_frame.pop("ground_frequency", None)
@@ -67,19 +68,19 @@ def modes_of(
         time=time,
         base=state.base,
         gyroscopic=gyroscopic,
-        eigenvalue=moving.value,
-        direction=subject.directions(state, moving.modes),
+        eigenvalue=vibrations.value,
+        direction=subject.directions(state, vibrations.modes),
         points=system.points,
         body_names=system.order,
         point_shape=shape / scale[:, None, None],
         point_turn=turn / scale[:, None, None],
-        share=state.shares(moving.modes),
+        share=state.shares(vibrations.modes),
         place=np.stack([frame.p for frame in state.frames]),
         attitude=parameters_of_matrices(np.stack([frame.R for frame in state.frames])),
         bodies={body_name: _in_modes(state, body_name, *of_body, scale) for body_name, of_body in bodies.items()},
-        instabilities=instabilities(state, moving, subject.directions),
+        instabilities=instabilities(state, vibrations, subject.directions),
         rigid=rigid,
-        overdamped=moving.decaying,
+        overdamped=vibrations.decaying,
         accelerated=state.accelerated,
         reached=min((float(body.rest[0][body.resolved - 1]) / (2 * np.pi) for body in reduced), default=math.nan),
         assembly=assembly_of(system),
@@ -180,17 +181,17 @@ def modes(
     subject = subject_of(structure, motion)
     subject.require_coordinates()
     state = settled(subject.system, subject.drive(time))
-    moving = state.vibrations(gyroscopic=gyroscopic)
-    computed = modes_of(subject, state, moving, gyroscopic=gyroscopic, name=name)
+    vibrations = state.vibrations(gyroscopic=gyroscopic)
+    computed = modes_of(subject, state, vibrations, gyroscopic=gyroscopic, name=name)
     computed = decided(computed, state.bend)
     if not errors:
         return computed
     stated = unknown_errors(subject.system, len(computed.eigenvalue))
     if judged_bodies(subject.system):
         tell(progress, BY_RICHER, 0.5)
-        moving = moving.oscillating(slice(len(computed.eigenvalue)))
-        stated = RicherModels(state).errors(state, moving.value, moving.modes.T, gyroscopic=gyroscopic)
+        vibrations = vibrations.oscillating(slice(len(computed.eigenvalue)))
+        stated = RicherModels(state).errors(state, vibrations.value, vibrations.modes.T, gyroscopic=gyroscopic)
         # Modes above those that are known have their own warning.
-        known = stated[~(computed.frequency > computed.reached)]
-        computed = replace(computed, warnings=computed.warnings + doubtful(known))
+        is_known = stated[~(computed.frequency > computed.reached)]
+        computed = replace(computed, warnings=computed.warnings + doubtful(is_known))
     return replace(computed, errors=stated)

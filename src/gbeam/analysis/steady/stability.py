@@ -1,10 +1,10 @@
 """Loss of the relative equilibrium: critical hub rates, divergence of a beam pointing inward, buckling.
 
 About a relative equilibrium on a steadily turning base the energy that counts is the amended potential, whose second
-derivative is K. While K is positive definite the equilibrium is stable, with any damping inside the beam too; once it
+derivative is K. While K is positive definite the equilibrium is stable, with any damping inside the beam too. Once it
 is not, such damping destroys whatever gyroscopic coupling might have saved (Kelvin, Tait, Chetayev). So the
-definiteness of K decides, for every model; only loads that follow the beam make K unsymmetric, and then the
-eigenvalues decide. There damping matters: the least of it lowers the flutter load of Beck's column (Ziegler's paradox).
+definiteness of K decides, for every model. Only loads that follow the beam make K unsymmetric, and then the eigenvalues
+decide. There damping matters: the least of it lowers the flutter load of Beck's column (Ziegler's paradox).
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ SLOW = 1e-6  # rad/s
 NOTHING = 1e-12  # of the beam's stiffness: loads that add less are none
 
 
-def hub_of(motion: Motion, what: str, instead: str, name: str = "") -> Hub:
+def hub_of(motion: Motion, verb: str, instead: str, name: str = "") -> Hub:
     """Return `motion` if it is a hub; else raise InputError that says what needs one, and what to ask `instead`."""
     if isinstance(motion, Hub):
         return motion
     raise InputError(
         f"motion.{name}" if name else "motion",
-        f"is a {motion.kind}, which has no hub to turn faster: {what} needs one",
+        f"is a {motion.kind}, which has no hub to turn faster: {verb} needs one",
         instead,
     )
 
@@ -109,16 +109,16 @@ def critical_speed(
     """
     subject = subject_of(structure, motion)
     path, _ = turned(subject, turning, time, "a critical speed", INSTEAD, name, held=True)
-    lost = first_lost_speed(subject, path, upper, progress)
-    return replace(with_frequencies(lost, path, subject.system, progress), notes=notes_on({name: motion}))
+    loss = first_lost_speed(subject, path, upper, progress)
+    return replace(with_frequencies(loss, path, subject.system, progress), notes=notes_on({name: motion}))
 
 
 def first_lost_speed(subject: Subject, path: Path, upper: float | None, progress: Progress) -> Critical:
     """Lowest rate at which the equilibrium is lost along a path that holds the rate, with its errors."""
     limit = SEARCH_FACTOR * lowest_frequency(path, subject.system) if upper is None else positive("to", upper, "rad/s")
     refuse_changing(path, subject.system, limit / SEARCH_FACTOR)
-    lost = first_loss_along(path, subject, limit, subject.rate, "rad/s", progress)
-    return judged(lost, path, subject, progress)
+    loss = first_loss_along(path, subject, limit, subject.rate, "rad/s", progress)
+    return judged(loss, path, subject, progress)
 
 
 def lowest_frequency(path: Path, system: System) -> float:
@@ -130,11 +130,11 @@ def lowest_frequency(path: Path, system: System) -> float:
 
 
 def turned(
-    subject: Subject, angle: str | None, time: float, what: str, instead: str, name: str, *, held: bool = False
+    subject: Subject, angle: str | None, time: float, verb: str, instead: str, name: str, *, held: bool = False
 ) -> tuple[Path, Profile | None]:
     """Path of steady states by the rate of a subject that turns about an `angle`, by default a hub's.
 
-    Besides, the history of the rate in the motion, if any. InputError, with the words `what` and `instead`, if there is
+    Besides, the history of the rate in the motion, if any. InputError, with the words `verb` and `instead`, if there is
     nothing to turn.
     """
     subject.require_coordinates()
@@ -144,8 +144,8 @@ def turned(
             raise InputError("turning", "is given of one beam", "leave it out: its hub turns")
         if subject.motion is None:
             fix = 'give gb.Hub(radius=...), or [motion.NAME] with kind = "hub"'
-            raise InputError("motion", f"is missing: {what} needs a hub", fix)
-        hub_of(subject.motion, what, instead, name)
+            raise InputError("motion", f"is missing: {verb} needs a hub", fix)
+        hub_of(subject.motion, verb, instead, name)
     coordinate = turning_of(system, motion, angle)
     joint, _, kind = coordinate.rpartition(".")
     history = system.joints[joint].rates.get(kind) if joint else motion.rate  # type: ignore[union-attr]
@@ -206,7 +206,7 @@ def critical_speed_map(
     limit = SEARCH_FACTOR * float(unloaded.rest[0][0]) if upper is None else upper
     speed = np.full((len(masses), len(positions)), np.nan)
     errors = MapErrors(*np.full((len(fields(MapErrors)), *speed.shape), np.nan))
-    worst = ErrorEstimate(total=0.0)
+    largest = ErrorEstimate(total=0.0)
     for i, mass in enumerate(masses):
         for j, position in enumerate(positions):
             tell(progress, "critical hub rates", (i * len(positions) + j) / speed.size)
@@ -217,9 +217,9 @@ def critical_speed_map(
             speed[i, j] = np.nan if loss.value is None else loss.value
             for part in fields(errors):
                 getattr(errors, part.name)[i, j] = getattr(loss.errors, part.name)
-            if loss.errors.total > worst.total:
-                worst = loss.errors
-    warnings = input_warnings(unloaded, motion, name=name) + doubtful_loss("hub rate, at worst,", model.kind, worst)
+            if loss.errors.total > largest.total:
+                largest = loss.errors
+    warnings = input_warnings(unloaded, motion, name=name) + doubtful_loss("hub rate, at worst,", model.kind, largest)
     axes = np.asarray(masses, dtype=float), np.asarray(positions, dtype=float)
     notes = notes_on({name: motion})
     return CriticalMap(name, model.kind, *axes, speed, limit, errors, warnings=warnings, notes=notes)
@@ -266,8 +266,8 @@ def buckling_acceleration(
     if upper is None:
         extent = float(np.linalg.norm(np.ptp(subject.system.undeformed, axis=0)))
         upper = SEARCH_FACTOR * lowest_frequency(path, subject.system) ** 2 * extent
-    lost = first_loss_along(path, subject, upper, "acceleration along x", "m/s²", progress)
-    return with_frequencies(judged(lost, path, subject, progress), path, subject.system, progress)
+    loss = first_loss_along(path, subject, upper, "acceleration along x", "m/s²", progress)
+    return with_frequencies(judged(loss, path, subject, progress), path, subject.system, progress)
 
 
 @typed
@@ -322,9 +322,11 @@ def critical_load(
     path = Path(replace(subject.resting_drive(time), base=base), loaded, held=True)
     share = share_of_loads(path, subject.system)
     if share < NOTHING:
-        where, what = ("beam.loads", "a hub's") if subject.body else ("forces", "a joint's")
-        fix = f"add one, or give a time at which one acts; `gbeam critical-speed` can raise {what} rate instead"
+        where, subject_words = ("beam.loads", "a hub's") if subject.body else ("forces", "a joint's")
+        fix = (
+            f"add one, or give a time at which one acts; `gbeam critical-speed` can raise {subject_words} rate instead"
+        )
         raise InputError(where, "has no load that acts", fix)
     limit = SEARCH_FACTOR / share if upper is None else positive("to", upper, "times the loads")
-    lost = first_loss_along(path, subject, limit, "load factor", "times the loads", progress)
-    return with_frequencies(judged(lost, path, subject, progress), path, subject.system, progress)
+    loss = first_loss_along(path, subject, limit, "load factor", "times the loads", progress)
+    return with_frequencies(judged(loss, path, subject, progress), path, subject.system, progress)

@@ -151,8 +151,8 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
 
     begun, values = values_at(system.start[0][system.tree.unknowns]), values_at(point.y)
     # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
-    moving = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
-    links = zip(point.tree.links, moving.q, moving.roots, strict=True)
+    motions = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
+    links = zip(point.tree.links, motions.q, motions.roots, strict=True)
     inertia = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in links)
     for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)
@@ -182,12 +182,12 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
     """Describe the bodies that deform, and rigid specimens, in a steady state by their names."""
     system, point, time = state.system, state.point, np.array([state.drive.time])
     inputs = steady_solution(state, system).inputs(system, None)
-    moving = system.tree.motion(point.y[None], point.yd[None], point.ydd[None], inputs)
-    acting = system.tree.demanded(moving, inputs)[2]
+    motions = system.tree.motion(point.y[None], point.yd[None], point.ydd[None], inputs)
+    acting = system.tree.demanded(motions, inputs)[2]
     environment = "rest" if subject.motion is None else subject.motion.kind
     bodies = {}
     for body, structure in system.flexible.items():
-        state_of = carried(system, moving, body, acting)
+        state_of = carried(system, motions, body, acting)
         base, q = state_of.base, np.asarray(state_of.q)
         loads = loads_of(structure, state_of, time)
         if body == subject.body:

@@ -112,7 +112,7 @@ class Subject:
 
     def warnings(self, state: SteadySystem, name: str, *, resting: bool = False) -> tuple[str, ...]:
         """Doubts about the models of the bodies in a state, and about what they leave out in it. The state is
-        `resting`, or one from which a system departs; `name` is that of the motion.
+        `resting`, or one from which a system departs. `name` is that of the motion.
         """
         if not self.body:
             return state.warnings + state.point.sticking(state.system, resting=resting) + open_loops(self.system)
@@ -162,7 +162,7 @@ def directions_of(structure: Structure, q: Floats, modes: Complex | Floats) -> t
 
 
 def edges_of(structure: Structure, q: Floats, modes: Complex | Floats) -> Complex | Floats | None:
-    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k); None without twist."""
+    """Displacements (s, k) of the stations' outermost fibres by twist in modes (n, k), or None without twist."""
     twist = structure.twist_slopes(q)
     if twist is None or structure.source is None:
         return None

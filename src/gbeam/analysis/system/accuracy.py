@@ -1,9 +1,11 @@
 """Errors of a system's answers from too few shapes of its beams, from their models and from the theory of slender
-beams, of every beam and of all: of deflections relative to the beams' roots, of the loads there and of stress, each
-over the beam's own largest; and of places.
+beams.
+
+They are told of every beam and of all: errors of places, of deflections relative to the beams' roots, of the loads
+there and of stress. Each is over the beam's own largest value.
 
 What is computed is put into the exact model of the same system with more shapes. The residual that it leaves there is
-answered by that system's small departures, over time or at rest; in the new coordinates alone it is what shapes lack.
+answered by that system's small departures, over time or at rest. In the new coordinates alone it is what shapes lack.
 Put into systems of thick and of slender beams, bent as they are, it leaves what that theory lacks.
 """
 
@@ -40,7 +42,7 @@ from gbeam.analysis.accuracy.estimate import (
 from gbeam.analysis.accuracy.looks import Looks, times_of_peaks
 from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.analysis.system.richer_readings import (
-    Again,
+    Recompute,
     RicherReadings,
     Ringing,
     Starting,
@@ -89,7 +91,7 @@ def unjudged(
     rest: float = math.nan,
     note: str = "",
 ) -> Errors:
-    """Errors by the time steps and the law of friction alone; `rest` is that of all other causes."""
+    """Errors by the time steps and the law of friction alone. `rest` is that of all other causes."""
 
     def error(key: Quantity) -> ErrorEstimate:
         step = steps.get(key, math.nan)
@@ -104,7 +106,7 @@ def unjudged(
 
 def system_errors(
     every: Sampled,
-    again: Again | None,
+    rerun_system: Recompute | None,
     steps: Mapping[Quantity, float],
     *,
     stride: int = 1,
@@ -115,43 +117,46 @@ def system_errors(
     tolerance: float = math.inf,
     computed: Reading | None = None,
 ) -> tuple[Errors, tuple[str, ...]]:
-    """Errors of the places of all points, over the largest displacement from the first places or a `start` (p, 3), and
-    of the beams' deflections, root loads and stress; and warnings of masses that a twist, which the model lacks, moves
-    by more than a `tolerance`.
+    """Estimate the errors of the places of all points and of the beams' deflections, root loads and stress.
+
+    Those of places are over the largest displacement from the first places, or from a `start` (p, 3). Warnings tell of
+    masses that a twist, which the model lacks, moves by more than a `tolerance`.
 
     `every` returns the solution at every so many steps, of which results have every `stride`-th, `computed` if they are
     read already. `steps` has the errors of the time steps, `peaks_by_step` those of their peaks, and `friction` those
-    of its law. Richer systems are linearised, beginning as `starting` says, or run by `again` if it is passed (with
-    controllers, and at rest). A solution that does not resolve a mode that rings is judged at more steps.
+    of its law. Richer systems are linearised, beginning as `starting` says, or run by `rerun_system` if it is passed
+    (with controllers, and at rest). A solution that does not resolve a mode that rings is judged at more steps.
     """
     solution = every(stride)
     system, count = solution.system, len(solution.trajectory.time)
     judged, note = judged_bodies(system), left_unjudged(system)
     by_steps = partial(unjudged, system, steps, friction)
-    if not judged or (again is None and count < FEWEST):
+    if not judged or (rerun_system is None and count < FEWEST):
         return by_steps(rest=math.nan if note or judged else 0.0, note=note), ()
     computed = solution.read(judged) if computed is None else computed
     place = computed[PLACE]
     sizes = {quantity: largest(values) for quantity, values in computed.items()}
     sizes[PLACE] = float(np.linalg.norm(place - (place[0] if start is None else start), axis=-1).max())
     bases = solution.bases(judged)
-    known = _Known(steps, sizes, _negligible(judged, bases, sizes, place), peaks_by_step, friction, note)
+    findings = _Findings(steps, sizes, _negligible(judged, bases, sizes, place), peaks_by_step, friction, note)
     straight = all(sizes[name, DEFLECTION] <= BENT * body.length for name, body in judged.items())
     extent = float(np.ptp(place, axis=(0, 1)).max(initial=0.0))
     interval = (
         float(solution.trajectory.time[-1] - solution.trajectory.time[0]) / max(count - 1, 1) / stride
     )  # of two steps, s
     period = min(2 * math.pi / float(body.rest[0][0]) for body in judged.values())
-    least = max(1, math.ceil(count * stride / MOST))  # steps from one that is looked at to the next
-    skipped = max(1, min(int(period / PER_PERIOD / (stride * interval)), count // MANY)) if again is None else 1
+    spacing = max(1, math.ceil(count * stride / MOST))  # steps from one that is looked at to the next
+    skipped = max(1, min(int(period / PER_PERIOD / (stride * interval)), count // MANY)) if rerun_system is None else 1
 
     peaks = times_of_peaks(solution.trajectory.time, computed)
 
     def judge(solution: Solution) -> tuple[Errors, float, Lacking]:
-        """Judge a solution at some of the steps; return its errors, the frequency, rad/s, of a mode that these steps do
-        not resolve, and what the theory of slender beams lacks.
+        """Judge a solution at some of the steps.
+
+        Returns its errors, the frequency, rad/s, of a mode that these steps do not resolve, and what the theory of
+        slender beams lacks.
         """
-        rerun = None if again is None else reader_of_runs(again, len(solution.trajectory.time))
+        rerun = None if rerun_system is None else reader_of_runs(rerun_system, len(solution.trajectory.time))
         look = partial(Looks.chosen, solution.trajectory.time, peaks, stride * interval)
         with np.errstate(all="ignore"):
             try:
@@ -162,16 +167,16 @@ def system_errors(
             except (ComputationError, np.linalg.LinAlgError):
                 return by_steps(note=FAR), 0.0, Lacking()
             if not np.isfinite(readings.truth[PLACE]).all():
-                return _bounded(judged, known) or by_steps(note=FAR), 0.0, Lacking()
-            lacking, lost = differences_to_thick_beams(solution, rerun, max(sizes[PLACE], extent), look, starting)
-        errors = _judged(system, known, readings, lacking, lost)
+                return _bounded(judged, findings) or by_steps(note=FAR), 0.0, Lacking()
+            lacking, reason = differences_to_thick_beams(solution, rerun, max(sizes[PLACE], extent), look, starting)
+        errors = _judged(system, findings, readings, lacking, reason)
         missed = 0.0
         if readings.rings is not None:
-            missed = _missed(readings.rings, known, errors, RESOLVED / (least * interval))
+            missed = _missed(readings.rings, findings, errors, RESOLVED / (spacing * interval))
         return errors, missed, lacking
 
     errors, rate, lacking = judge(solution if skipped == 1 else every(stride * skipped))
-    finer = max(least, int(RESOLVED / (rate * interval))) if rate else stride * skipped
+    finer = max(spacing, int(RESOLVED / (rate * interval))) if rate else stride * skipped
     if finer < stride * skipped:
         errors, _, lacking = judge(every(finer))
     moved = list[str]()
@@ -182,7 +187,7 @@ def system_errors(
     return errors, tuple(moved)
 
 
-class _Known(NamedTuple):
+class _Findings(NamedTuple):
     """Facts known before richer systems are asked: errors by the steps, sizes of quantities and those that are only
     rounding (`nothing`), errors of peaks by the steps and of the law of friction, and a note.
     """
@@ -206,13 +211,13 @@ def _negligible(
     return rounding
 
 
-def _judged(system: System, known: _Known, readings: RicherReadings, lacking: Lacking, lost: str) -> Errors:
+def _judged(system: System, findings: _Findings, readings: RicherReadings, lacking: Lacking, reason: str) -> Errors:
     """Errors from the differences that richer systems, thick beams and coarser meshes make."""
     judged, computed = judged_bodies(system), readings.computed
     judgement = Judgement(
-        readings.shapes, readings.model, lacking, dict(known.steps), known.sizes, known.nothing,
+        readings.shapes, readings.model, lacking, dict(findings.steps), findings.sizes, findings.nothing,
         None if readings.mesh is None else (readings.mesh, computed),
-        readings.looks if len(readings.looks.at) > 1 else None, known.peaks_by_step, known.friction,
+        readings.looks if len(readings.looks.at) > 1 else None, findings.peaks_by_step, findings.friction,
     )  # fmt: skip
 
     def by_body(error: Callable[[str], ErrorEstimate]) -> list[ErrorEstimate]:
@@ -226,8 +231,8 @@ def _judged(system: System, known: _Known, readings: RicherReadings, lacking: La
     of_places = judgement.error(PLACE)
     bent = by_body(lambda name: judgement.error((name, DEFLECTION)))
     loads, stress = by_body(judgement.loads), by_body(lambda name: judgement.error((name, "stress")))
-    deforms = any((name, DEFLECTION) not in known.nothing for name in judged)
-    places = [judgement.difference(PLACE, (computed, better)) for better in readings.alone or [readings.truth]]
+    deforms = any((name, DEFLECTION) not in findings.nothing for name in judged)
+    places = [judgement.difference(PLACE, (computed, reading)) for reading in readings.alone or [readings.truth]]
     return Errors(
         displacement=ErrorEstimate.from_largest(bent) if deforms else of_places,
         place=of_places,
@@ -241,11 +246,11 @@ def _judged(system: System, known: _Known, readings: RicherReadings, lacking: La
         stress_by_beam=np.array([error.total for error in stress]),
         stress_peaks_by_beam=np.array([error.peak for error in stress]),
         theory=tuple(described(judged[name], lacking.causes.get(name, {})) for name in judged),
-        note="; ".join(filter(None, (known.note, readings.note, lost))),
+        note="; ".join(filter(None, (findings.note, readings.note, reason))),
     )
 
 
-def _bounded(judged: Mapping[str, Structure], known: _Known) -> Errors | None:
+def _bounded(judged: Mapping[str, Structure], findings: _Findings) -> Errors | None:
     """Errors of a solution that is too far from the exact model's for an estimate: a bound by the largest deflection of
     each beam. None if some body is no beam.
     """
@@ -253,18 +258,18 @@ def _bounded(judged: Mapping[str, Structure], known: _Known) -> Errors | None:
         return None
     bounds = dict[str, ErrorEstimate]()
     for name, body in judged.items():
-        size, step = known.sizes[name, DEFLECTION], known.steps.get((name, DEFLECTION), math.nan)
+        size, step = findings.sizes[name, DEFLECTION], findings.steps.get((name, DEFLECTION), math.nan)
         model = LARGEST * (size / body.length) ** 2
         bounds[name] = ErrorEstimate(step, math.nan, model, total=step + model)
     return Errors(ErrorEstimate.from_largest(bounds.values()), note=TOO_FAR)
 
 
-def _missed(rings: Ringing, known: _Known, errors: Errors, fastest: float) -> float:
+def _missed(rings: Ringing, findings: _Findings, errors: Errors, fastest: float) -> float:
     """Frequency, rad/s, of the fastest mode below `fastest` whose ringing may exceed the stated errors; else 0."""
     visible = np.zeros(len(rings.rate), dtype=bool)
     for quantity, amplitude in rings.sizes.items():
         error = errors.displacement if quantity[1] == DEFLECTION else errors.loads
-        visible |= amplitude > error.slender * known.sizes[quantity]
+        visible |= amplitude > error.slender * findings.sizes[quantity]
     return float(rings.rate[visible & (rings.rate < fastest)].max(initial=0.0))
 
 
@@ -282,7 +287,7 @@ def doubts(errors: Errors, tolerance: float, cure_of_steps: str = SMALLER) -> tu
         quantities.insert(0, ("places are", "the largest displacement", place, errors.by_beam))
     if deflection is not place:
         quantities.insert(0, ("deflections are", "a body's largest", deflection, errors.displacement_by_beam))
-    for what, size, error, by_beam in quantities:
+    for quantity, size, error, by_beam in quantities:
         stated = largest_known(error.total, error.step)
         if not stated > tolerance:
             continue
@@ -295,5 +300,5 @@ def doubts(errors: Errors, tolerance: float, cure_of_steps: str = SMALLER) -> tu
         sources += [(error.step, STEPS, cure_of_steps), (error.friction, *CREEPS)]
         large = [cause for cause in sources if cause[0] > SHARE * stated]
         words = causes_in_words(sorted(large, key=itemgetter(0), reverse=True), worst_body)
-        warnings.append(f"{what} wrong by an estimated {percent(stated)} of {size}: {words}")
+        warnings.append(f"{quantity} wrong by an estimated {percent(stated)} of {size}: {words}")
     return tuple(warnings)

@@ -1,9 +1,10 @@
-"""A linear plant with the sampled controllers of a system around it: closed, or cut at one drive; its margins.
+"""A linear plant with the sampled controllers of a system around it, closed or cut at one drive, and its margins.
 
-Commands are held from sample to sample and act after their delay; the plant between these events is exact, by the
-matrix exponential. The map over the common period of all samples is the product of the maps from event to event: the
+Commands are held from sample to sample and act after their delay. The plant between these events is exact, by the
+matrix exponential. The map over the common period of all samples is the product of the maps from event to event. Its
 states are those of the plant, those of the laws, and the commands that act or are still to act, all as the period
-begins; its inputs are held over it. Laws that are functions are taken by their slopes where they ask for nothing.
+begins. Its inputs are held over the period. Laws that are functions are taken by their slopes where they ask for
+nothing.
 """
 
 from __future__ import annotations
@@ -99,8 +100,8 @@ def propagator(plant: StateSpace, period: float) -> Propagator:
     @cache
     def propagate(part: Fraction) -> tuple[Floats, Floats]:
         """Φ and Γ are blocks of the exponential of [[A, B], [0, 0]]."""
-        whole = expm(block * (period * float(part)))
-        return whole[:n, :n], whole[:n, n:]
+        transition = expm(block * (period * float(part)))
+        return transition[:n, :n], transition[:n, n:]
 
     return propagate
 
@@ -113,14 +114,14 @@ def loop_of(plant: StateSpace, channels: list[Channel], propagate: Propagator, c
     """
     m, k = channels[-1].driven.stop, channels[-1].measured.stop
     free, first = plant.b.shape[1] - m, 0 if cut is None else 1
-    held = [channel.late + 1 for channel in channels for _ in range(channel.driven.stop - channel.driven.start)]
-    ends = np.cumsum([len(plant.a), *(len(channel.law[0]) for channel in channels), *held])
+    delays = [channel.late + 1 for channel in channels for _ in range(channel.driven.stop - channel.driven.start)]
+    ends = np.cumsum([len(plant.a), *(len(channel.law[0]) for channel in channels), *delays])
     size = int(ends[-1])
     # Each quantity is a row: its derivatives by the states and the inputs as the period begins.
     rows = np.eye(size + first + free + k)
     inputs, references = rows[size + first : size + first + free], rows[size + first + free :]
-    x, *others = np.split(rows[:size], ends[:-1])
-    laws, waiting = others[: len(channels)], [list(queue) for queue in others[len(channels) :]]  # the last one acts
+    x, *queues = np.split(rows[:size], ends[:-1])
+    laws, waiting = queues[: len(channels)], [list(queue) for queue in queues[len(channels) :]]  # the last one acts
     commands = np.zeros((m, len(rows)))
 
     def measured() -> Floats:
@@ -149,8 +150,8 @@ def loop_of(plant: StateSpace, channels: list[Channel], propagate: Propagator, c
         if end > time:
             phi, gamma = propagate(end - time)
             x = phi @ x + gamma[:, :m] @ np.array([queue[-1] for queue in waiting]) + gamma[:, m:] @ inputs
-    after = np.concatenate([x, *laws, *(np.array(queue) for queue in waiting)])
-    (a, b), by_y, by_commands = ((block[:, :size], block[:, size:]) for block in (after, y, commands))
+    next_state = np.concatenate([x, *laws, *(np.array(queue) for queue in waiting)])
+    (a, b), by_y, by_commands = ((block[:, :size], block[:, size:]) for block in (next_state, y, commands))
     return Loop(a, b, by_y, by_commands)
 
 
@@ -188,11 +189,11 @@ def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: floa
         values = function(gains)
         products = values[:-1] * values[1:]
         starts = np.flatnonzero(np.isfinite(products) & (products < 0))
-        low, high, above = w[starts], w[starts + 1], values[starts] > 0
+        low, high, is_above = w[starts], w[starts + 1], values[starts] > 0
         for _ in range(HALVINGS):
             middle = (low + high) / 2
-            beyond = (function(response(middle)) > 0) != above
-            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+            is_crossed = (function(response(middle)) > 0) != is_above
+            low, high = np.where(is_crossed, low, middle), np.where(is_crossed, middle, high)
         return high, response(high)
 
     # Frequencies of gains that are real and negative, and the factors that make them -1.
@@ -201,15 +202,15 @@ def margin_of(name: str, loop: tuple[Floats, Floats, Floats, Floats], step: floa
     factors = [(x, -1 / gain.real) for x, gain in zip(frequencies, reals, strict=True) if gain.real < 0]
     ones = zip(*crossings(lambda gain: np.abs(gain) - 1), strict=True)
     phases = [(x, float(np.angle(-gain))) for x, gain in ones]
-    above = min(((k, x) for x, k in factors if k > 1), default=(math.inf, math.nan))
-    below = max((k for _, k in factors if k < 1), default=0.0)
+    upper = min(((k, x) for x, k in factors if k > 1), default=(math.inf, math.nan))
+    lower = max((k for _, k in factors if k < 1), default=0.0)
     phase = min(((abs(angle), x) for x, angle in phases), default=(math.inf, math.nan))
     delay = min(((angle % (2 * math.pi)) / x for x, angle in phases), default=math.inf)
     return Margin(
         drive=name,
-        gain=float(above[0]),
-        gain_frequency=float(above[1] / (2 * math.pi)),
-        gain_low=float(below),
+        gain=float(upper[0]),
+        gain_frequency=float(upper[1] / (2 * math.pi)),
+        gain_low=float(lower),
         phase=phase[0],
         phase_frequency=float(phase[1] / (2 * math.pi)),
         delay=float(delay),
@@ -280,7 +281,7 @@ class Loops:
 
     @cached_property
     def growth(self) -> float:
-        """Rate, 1/s, at which the closed loop grows; zero if it does not."""
+        """Rate, 1/s, at which the closed loop grows, or zero if it does not."""
         size = float(np.abs(np.linalg.eigvals(self.closed.a)).max(initial=0.0))
         return math.log(size) / self.period if size > 1 + ROUNDING else 0.0
 
@@ -327,9 +328,9 @@ class Loops:
             b, c, d = loop.b, loop.y[0][k:], loop.y[1][k:]
             signals, value = plant.outputs[k:], plant.output[k:]
         else:
-            at = drives.index(cut)
-            b, c, d = loop.b[:, :1], -loop.command[0][at : at + 1], -loop.command[1][at : at + 1, :1]
-            signals = inputs = (Signal(cut, plant.inputs[at].unit),)
+            column = drives.index(cut)
+            b, c, d = loop.b[:, :1], -loop.command[0][column : column + 1], -loop.command[1][column : column + 1, :1]
+            signals = inputs = (Signal(cut, plant.inputs[column].unit),)
             value = np.zeros(1)
         return replace(
             plant,
@@ -390,26 +391,26 @@ def linear_law(name: str, controller: Feedback, t: float, measured: Floats, driv
         aims, sign = np.array([float(profile(t)) for profile in controller.reference]), -1.0
     k, m, n, later = len(measured), len(drives), state.size, count(t + controller.sample, controller.sample)
 
-    def stepped(at: Floats) -> Floats:
+    def stepped(point: Floats) -> Floats:
         """Efforts and next states, one after the other, from errors and states."""
-        sample = aims + sign * at[:k], at[k:].reshape(state.shape) if controller.stateful else None
+        sample = aims + sign * point[:k], point[k:].reshape(state.shape) if controller.stateful else None
         with naming_controller(name):
-            asked, after = answer = controller.effort(t, *sample)
+            asked, next_state = answer = controller.effort(t, *sample)
             controller.effort(next(later), *sample)  # as time goes on, what a law kept itself shows
             refuse_memory(controller, t, *sample, answer)
-        values = np.concatenate([asked, np.asarray(after, dtype=float).ravel() if controller.stateful else []])
+        values = np.concatenate([asked, np.asarray(next_state, dtype=float).ravel() if controller.stateful else []])
         if len(values) != m + n:
             raise InputError(where, f"hands on a state of {len(values) - m} numbers, and starts with {n}", fix)
         return values
 
     asks = list[str]()
     for error in (sign * (measured - aims), np.zeros(k)):
-        at = np.concatenate([error, state.ravel()])
-        size, value = np.maximum(1.0, np.abs(at)), stepped(at)
+        origin = np.concatenate([error, state.ravel()])
+        size, value = np.maximum(1.0, np.abs(origin)), stepped(origin)
         # Slopes (output, input), forward and backward by each step.
         slopes = np.array(
             [
-                np.stack([(stepped(at + h * part) - value) / (h * part.sum()) for part in np.diag(size)], axis=1)
+                np.stack([(stepped(origin + h * part) - value) / (h * part.sum()) for part in np.diag(size)], axis=1)
                 for step in STEPS
                 for h in (step, -step)
             ]

@@ -57,17 +57,17 @@ class Drive:
         if self.turn:
             # All prescribed coordinates go on for as long as the fastest one takes to turn so far.
             fastest = np.abs(np.append(prescribed[1], self.rate or 0.0)).max()
-            before = prescribed.copy()
+            earlier = prescribed.copy()
             prescribed[0] += prescribed[1] * self.turn / fastest
             for column, k in enumerate(system.tree.fixed):
                 if system.coordinates[k].endswith(".e0"):  # the first of four Euler parameters
                     euler = slice(column, column + 4)
-                    prescribed[:, euler] = turn_steadily(before[:, euler], self.turn / fastest)
+                    prescribed[:, euler] = turn_steadily(earlier[:, euler], self.turn / fastest)
         return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
-    """Name of the coordinate that turns: `turning`, the only prescribed angle, or the only angle; "" for a hub."""
+    """Name of the coordinate that turns: `turning`, the only prescribed angle, or the only angle, or "" for a hub."""
     angles = [
         f"{name}.{coordinate}"
         for name, joint in system.joints.items()

@@ -97,8 +97,10 @@ class SystemControllers:
         efforts = held @ self.efforts
         changes: dict[str, Any] = {"efforts": efforts if inputs.efforts is None else inputs.efforts + efforts}
         if inputs.wrenches is not None:
-            onto = self.wrenches.reshape(len(self.wrenches), -1)
-            changes["wrenches"] = inputs.wrenches + (held @ onto).reshape(*held.shape[:-1], *self.wrenches.shape[1:])
+            wrenches = self.wrenches.reshape(len(self.wrenches), -1)
+            changes["wrenches"] = inputs.wrenches + (held @ wrenches).reshape(
+                *held.shape[:-1], *self.wrenches.shape[1:]
+            )
         return replace(inputs, **changes)
 
     @cached_property
@@ -128,13 +130,13 @@ def loop_of(controllers: SystemControllers, sampling: Any, time: Floats) -> Loop
     measured, asked, acting, saturated = [], [], [], []
     largest: list[list[Floats]] = [[], [], []]
     for c, (period, delay) in enumerate(controllers.timing):
-        taken = np.floor((time + slack - start) / period).astype(int)
+        sample_counts = np.floor((time + slack - start) / period).astype(int)
         active = np.floor((time + slack - start - delay) / period).astype(int)
         values, wanted, commands = sampling.sample_arrays(c)
         # The last time may be that of a sample which no step has taken.
-        taken, last = np.minimum(taken, len(values) - 1), np.clip(active, 0, len(values) - 1)
-        measured.append(values[taken])
-        asked.append(wanted[taken])
+        sample_counts, last = np.minimum(sample_counts, len(values) - 1), np.clip(active, 0, len(values) - 1)
+        measured.append(values[sample_counts])
+        asked.append(wanted[sample_counts])
         saturated.append((wanted != commands).mean(axis=0))
         for sizes, of_samples in zip(largest, (values, wanted, commands), strict=True):
             sizes.append(abs(of_samples).max(axis=0))
@@ -176,10 +178,10 @@ def _traced_law(name: str, controller: Feedback, times: Floats) -> TracedLaw:
     def command(parameters: Any, references: Array, t: Any, y: Array, state: Array) -> tuple[Array, ...]:
         """Command as the law asks for it, the command within its limit, and the next state."""
         parts, limit = parameters
-        asked, after = law(parts, t, references + sign * y, state)
+        asked, next_state = law(parts, t, references + sign * y, state)
         if limit is None:
-            return asked, asked, after
-        return asked, clip_efforts(namespace(asked, limit), as_array(limit), asked), after
+            return asked, asked, next_state
+        return asked, clip_efforts(namespace(asked, limit), as_array(limit), asked), next_state
 
     return TracedLaw(times, command, (parameters, controller.limit), references, start)
 
@@ -203,8 +205,8 @@ def _compile_function(controller: Feedback, start: Array, restored: Any) -> tupl
     def plain(t: Any, error: Array, state: Array) -> tuple[Array, Array]:
         """Efforts and next state as flat arrays."""
         if controller.stateful:
-            efforts, after = answer_of(controller, t, error, restored(state))
-            return jnp.asarray(efforts, dtype=float).reshape(-1), ravel_pytree(after)[0].astype(float)
+            efforts, next_state = answer_of(controller, t, error, restored(state))
+            return jnp.asarray(efforts, dtype=float).reshape(-1), ravel_pytree(next_state)[0].astype(float)
         return jnp.asarray(answer_of(controller, t, error, state), dtype=float).reshape(-1), state
 
     example = 0.0, jnp.zeros(len(controller.measure)), start

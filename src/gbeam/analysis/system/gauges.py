@@ -97,8 +97,10 @@ def read_signals(
     )
     state = tree.motion(y, yd, ydd, inputs)
     *_, acting = tree.demanded(state, inputs)
-    others, signals = iter(xp.moveaxis(plain, -1, 0)), []
+    plain_signals, signals = iter(xp.moveaxis(plain, -1, 0)), []
     for name in wanted:
         gauge = gauges.get(name)
-        signals.append(next(others) if gauge is None else gauge.read(system, state, acting, inputs).reshape(shape))
+        signals.append(
+            next(plain_signals) if gauge is None else gauge.read(system, state, acting, inputs).reshape(shape)
+        )
     return xp.stack([xp.broadcast_to(values, shape) for values in signals], axis=-1)

@@ -67,20 +67,20 @@ def histories(
     state = tree.motion(y, yd, ydd, inputs)
     frames = state.every_point
     rows, ground, acting = tree.demanded(state, inputs)
-    whole = [y, yd]
+    full_state = [y, yd]
     if inputs.prescribed is not None:
-        whole = [tree.complete(unknown, inputs.prescribed[:, k]) for k, unknown in enumerate(whole)]
+        full_state = [tree.complete(unknown, inputs.prescribed[:, k]) for k, unknown in enumerate(full_state)]
     xp = namespace(rows)
-    effort = xp.zeros_like(whole[0]) if inputs.efforts is None else inputs.efforts
+    effort = xp.zeros_like(full_state[0]) if inputs.efforts is None else inputs.efforts
     effort = xp.where(np.isin(np.arange(tree.size), tree.fixed), rows, effort)
-    out = {
+    values = {
         "place": xp.stack([frame.p for frame in frames], axis=1),
         "velocity": xp.stack([turned(frame.R, frame.v) for frame in frames], axis=1),
         "acceleration": xp.stack([frame.a for frame in frames], axis=1),
         "attitude": xp.stack([parameters_of_matrices(frame.R) for frame in frames], axis=1),
         "angular_velocity": xp.stack([frame.w for frame in frames], axis=1),
-        "q": whole[0],
-        "qd": whole[1],
+        "q": full_state[0],
+        "qd": full_state[1],
         "effort": effort,
         "ground_force": -ground.force,
         "ground_moment": -ground.moment,
@@ -88,8 +88,8 @@ def histories(
     if inertial:
         gravity = np.zeros(3) if system.gravity is None else as_array(system.gravity)
         momentum, spin, energy = tree.invariants(state, gravity)
-        out |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
-    return out, {name: carried(system, state, name, acting) for name in system.flexible}
+        values |= {"momentum": momentum, "angular_momentum": spin, "energy": energy}
+    return values, {name: carried(system, state, name, acting) for name in system.flexible}
 
 
 def deflections(body: Structure, q: Array) -> Array:
@@ -114,9 +114,9 @@ def carried(system: System, state: State, name: str, acting: list[list[Acting]])
     places, root = list(stations_of(system.bodies[name]).values()), state.roots[k]  # type: ignore[arg-type]
     q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
     wrenches = [at_point.wrench.brought(at_point.by) for at_point in acting[k]]
-    none = np.zeros((len(q), 0, 3))
+    zeros = np.zeros((len(q), 0, 3))
     force, moment = (
-        namespace(q).stack([getattr(wrench, part) for wrench in wrenches], axis=1) if wrenches else none
+        namespace(q).stack([getattr(wrench, part) for wrench in wrenches], axis=1) if wrenches else zeros
         for part in ("force", "moment")
     )
     hung = Hung(np.array([places[at_point.point] for at_point in acting[k]], dtype=int), force, moment)
@@ -130,16 +130,18 @@ def loads_of(body: Structure, state: Carried, time: Floats) -> Loads:
     force, moment = xp.abs(loads.force).max(axis=(0, 2)), xp.abs(loads.moment).max(axis=(0, 2))
     # A joint that is free carries nothing but rounding.
     idle = {"force": force * body.length <= ROUNDING * moment, "moment": moment <= ROUNDING * force * body.length}
-    kept = dict[str, Any]()
-    for name, none in idle.items():
+    fields = dict[str, Any]()
+    for name, shape in idle.items():
         for key in (name, f"section_{name}"):
-            kept[key] = xp.where(none[:, None], 0.0, getattr(loads, key))
-    return replace(loads, **kept)
+            fields[key] = xp.where(shape[:, None], 0.0, getattr(loads, key))
+    return replace(loads, **fields)
 
 
 def held_loads(loads: Loads) -> tuple[Floats, Floats]:
-    """Force and moment that hold a body: those at its root (t, 3); with supports those of all its sections and of the
-    supports (t, k, 3), as a pin at the root takes no moment.
+    """Force and moment that hold a body.
+
+    They are those at its root (t, 3). With supports they are those of all its sections and of the supports (t, k, 3),
+    as a pin at the root takes no moment.
     """
     if loads.support_force is None or loads.support_moment is None:
         return loads.root_force, loads.root_moment

@@ -43,7 +43,7 @@ class Initial(Value):
     """The state of what deforms, relative to its root, in which a response begins; a machine's with its spin-up.
 
     Joints begin at their own initial values.
-    What is given of the displacement takes the place of the equilibrium, of the bodies whose points are displaced; what
+    What is given of the displacement takes the place of the equilibrium, of the bodies whose points are displaced. What
     is not given of the velocity is zero.
 
     Raises
@@ -170,12 +170,12 @@ def _displacements(where: str, points: Mapping[str, Mapping[Any, float] | None] 
     return moved
 
 
-def _in_words(moved: Sequence[Moved], how: str, size: float, unit: str) -> str:
+def _in_words(moved: Sequence[Moved], verb: str, size: float, unit: str) -> str:
     """Say how points are displaced or move."""
     by_point = dict[str, list[str]]()
     for _, point, axis, value in moved:
         by_point.setdefault("its tip" if point == "tip" else point, []).append(f"{axis} {size * value:.4g} {unit}")
-    return " and ".join(f"{point} {how} {', '.join(values)}" for point, values in by_point.items())
+    return " and ".join(f"{point} {verb} {', '.join(values)}" for point, values in by_point.items())
 
 
 def begun(initial: Initial | State) -> Initial:
@@ -212,7 +212,7 @@ def assign_to_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) 
             family = ("axial", "y", "z")[number]
             fix = f"give model.modes.{family} = 1 or more"
             raise InputError(where, "is along a direction without shapes", fix)
-        if any((point, component.axis) == (other.point, other.axis) for other in by_body[owner]):
+        if any((point, component.axis) == (assigned.point, assigned.axis) for assigned in by_body[owner]):
             raise InputError(where, "is given twice", "keep one of them")
         by_body[owner].append(Moved(where, point, component.axis, component.value))
     return by_body
@@ -221,7 +221,7 @@ def assign_to_bodies(flexible: Mapping[str, Structure], moved: Sequence[Moved]) 
 def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
     """Coordinates (n,) of least strain energy with displacements of points.
 
-    They are found by Newton's method with Lagrange's multipliers; NaN where JAX traces the body and there are none.
+    They are found by Newton's method with Lagrange's multipliers, or NaN where JAX traces the body and there are none.
     """
     stations, axes, wanted = _rows(body, moved)
     if body.traced:
@@ -231,8 +231,8 @@ def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
     q = np.zeros(body.size)
     for _ in range(_ITERATIONS):
         coefficients, elastic = body.linearise(q)
-        missing = wanted - body.displacement(q)[stations, axes]
-        change = _constrained(coefficients.stiffness, -elastic, body.station_slopes(q)[stations, axes], missing)
+        remainder = wanted - body.displacement(q)[stations, axes]
+        change = _constrained(coefficients.stiffness, -elastic, body.station_slopes(q)[stations, axes], remainder)
         q = q + change
         if np.abs(change).max() <= 1e-12 * np.abs(q).max():
             return q
@@ -241,7 +241,7 @@ def shape_of(body: Structure, moved: Sequence[Moved]) -> Array:
 
 
 def rates_of(body: Structure, q: Array, moved: Sequence[Moved]) -> Array:
-    """Rates (n,) with the velocities of points, in the shape of least strain energy; zero without any velocity."""
+    """Rates (n,) with the velocities of points, in the shape of least strain energy, or zero without any velocity."""
     if not moved:
         return 0.0 * q
     stations, axes, wanted = _rows(body, moved)

@@ -40,12 +40,12 @@ def framed(whirl: Whirl | None, frequency: Floats, modes: Complex) -> dict[str, 
 
 def largest_component(shape: Complex) -> Complex:
     """The component of each mode (k, ...) that has the largest absolute value, (k,)."""
-    flat = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
-    return flat[np.arange(len(flat)), np.abs(flat).argmax(axis=1)]
+    components = shape.reshape(len(shape), -1) if shape.size else np.ones((len(shape), 1))
+    return components[np.arange(len(components)), np.abs(components).argmax(axis=1)]
 
 
 def instabilities(
-    point: Steady, moving: Vibrations, directions: Callable[..., tuple[str, ...]] | None = None
+    point: Steady, vibrations: Vibrations, directions: Callable[..., tuple[str, ...]] | None = None
 ) -> tuple[Instability, ...]:
     """Growing motions about a steady state, described by its words for directions, or by other ones."""
     say = partial(directions, point) if directions else point.directions
@@ -53,9 +53,9 @@ def instabilities(
     def directions_of(modes: Complex) -> tuple[str, ...]:
         return say(modes) if modes.size else ()
 
-    flutter = np.flatnonzero(moving.flutter)
-    diverging = zip(moving.diverging, directions_of(moving.divergence), strict=True)
-    fluttering = zip(moving.value[flutter], directions_of(moving.modes[:, flutter]), strict=True)
+    flutter = np.flatnonzero(vibrations.flutter)
+    diverging = zip(vibrations.diverging, directions_of(vibrations.divergence), strict=True)
+    fluttering = zip(vibrations.value[flutter], directions_of(vibrations.modes[:, flutter]), strict=True)
     return (
         *(Instability("divergence", float(v.real), 0.0, way) for v, way in diverging),
         *(Instability("flutter", float(v.real), float(abs(v) / (2 * np.pi)), way) for v, way in fluttering),
@@ -82,7 +82,7 @@ def linearize_system(
     """State-space model of small departures of a system, without its controllers.
 
     The inputs are efforts on joints' coordinates, the components of forces at points, and accelerations of the base and
-    of prescribed coordinates; the outputs are the joints' coordinates and rates and the places of points, as named.
+    of prescribed coordinates. The outputs are the joints' coordinates and rates and the places of points, as named.
     """
     system = state.system
     local = state.local
@@ -101,8 +101,8 @@ def linearize_system(
     driving = tuple(Signal(signal, drivable[signal].unit) for signal in driven)
     a, b, c, d = state.linear._replace(inputs=b).state_space(*slopes, direct)
     names = state.names
-    per = {"": "", "_rate": "/s"}  # of names and units; rotations of a ball are counted from this state
-    states = [Signal(f"{q}{end}", units[q] + per[end] if units.get(q) else "") for end in per for q in names]
+    suffixes = {"": "", "_rate": "/s"}  # of names and units; rotations of a ball are counted from this state
+    states = [Signal(f"{q}{end}", units[q] + suffixes[end] if units.get(q) else "") for end in suffixes for q in names]
     return StateSpace(
         a=a,
         b=b,
@@ -152,8 +152,8 @@ def default_inputs(system: System, motion: Motion | None) -> list[str]:
 
 def default_outputs(system: System) -> list[str]:
     """Names of coordinates, their rates and the places of points."""
-    others = ("acceleration", "velocity", "attitude", "spin")
-    return [name for name in signals_of(system) if not name.rpartition(".")[2].startswith(others)]
+    quantities = ("acceleration", "velocity", "attitude", "spin")
+    return [name for name in signals_of(system) if not name.rpartition(".")[2].startswith(quantities)]
 
 
 def _inputs(
@@ -161,8 +161,11 @@ def _inputs(
 ) -> tuple[Floats, Floats]:
     """Generalised forces (n, m) of unit inputs, and their feedthrough (k, m) to what `read` reads, by complex steps."""
     state = local.y + 0j, local.yd + 0j, local.ydd + 0j
-    now = tuple(values[None] for values in state)
-    forces, direct = np.zeros((len(names), len(chosen))), np.zeros((read(*now, local.inputs).shape[-1], len(chosen)))
+    state_now = tuple(values[None] for values in state)
+    forces, direct = (
+        np.zeros((len(names), len(chosen))),
+        np.zeros((read(*state_now, local.inputs).shape[-1], len(chosen))),
+    )
     for k, drive in enumerate(chosen):
         if drive.way == "effort":
             (name,) = local_names([system.coordinates[drive.at]])
@@ -170,19 +173,19 @@ def _inputs(
             continue
         moved = _perturbed_inputs(local.inputs, drive)
         forces[:, k] = -local.tree(*state, moved).imag / STEP
-        direct[:, k] = read(*now, moved)[0].imag / STEP
+        direct[:, k] = read(*state_now, moved)[0].imag / STEP
     return forces, direct
 
 
-def _perturbed_inputs(inputs: Inputs, by: Driven) -> Inputs:
+def _perturbed_inputs(inputs: Inputs, driven: Driven) -> Inputs:
     """Inputs with a complex step in one of them: in an acceleration of the ground, or in an entry of an array."""
-    if by.way in ("a", "alpha"):
-        faster = getattr(inputs.ground, by.way) + 1j * STEP * np.eye(3)[by.at]
-        return replace(inputs, ground=replace(inputs.ground, **{by.way: faster}))
-    row = by.force if by.way == "wrenches" else 2  # of prescribed values, rates and accelerations the last
-    values: Any = np.array(getattr(inputs, by.way), dtype=complex)
-    values[row, by.at] += 1j * STEP
-    return replace(inputs, **{by.way: values})
+    if driven.way in ("a", "alpha"):
+        faster = getattr(inputs.ground, driven.way) + 1j * STEP * np.eye(3)[driven.at]
+        return replace(inputs, ground=replace(inputs.ground, **{driven.way: faster}))
+    row = driven.force if driven.way == "wrenches" else 2  # of prescribed values, rates and accelerations the last
+    values: Any = np.array(getattr(inputs, driven.way), dtype=complex)
+    values[row, driven.at] += 1j * STEP
+    return replace(inputs, **{driven.way: values})
 
 
 def _outputs(local: Point, read: Callable[..., Any]) -> tuple[Floats, tuple[Floats, Floats, Floats]]:

@@ -42,14 +42,14 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 
 def left_unjudged(system: System) -> str:
-    """Sentence about bodies, and about meshes, that are not judged; empty if there are none."""
+    """Sentence about bodies, and about meshes, that are not judged, or empty if there are none."""
     heavy = [name for name, body in system.bodies.items() if name not in system.flexible and body.mass > 0]
     if len(system.flexible) == 1 and not heavy:  # beside a free hub at most
         return unjudged(*system.flexible.values())
     judged, sentences = judged_bodies(system), list[str]()
-    others = [name for name, body in system.flexible.items() if body.size and name not in judged]
-    if others:
-        sentences.append(NOT_ALL.format(", ".join(others)))
+    remaining = [name for name, body in system.flexible.items() if body.size and name not in judged]
+    if remaining:
+        sentences.append(NOT_ALL.format(", ".join(remaining)))
     meshes = [name for name, body in judged.items() if body.source is None and body.coarser is None]
     if meshes:
         sentences.append(NO_MESH.replace("mesh", f"mesh of {', '.join(meshes)}"))
@@ -57,7 +57,7 @@ def left_unjudged(system: System) -> str:
 
 
 def coarser(system: System) -> System | None:
-    """Return the system with coarser meshes of its solids, in the same coordinates; None if no solid has one."""
+    """Return the system with coarser meshes of its solids, in the same coordinates, or None if no solid has one."""
     rough = {
         name: replace(body.coarser, history=body.history, load_values=body.load_values)
         for name, body in system.flexible.items()
@@ -71,26 +71,28 @@ def richer(
     bases: Mapping[str, Base],
     *,
     exact: bool,
-    along: Mapping[str, Directions] = MappingProxyType({}),
+    bent_directions: Mapping[str, Directions] = MappingProxyType({}),
 ) -> Richer:
     """Give more shapes to the bodies whose roots move as `bases`, in their own models or the exact one.
 
-    Beams get new shapes `along` some of x, y and z, by default along all.
+    Beams get new shapes `bent_directions` some of x, y and z, by default along all.
     """
     beams, original = dict[str, Structure](), dict[str, IntArray]()
     for name, base in bases.items():
         body = judged_bodies(system)[name]
-        directions = along.get(name, (True, True, True))
+        directions = bent_directions.get(name, (True, True, True))
         rich, original[name] = enrichment(body, base).model("exact" if exact else body.kind, directions=directions)
         beams[name] = replace(rich, history=body.history, load_values=body.load_values)
-    other = replace(system, bodies={**system.bodies, **beams})
+    richer_system = replace(system, bodies={**system.bodies, **beams})
     # Names of the bodies' coordinates in the richer system, where their numbers have changed.
     renamed = {
-        f"{name}.q{k + 1}": f"{name}.q{new + 1}" for name, index in original.items() for k, new in enumerate(index)
+        f"{name}.q{k + 1}": f"{name}.q{place + 1}" for name, index in original.items() for k, place in enumerate(index)
     }
-    numbers = {name: k for k, name in enumerate(other.coordinates)}
+    numbers = {name: k for k, name in enumerate(richer_system.coordinates)}
     indices = np.array([numbers[renamed.get(name, name)] for name in system.coordinates], dtype=int)
-    return Richer(other, np.searchsorted(other.tree.unknowns, indices[system.tree.unknowns]), system, renamed)
+    return Richer(
+        richer_system, np.searchsorted(richer_system.tree.unknowns, indices[system.tree.unknowns]), system, renamed
+    )
 
 
 def linear_about_rest(system: System, bodies: Iterable[str]) -> System:
@@ -108,7 +110,7 @@ def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
     loaded = [(link.parent, link.on) for link in tree.links] + [(force.body, force.on) for force in tree.forces]
     for name, body in judged_beams(system).items():
         number, stations = system.order.index(name), [*stations_of(body).values()]
-        hung = {stations[on] for owner, on in loaded if owner == number and on < len(stations)}
+        hung = {stations[point] for owner, point in loaded if owner == number and point < len(stations)}
         theory = theory_of(body, tuple(sorted(hung)))
         theories[name] = theory if straight else theory.exact
     return theories
@@ -117,8 +119,8 @@ def theories_of(system: System, *, straight: bool = False) -> dict[str, Theory]:
 def with_beams(system: System, beams: Mapping[str, Structure]) -> System:
     """Return the system with other structures in place of some of its beams, under the same loads."""
     judged = judged_beams(system)
-    kept = dict[str, Structure]()
+    bodies_kept = dict[str, Structure]()
     for name, beam in beams.items():
         body = judged[name]
-        kept[name] = replace(beam, source=body.source, history=body.history, load_values=body.load_values)
-    return replace(system, bodies={**system.bodies, **kept})
+        bodies_kept[name] = replace(beam, source=body.source, history=body.history, load_values=body.load_values)
+    return replace(system, bodies={**system.bodies, **bodies_kept})

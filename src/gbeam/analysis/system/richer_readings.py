@@ -20,10 +20,10 @@ from gbeam.analysis.accuracy.correction import (
     PLACE,
     Correction,
     Departures,
+    Embedding,
     Quantity,
     Reading,
     State,
-    Within,
 )
 from gbeam.analysis.accuracy.looks import Looks
 from gbeam.analysis.system.richer import coarser, judged_bodies, linear_about_rest, richer, theories_of, with_beams
@@ -34,18 +34,18 @@ from gbeam.integrate.equations import Trajectory
 from gbeam.mechanics.tree.system import System
 from gbeam.results.parts import Base
 
-Again = Callable[[System], Solution]  # solution of another system, at the results' times
+Recompute = Callable[[System], Solution]  # solution of another system, at the results' times
 Rerun = Callable[[System, Iterable[str]], Reading]  # runs another system, and reads some of its bodies
 TOGETHER = "with more shapes of the same models the system does not follow: too few shapes count as the models' error"
 UNKNOWN = "errors by the theory of slender beams are not known: "
 BENT_FAR = UNKNOWN + "thick beams do not follow"
 LOOP_LOST = UNKNOWN + "controllers do not hold the system with more shapes in its beams"
-LOST = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
+RUNAWAY = 10.0  # times the motion, or the extent of the system: a larger answer of linear equations is none
 
 
 @dataclass(frozen=True)
 class Starting:
-    """Starts of richer systems. `flags` tell what is bent and accelerated, see :func:`unknown_at_start`; `state` gives
+    """Starts of richer systems. `flags` tell what is bent and accelerated, see :func:`unknown_at_start`. `state` gives
     the coordinates and rates at which they begin, or the last of these.
     """
 
@@ -79,11 +79,11 @@ class RicherReadings(NamedTuple):
     note: str = ""
 
 
-def reader_of_runs(again: Again, count: int) -> Rerun:
+def reader_of_runs(recompute: Recompute, count: int) -> Rerun:
     """Function that runs a system and reads some bodies; ComputationError if the run has fewer than `count` times."""
 
     def rerun(system: System, bodies: Iterable[str]) -> Reading:
-        solution = again(system)
+        solution = recompute(system)
         if len(solution.trajectory.time) < count:
             raise ComputationError("not converged", "the richer system has no response")
         return solution.read(bodies)
@@ -137,61 +137,62 @@ def depart_to_richer(
 
     If `straight`, departures are those from undeformed bodies.
     """
-    along = solution.bent_directions(bases)
-    rich = richer(solution.system, bases, exact=True, along=along)
-    within = solution.insert(rich.system, bases, rich.shared)
+    directions = solution.bent_directions(bases)
+    rich = richer(solution.system, bases, exact=True, bent_directions=directions)
+    embedding = solution.insert(rich.system, bases, rich.shared)
     linear = solution.posed(bases, linear_about_rest(rich.system, bases)) if straight else None
-    departures, residual = within.departures(linear), within.residual()
+    departures, residual = embedding.departures(linear), embedding.residual()
     if linear is not None and not departures.inert:  # light arms on hinges that follow one another
-        departures = within.departures()
-    begun = _initial_departure(starting, rich.system, within, departures)
+        departures = embedding.departures()
+    begun = _initial_departure(starting, rich.system, embedding, departures)
     total, of_model = departures.answer(residual, begun), None
     if not all(solution.system.flexible[name].exact for name in bases):
-        same = richer(solution.system, bases, exact=False, along=along).system
-        start = _initial_departure(starting, rich.system, within, departures, within.new_part, like=same)
-        of_model = total.minus(departures.answer(within.new_part(residual), start))
+        same = richer(solution.system, bases, exact=False, bent_directions=directions).system
+        start = _initial_departure(starting, rich.system, embedding, departures, embedding.new_part, like=same)
+        of_model = total.minus(departures.answer(embedding.new_part(residual), start))
     alone = list[Correction]()
     for name in bases if len(bases) > 1 else ():
         # The residual of a system in which this body alone is exact. The others feel it only through the joints.
-        one_richer = richer(solution.system, {name: bases[name]}, exact=True, along=along)
+        one_richer = richer(solution.system, {name: bases[name]}, exact=True, bent_directions=directions)
         one = solution.insert(one_richer.system, (), one_richer.shared)
         kept = [k for k, body in enumerate(one.richer.bodies) if body == name or body not in bases]
         onto = np.zeros((len(one.richer.names), residual.shape[1]))  # from its unknowns to those of all richer bodies
-        onto[kept, [within.richer.names.index(one.richer.names[k]) for k in kept]] = 1.0
+        onto[kept, [embedding.richer.names.index(one.richer.names[k]) for k in kept]] = 1.0
         start = _initial_departure(starting, one_richer.system, one, departures, lambda r: r @ onto, rich.system)  # noqa: B023
         alone.append(departures.answer(one.residual() @ onto, start))
     rough = _coarser_departure(solution, bases, starting)
     parts = [total, *([] if of_model is None else [of_model, total.minus(of_model)]), *alone]
-    sizes = [within.richer.sizes(part) for part in parts]
+    sizes = [embedding.richer.sizes(part) for part in parts]
     sizes += [] if rough is None else [rough[0].richer.sizes(rough[1])]
     looks = look(np.concatenate(sizes, axis=1))
-    computed, truth = solution.select(looks.at).read(bases), within.read_corrected(total, looks.at)
-    few_shapes = computed if of_model is None else within.read_corrected(of_model, looks.at)
+    computed, truth = solution.select(looks.at).read(bases), embedding.read_corrected(total, looks.at)
+    few_shapes = computed if of_model is None else embedding.read_corrected(of_model, looks.at)
     return RicherReadings(
         looks, computed, truth, (few_shapes, truth), (computed, few_shapes),
-        [within.read_corrected(departure, looks.at) for departure in alone],
+        [embedding.read_corrected(departure, looks.at) for departure in alone],
         None if rough is None else rough[0].read_corrected(rough[1], looks.at),
-        _ringing(rich.system, bases, within, *departures.ringing(residual, begun)),
+        _ringing(rich.system, bases, embedding, *departures.ringing(residual, begun)),
     )  # fmt: skip
 
 
 def _coarser_departure(
     solution: Solution, bodies: Iterable[str], starting: Starting | None
-) -> tuple[Within, Correction] | None:
-    """The solution in the system with coarser meshes, and its departure there; None if no solid has one."""
+) -> tuple[Embedding, Correction] | None:
+    """The solution in the system with coarser meshes, and its departure there, or None if no solid has one."""
     rough = coarser(solution.system)
     if rough is None:
         return None
-    within = solution.insert(rough, bodies)
-    departures = within.departures()
-    return within, departures.answer(within.residual(), _initial_departure(starting, rough, within, departures))
+    embedding = solution.insert(rough, bodies)
+    departures = embedding.departures()
+    start = _initial_departure(starting, rough, embedding, departures)
+    return embedding, departures.answer(embedding.residual(), start)
 
 
-def _ringing(system: System, bodies: Iterable[str], within: Within, rate: Floats, amplitude: Floats) -> Ringing:
+def _ringing(system: System, bodies: Iterable[str], embedding: Embedding, rate: Floats, amplitude: Floats) -> Ringing:
     """Bounds of the ringing of deflections and root loads, by elastic forces, from amplitudes (n, k) of modes."""
     sizes = dict[Quantity, Floats]()
     for name in bodies:
-        body, columns = system.flexible[name], [k for k, owner in enumerate(within.richer.bodies) if owner == name]
+        body, columns = system.flexible[name], [k for k, owner in enumerate(embedding.richer.bodies) if owner == name]
         q = amplitude[columns].T
         deflection, force, moment = first_order_sizes(body, q, elastic_accelerations(body, q))
         sizes |= {(name, DEFLECTION): deflection, (name, "force"): force, (name, "moment"): moment}
@@ -217,14 +218,16 @@ def differences_to_thick_beams(
     bent = partial(with_beams, solution.system)
     thick = bent({name: theory.thick for name, theory in theories.items()})
 
-    def begun(departures: Departures, within: Within, plate: Floats) -> State | None:
+    def begun(departures: Departures, embedding: Embedding, plate: Floats) -> State | None:
         """Initial departure of thick beams from slender ones."""
         if starting is None or starting.state is None:
-            return _initial_departure(starting, thick, within, departures, lambda r: r + within.trajectory.q[0] @ plate)
-        departure = np.zeros((2, len(within.richer.names)))
+            return _initial_departure(
+                starting, thick, embedding, departures, lambda r: r + embedding.trajectory.q[0] @ plate
+            )
+        departure = np.zeros((2, len(embedding.richer.names)))
         for sign, other in ((-1, bent({name: theory.slender for name, theory in theories.items()})), (1, thick)):
             names, values = other.unknown_coordinates, np.array(starting.state(other))
-            departure[:, [within.richer.names.index(name) for name in names[-values.shape[1] :]]] += sign * values
+            departure[:, [embedding.richer.names.index(name) for name in names[-values.shape[1] :]]] += sign * values
         return departure[0], departure[1]
 
     lacking = thick_beam_differences(
@@ -236,7 +239,7 @@ def differences_to_thick_beams(
         look,
         None if loop is None else lambda beams: loop(bent(beams), theories),
     )
-    if lacking.sizes.get(PLACE, math.nan) <= LOST * extent:
+    if lacking.sizes.get(PLACE, math.nan) <= RUNAWAY * extent:
         return lacking, ""
     return Lacking(), BENT_FAR if loop is None else LOOP_LOST
 
@@ -244,13 +247,13 @@ def differences_to_thick_beams(
 def _initial_departure(
     starting: Starting | None,
     system: System,
-    within: Within,
+    embedding: Embedding,
     departures: Departures,
     part: Callable[[Floats], Floats] = np.asarray,
     departing: System | None = None,
     like: System | None = None,
 ) -> State | None:
-    """Initial departure of a solution within another `system`; None in equilibrium.
+    """Initial departure of a solution within another `system`, or None in equilibrium.
 
     It follows from a `part` of the residual at the start, or leads to the state in which the system begins, or one
     `like` it. The `departing` system is the same unless another one is passed.
@@ -258,14 +261,14 @@ def _initial_departure(
     if starting is None:
         return None
     if starting.state is not None:
-        return _difference_of_starts(starting.state, system if like is None else like, within.trajectory)
+        return _difference_of_starts(starting.state, system if like is None else like, embedding.trajectory)
     flags = starting.flags(system)
-    residual = part(within.held_residual(flags[1]))
+    residual = part(embedding.held_residual(flags[1]))
     return departures.settled(residual, *(flags if departing is None else starting.flags(departing)))
 
 
 def _difference_of_starts(state: Callable[[System], State], system: System, trajectory: Trajectory) -> State:
-    """Initial state of a system, or of its last coordinates, minus that of a trajectory; NaN if it has none."""
+    """Initial state of a system, or of its last coordinates, minus that of a trajectory, or NaN if it has none."""
     departure = np.zeros((2, trajectory.q.shape[1]))
     try:
         start = state(system)

@@ -14,11 +14,11 @@ from gbeam.analysis.accuracy.correction import (
     DEFLECTION,
     PLACE,
     Correction,
+    Embedding,
     IntArray,
     Posed,
     Quantity,
     Reading,
-    Within,
     matrix_times,
     pieces,
 )
@@ -70,17 +70,17 @@ class Solution:
             self.system, self.trajectory.select(times), lambda system, part: self.inputs(system, times[part])
         )
 
-    def insert(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Within:
+    def insert(self, system: System, bodies: Iterable[str], shared: IntArray | None = None) -> Embedding:
         """Put the solution into another system's equations, by its unknowns' names or their indices `shared`."""
-        return Within.lifted(self.posed(bodies, system), self.posed(bodies), self.trajectory, shared)
+        return Embedding.lifted(self.posed(bodies, system), self.posed(bodies), self.trajectory, shared)
 
     def states(self, bodies: Iterable[str]) -> tuple[Floats, dict[str, Carried]]:
         """Places (t, p, 3) m of all points, and the states of some bodies by name."""
         tree, trajectory = self.system.tree, self.trajectory
         places, states = list[Floats](), {name: list[Carried]() for name in bodies}
         for times in pieces(len(trajectory.time), tree.size):
-            inputs, at = self.inputs(self.system, times), trajectory.select(times)
-            state = tree.motion(at.q, at.qd, at.qdd if states else 0 * at.q, inputs)
+            inputs, chosen = self.inputs(self.system, times), trajectory.select(times)
+            state = tree.motion(chosen.q, chosen.qd, chosen.qdd if states else 0 * chosen.q, inputs)
             places.append(state.places)
             if states:
                 acting = tree.demanded(state, inputs)[2] if self.system.laden & {*states} else [[] for _ in tree.links]
@@ -92,15 +92,15 @@ class Solution:
         """Places (t, p, 3) m of all points, and quantities of some bodies.
 
         For each body these are deflections (t, p, 3) m, force and moment (t, 3) at the root, and the largest normal and
-        von Mises stress over the sections (t,); for a solid the stress (t, c) of `recovery.felt`.
+        von Mises stress over the sections (t,). A solid has the stress (t, c) of `recovery.felt`.
         """
         places, states = self.states(bodies)
-        out: dict[Quantity, Floats] = {PLACE: places}
+        readings: dict[Quantity, Floats] = {PLACE: places}
         for name, moved in states.items():
             body = self.system.flexible[name]
             time = self.trajectory.time
-            out |= reading_of(name, body, time, moved.q, loads_of(body, moved, time))
-        return out
+            readings |= reading_of(name, body, time, moved.q, loads_of(body, moved, time))
+        return readings
 
     def turning(self) -> Floats:
         """Places (t, 3 k, 3) m, relative to the root in the ground's axes, of three points on each of k rigid bodies,
@@ -116,17 +116,17 @@ class Solution:
                 radii[k] = float(np.sqrt(about_root))
         places = list[Floats]()
         for times in pieces(len(trajectory.time), tree.size) if radii else ():
-            at = trajectory.select(times)
-            roots = tree.motion(at.q, at.qd, 0 * at.q, self.inputs(self.system, times)).roots
+            state = trajectory.select(times)
+            roots = tree.motion(state.q, state.qd, 0 * state.q, self.inputs(self.system, times)).roots
             axes = [radius * np.swapaxes(roots[k].R, -1, -2) for k, radius in radii.items()]
-            places.append(np.concatenate([np.broadcast_to(ends, (len(at.q), 3, 3)) for ends in axes], axis=1))
+            places.append(np.concatenate([np.broadcast_to(ends, (len(state.q), 3, 3)) for ends in axes], axis=1))
         return np.concatenate(places) if places else np.zeros((len(trajectory.time), 0, 3))
 
     def bases(self, bodies: Iterable[str]) -> dict[str, Base]:
         """Motions (t, 3) of the roots of some bodies by name, at a selection of the times."""
         times = matrix_times(len(self.trajectory.time))
-        at = self.trajectory.select(times)
-        state = self.system.tree.motion(at.q, at.qd, at.qdd, self.inputs(self.system, times))
+        chosen = self.trajectory.select(times)
+        state = self.system.tree.motion(chosen.q, chosen.qd, chosen.qdd, self.inputs(self.system, times))
         roots = {name: state.roots[k] for k, name in enumerate(self.system.order)}
         return {name: Base(roots[name].a, roots[name].w, roots[name].alpha) for name in bodies}
 
@@ -136,21 +136,21 @@ class Solution:
         Bodies on which others hang, or forces act, may move along all.
         """
         tree, count, acted = self.system.tree, len(self.trajectory.time), self.system.laden
-        every, wanted = dict[str, Directions](), list[tuple[int, str]]()
+        directions, wanted = dict[str, Directions](), list[tuple[int, str]]()
         for k, name in enumerate(self.system.order):
             if name in bodies:
-                every[name] = True, True, True
+                directions[name] = True, True, True
                 body = self.system.flexible[name]
                 if body.source is not None and not all(body.counts[:3]) and name not in acted:
                     wanted.append((k, name))
         if wanted:
             times = np.linspace(0, count - 1, min(count, SCAN)).astype(int)
-            at, inputs = self.trajectory.select(times), self.inputs(self.system, times)
-            state = tree.motion(at.q, at.qd, at.qdd, inputs)
+            chosen, inputs = self.trajectory.select(times), self.inputs(self.system, times)
+            state = tree.motion(chosen.q, chosen.qd, chosen.qdd, inputs)
             for k, name in wanted:
                 q, qd, qdd = (values[k][-1] for values in (state.q, state.qd, state.qdd))
-                every[name] = _bent_axes(self.system.flexible[name], state.roots[k], q, qd, qdd, inputs.loads[k])
-        return every
+                directions[name] = _bent_axes(self.system.flexible[name], state.roots[k], q, qd, qdd, inputs.loads[k])
+        return directions
 
     @property
     def deformed(self) -> dict[str, Floats]:
@@ -212,14 +212,17 @@ def elastic_accelerations(body: Structure, q: Floats) -> Floats:
     return np.asarray(np.linalg.solve(body.coefficients.mass, body.coefficients.stiffness @ q.T).T)
 
 
-def departure_sizes(system: System, bodies: Iterable[str], by: Correction) -> Floats:
+def departure_sizes(system: System, bodies: Iterable[str], correction: Correction) -> Floats:
     """Sizes (t, k) of a small departure: of all coordinates and their accelerations and, for some `bodies`, of the
     deflections, the root loads by inertia and by elastic forces, and the elastic energy.
     """
-    names, sizes = system.unknown_coordinates, list[Floats]([*np.abs(by.value).T, *np.abs(by.acceleration).T])
+    names, sizes = (
+        system.unknown_coordinates,
+        list[Floats]([*np.abs(correction.value).T, *np.abs(correction.acceleration).T]),
+    )
     for name in bodies:
         columns, body = deforming(names, name), system.flexible[name]
-        q, qdd = by.value[:, columns], by.acceleration[:, columns]
+        q, qdd = correction.value[:, columns], correction.acceleration[:, columns]
         sizes += [*first_order_sizes(body, q, qdd), *first_order_sizes(body, q, elastic_accelerations(body, q))[1:]]
         sizes.append(np.einsum("ti,ij,tj->t", q, body.coefficients.stiffness, q))
     return np.stack(sizes, axis=1)

@@ -39,7 +39,7 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
     Coordinates that are `bent` rest with their forces in balance. Those that are `accelerated` have the accelerations
     that their forces make. The others are held. The result is NaN where JAX traces the residual and there is no start.
     """
-    held, traced = ~(bent | accelerated), holds_jax(residual, q, qd, inputs)
+    is_held, traced = ~(bent | accelerated), holds_jax(residual, q, qd, inputs)
     begun: Array = np.zeros(len(bent))
     if traced:
         import jax.numpy as jnp
@@ -49,7 +49,7 @@ def solve_start(residual: Any, q: Array, qd: Array, inputs: Any, *, bent: Flags,
     def forces(z: Array) -> Array:
         """Residual (..., n) at displacements and accelerations z (..., n); z itself for coordinates that are held."""
         remaining = residual(q + bent * z, qd + 0 * z, accelerated * z, inputs)
-        return namespace(remaining).where(held, z, remaining)
+        return namespace(remaining).where(is_held, z, remaining)
 
     def partial_forces(z: Array, share: Any, first: Array) -> Array:
         """Residual less the rest, 1 − `share`, of the `first` one: its root balances only this share of the forces."""
@@ -126,7 +126,7 @@ def _solve_for_start(system: System, inputs: Inputs, initial: Initial) -> tuple[
     """Solve for the coordinates and accelerations of a start.
 
     Returns flags (n,), too, of the coordinates that were bent and of those that were accelerated. Bodies with displaced
-    points take their shapes from these points; what remains to bend or accelerate is solved for.
+    points take their shapes from these points. What remains to bend or accelerate is solved for.
     """
     tree, moved = system.tree, assign_to_bodies(system.flexible, initial.displaced)
     y, yd = system.start[0][tree.unknowns], system.start[1][tree.unknowns]
@@ -137,10 +137,10 @@ def _solve_for_start(system: System, inputs: Inputs, initial: Initial) -> tuple[
         inputs, yd = _accelerate_ground(inputs, np.asarray(initial.acceleration)), 0 * yd
     for name, components in moved.items():
         if components:
-            onto = _body_selection(system, name)
-            y = y + shape_of(system.flexible[name], components) @ onto
-            held = ~onto.any(axis=0)
-            bent, accelerated = bent & held, accelerated & held
+            selection = _body_selection(system, name)
+            y = y + shape_of(system.flexible[name], components) @ selection
+            is_held = ~selection.any(axis=0)
+            bent, accelerated = bent & is_held, accelerated & is_held
     if not (bent | accelerated).any():
         return Begun(y, 0 * y), bent, accelerated
     return solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated), bent, accelerated
@@ -155,24 +155,24 @@ def _starting_rates(system: System, y: Array, yd: Array, initial: Initial) -> Ar
     """Rates (n,) at coordinates y: `yd` of joints, and those of bodies by the initial velocities of their points."""
     for name, components in assign_to_bodies(system.flexible, initial.moving).items():
         if components:
-            onto = _body_selection(system, name)
-            yd = yd + rates_of(system.flexible[name], onto @ y, components) @ onto
+            selection = _body_selection(system, name)
+            yd = yd + rates_of(system.flexible[name], selection @ y, components) @ selection
     return yd
 
 
 def _accelerate_ground(inputs: Inputs, acceleration: Floats) -> Inputs:
     """Return inputs by which the ground has this acceleration and nothing else, and joints rest."""
-    ground, still = inputs.ground, 0 * inputs.ground.w
-    moving = inputs.prescribed
+    ground, zero = inputs.ground, 0 * inputs.ground.w
+    prescribed = inputs.prescribed
     return replace(
         inputs,
-        ground=replace(ground, a=still + acceleration, w=still, alpha=still),
-        prescribed=None if moving is None else moving * np.array([[1.0], [0.0], [0.0]]),
+        ground=replace(ground, a=zero + acceleration, w=zero, alpha=zero),
+        prescribed=None if prescribed is None else prescribed * np.array([[1.0], [0.0], [0.0]]),
     )
 
 
 def unknown_at_start(system: System, initial: str) -> tuple[Flags, Flags]:
-    """Flags (n,) of the free coordinates that a start bends and of those that it accelerates; the others are held.
+    """Flags (n,) of the free coordinates that a start bends and of those that it accelerates. The others are held.
 
     With `initial` = "equilibrium" joints hold what they move. Springs of a clamp bend as a body does, unless their
     start is given. Springs at the root of a body that deforms let it go, since it has no mass at the root by which it
