@@ -147,12 +147,12 @@ def assembled(
     field, stiffness, heat = _unheld(beam, kind, counts, rule, at, families)
 
     def build(
-        field: Field, stiffness: Array, damping: Array | None, heat: Array | None, taken: tuple[int, ...]
+        field: Field, stiffness: Array, damping: Array | None, heat: Array | None, dependents: tuple[int, ...]
     ) -> Structure:
         """Structure in the coordinates that are not taken by supports."""
-        left = counts_without(counts, taken)
+        remaining = counts_without(counts, dependents)
         source = Source(beam, shapes, counts, automatic)
-        return _structure(source, kind, rule, at, left, field, stiffness, damping, heat)
+        return _structure(source, kind, rule, at, remaining, field, stiffness, damping, heat)
 
     if not beam.held_places:
         free = build(field, stiffness, None, heat, ())
@@ -181,43 +181,47 @@ def hold(
 
     The points of its `field` begin with the nodes of its `rule`. `field`, `stiffness` (n, n) and `heat` (n,) are those
     without supports, of `shapes` shapes and then the root's springs. `build` makes a structure of a field, a stiffness,
-    a damping, by default that of the modes, a heat and indices that are taken. Those of `dependents` are, or some that
+    a damping, by default that of the modes, a heat and indices that are taken. These are the `dependents`, or some that
     suit, as many as there are rigid conditions. The places of the field are polynomials that end at an `order`; None is
     without end.
     """
     conditions, yielding = rigid_conditions(beam), yielding_conditions(beam)
-    every = [*conditions, *yielding]
+    conditions_and_springs = [*conditions, *yielding]
     # What bends shortens along x: of polynomials of a straight beam the conditions along x alone are of second order.
-    bent = beam.line is not None or any(condition.direction == "x" for condition in every)
+    bent = beam.line is not None or any(condition.direction == "x" for condition in conditions_and_springs)
     curved = order is None or (order > 1 and bent)
     everywhere, turns = field.sections(slice(None)).jacobians(np.zeros(len(stiffness)))
     slopes, angles = everywhere[first_station:], turns[first_station:]
-    places = tuple((int(np.argmin(np.abs(at - condition.at))), condition.number) for condition in every)
+    places = tuple(
+        (int(np.argmin(np.abs(at - condition.at))), condition.number) for condition in conditions_and_springs
+    )
     parted = places[: len(conditions)], places[len(conditions) :]
     rows = components(places, slopes, angles)
-    held, sprung = rows[: len(conditions)], rows[len(conditions) :]
+    held_rows, sprung_rows = rows[: len(conditions)], rows[len(conditions) :]
     yields = [
         [getattr(beam.supports[condition.support], name).get(condition.direction, 0.0) for condition in yielding]
         for name in ("stiffness", "damping")
     ]
     xp = namespace(stiffness, *yields[0], *yields[1])
     spring, damper = (xp.asarray(values, dtype=float) for values in yields)
-    stiffness = stiffness + sprung.T @ (spring[:, None] * sprung)
-    dashpots = sprung.T @ (damper[:, None] * sprung) + root_dashpots(beam, len(stiffness))
+    stiffness = stiffness + sprung_rows.T @ (spring[:, None] * sprung_rows)
+    dashpots = sprung_rows.T @ (damper[:, None] * sprung_rows) + root_dashpots(beam, len(stiffness))
     if dependents is None:
         sizes = strain_sizes(beam, rule, everywhere, turns)
-        dependents = chosen_dependents(conditions, held, sizes, shapes)
-    basis = null_basis(held, dependents)
+        dependents = chosen_dependents(conditions, held_rows, sizes, shapes)
+    basis = null_basis(held_rows, dependents)
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)
     in_those = heat if curved or heat is None else heat @ basis
     supported = build(in_fewer, turned(stiffness, basis), None, in_those, dependents)
     c = supported.coefficients
     # The damping of modes acts where their elastic forces do.
-    kept = np.delete(np.eye(len(stiffness)), dependents, axis=1)
-    felt = stiffness @ basis @ xp.linalg.solve(c.stiffness, c.damping) @ kept.T
+    free_basis = np.delete(np.eye(len(stiffness)), dependents, axis=1)
+    felt = stiffness @ basis @ xp.linalg.solve(c.stiffness, c.damping) @ free_basis.T
     supported = replace(supported, coefficients=c.damped(c.damping + turned(dashpots, basis)))
     free = build(field, stiffness, felt + dashpots, heat, ())
-    return replace(supported, grip=Grip(free, basis, held, sprung, spring, damper, dependents, *parted, curved))
+    return replace(
+        supported, grip=Grip(free, basis, held_rows, sprung_rows, spring, damper, dependents, *parted, curved)
+    )
 
 
 def _held_field(
@@ -231,8 +235,8 @@ def _held_field(
 ) -> Field:
     """Field in the coordinates that rigid supports leave: they hold stations in directions, `held`."""
     if not held:
-        kept: Field = field
-        return kept
+        held_field: Field = field
+        return held_field
     if not curved:
         return ReducedField(field, basis)
     conditions = Conditions(measures_of(field, first_station, held), dependents, len(basis))
@@ -254,8 +258,8 @@ def _unheld(beam: Beam, kind: str, counts: Counts, rule: Quadrature, at: Array, 
     x = np.concatenate([rule.node, [m.at for m in beam.masses], loaded, at])
     move, turn = beam.root.directions()
     springs = [*beam.root.springs.values()]
-    still = np.zeros((3, sum(counts)))
-    move, turn = (np.concatenate([still, each], axis=1) for each in (move, turn))
+    zeros = np.zeros((3, sum(counts)))
+    move, turn = (np.concatenate([zeros, columns], axis=1) for columns in (move, turn))
     strains = np.pad(shaped_strains(rule, families), ((0, 0), (0, 0), (0, len(springs))))
     field: Field
     if row.strains or beam.line is not None or any(counts[3:]):
@@ -347,7 +351,7 @@ def families_of(beam: Beam, kind: str, counts: Counts, rule: Quadrature, shapes:
 def forms_of(beam: Beam, row: Kind, counts: Counts) -> Families:
     """Functions of shapes that are not adapted: polynomials of strains, or closed forms of the bare uniform beam."""
     if beam.line is not None:
-        return polynomials(beam.length, counts, [at for at in beam.line.corners if at > 0])
+        return polynomials(beam.length, counts, [corner for corner in beam.line.corners if corner > 0])
     return (polynomials if row.strains else closed_forms)(beam.length, counts)
 
 
@@ -358,7 +362,7 @@ def breaks_of(beam: Beam) -> list[float]:
 
 
 def replace_stations(structure: Structure, stations: ArrayLike) -> Structure:
-    """Return the same structure of a beam with other stations of output, m; the tip is added last."""
+    """Return the same structure of a beam with other stations of output, m. The tip is added last."""
     return remade(structure, model_of(structure), stations)
 
 
@@ -376,11 +380,11 @@ def stations_asked(structure: Structure) -> tuple[float, ...]:
     """Return the stations of output of a beam's structure, m, beside its named points and the tip."""
     assert structure.source is not None
     named = [*structure.source.beam.named_points.values()]
-    return tuple(float(at) for at in structure.stations[:-1] if at not in named)
+    return tuple(float(station) for station in structure.stations[:-1] if station not in named)
 
 
 def remade(structure: Structure, model: Model, stations: ArrayLike) -> Structure:
-    """Return the beam of a structure in another model, with stations of output, m; the tip is added last."""
+    """Return the beam of a structure in another model, with stations of output, m. The tip is added last."""
     assert structure.source is not None
     return replace(assemble(structure.source.beam, model, stations), load_values=structure.load_values)
 

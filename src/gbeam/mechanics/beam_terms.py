@@ -50,7 +50,7 @@ def particles_of(beam: Beam, rule: Quadrature, *, rotary: bool) -> tuple[Array, 
 
 
 def stiffness_of(beam: Beam, rule: Quadrature, strains: Array) -> Array:
-    """Stiffness (n, n) of shapes with strains (6, g, n); the last coordinates are the root's springs.
+    """Stiffness (n, n) of shapes with strains (6, g, n). The last coordinates are the root's springs.
 
     It holds the second derivatives of the energy ½ ∫ Σ rigidity · strain² dx + ½ Σ k s² (2009 (10); 2020 (8),
     corrected; shear and twist as Timoshenko has them). A section without material has a full stiffness matrix in place
@@ -83,7 +83,7 @@ def root_dashpots(beam: Beam, size: int) -> Array:
 
 def load_history(beam: Beam) -> LoadHistory | None:
     """Components of the beam's loads over time, as profiles, and the rise of its temperature behind them, as the first
-    component of one more; None without any.
+    component of one more, or None without any.
     """
 
     def profile(value: Any) -> Any:
@@ -109,7 +109,7 @@ def heat_of(beam: Beam, rule: Quadrature, strains: Array) -> Array | None:
 def load_work(beam: Beam, field: Field, rule: Quadrature, first: int, heat: Array | None) -> tuple[LoadWork, Array]:
     """Work of the beam's loads, and the indices of the field's points where they act.
 
-    A spread load acts at all quadrature nodes. A load at one place has its own point; these begin at index `first`.
+    A spread load acts at all quadrature nodes. A load at one place has its own point. These begin at index `first`.
     `heat` (n,) are the forces of a rise of the temperature by 1 K, which acts along no point: it has the first one
     with no weight.
     """
@@ -146,7 +146,7 @@ def sections_of(
     outboard of each.
 
     `until` (points, g) integrates from the root to the field's points, of which the stations begin at index `first`.
-    `particles` are the masses, kg, and the indices of their points; `loaded` are the points of the loads.
+    `particles` are the masses, kg, and the indices of their points. `loaded` are the points of the loads.
     """
     nodes = until.shape[1]
     weight, x = until[-1], until.sum(axis=1)  # the tip is the last point: the whole integral

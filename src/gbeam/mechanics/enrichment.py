@@ -54,10 +54,10 @@ def enriched_shapes(
 
     The lacking shapes are static answers to loads that the shapes do not contain, also under an axial force (g,), N.
     """
-    least = APART**2 * max(_period(beam, space, along) for along, space in enumerate(spaces))
+    threshold = APART**2 * max(_period(beam, space, direction) for direction, space in enumerate(spaces))
     enriched, counts = list(families), [0] * 6
-    for along, space in enumerate(spaces):
-        for family, added in _lacking(beam, space, families, along, force, least).items():
+    for direction, space in enumerate(spaces):
+        for family, added in _lacking(beam, space, families, direction, force, threshold).items():
             enriched[family] = joined_family(families[family], added)
             counts[family] = added(space.rule.node).value.shape[1]
     (s, v, w, t, a, b), (axial, y, z, twist, shear_y, shear_z) = enriched, counts
@@ -65,7 +65,7 @@ def enriched_shapes(
 
 
 def _lacking(
-    beam: Beam, space: Space, families: Families, along: int, force: Array | None, least: float
+    beam: Beam, space: Space, families: Families, direction: int, force: Array | None, least: float
 ) -> dict[int, Family]:
     """Shapes, by family, that a space's families lack: parts of static answers and of Krylov's sequence from them.
     `least` is the square of a period, over 4π², below which a vibration would take the digits of the others.
@@ -79,7 +79,7 @@ def _lacking(
         strain = shapes.curvature if family in (1, 2) else shapes.slope
         columns.append(np.zeros((size, strain.shape[1])))
         columns[-1][space.block(family)] = strain
-    known = np.linalg.qr(space.scaled(np.concatenate(columns, axis=1)))[0]
+    basis = np.linalg.qr(space.scaled(np.concatenate(columns, axis=1)))[0]
 
     def shortest(vectors: Array) -> float:
         """Square of the shortest period, over 4π², of vectors that are orthonormal in energy."""
@@ -88,40 +88,40 @@ def _lacking(
         strains = space.scaled(vectors, back=True)
         return float(np.linalg.eigvalsh(strains.T @ space.mass @ strains)[0])
 
-    least = min(least, shortest(known) / 10)
-    loads = _loads(beam, space, along)
+    least = min(least, shortest(basis) / 10)
+    loads = _loads(beam, space, direction)
     added: dict[int, list[Array]] = {family: [] for family in space.families}
     for flexibility in _flexibilities(beam, space, force):
         vectors = flexibility @ loads
-        for _ in range(LEVELS[along]):
+        for _ in range(LEVELS[direction]):
             for vector, scaled in zip(vectors.T, space.scaled(vectors).T, strict=True):
                 length = np.linalg.norm(scaled)
                 for family in space.families:
                     part = np.zeros((size, 1))
                     part[space.block(family), 0] = vector[space.block(family)]
                     rest = space.scaled(part)[:, 0]
-                    rest = rest - known @ (known.T @ rest)
-                    rest = rest - known @ (known.T @ rest)
+                    rest = rest - basis @ (basis.T @ rest)
+                    rest = rest - basis @ (basis.T @ rest)
                     if not np.linalg.norm(rest) > NEW * length:
                         continue
                     rest = rest / np.linalg.norm(rest)
-                    wider = np.concatenate([known, rest[:, None]], axis=1)
+                    wider = np.concatenate([basis, rest[:, None]], axis=1)
                     # Beside a spring of the root a bend close to it turns the beam likewise: what is left has no
                     # inertia.
                     if shortest(wider) > least:
-                        known = wider
+                        basis = wider
                         added[family].append(rest)
             vectors = flexibility @ (space.mass @ vectors)
     return {
-        family: space.family(family, space.scaled(np.stack(new, axis=1), back=True))
-        for family, new in added.items()
-        if new
+        family: space.family(family, space.scaled(np.stack(shape, axis=1), back=True))
+        for family, shape in added.items()
+        if shape
     }
 
 
-def _period(beam: Beam, space: Space, along: int) -> float:
+def _period(beam: Beam, space: Space, direction: int) -> float:
     """Square of the longest period, over 4π², by the answer to an even acceleration."""
-    force = _loads(beam, space, along)[:, 0]
+    force = _loads(beam, space, direction)[:, 0]
     answer = _flexibility(space) @ force
     return float(answer @ space.mass @ answer / (answer @ force))
 
@@ -190,11 +190,11 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
         strains[STRAINS[family], :, k * nodes : (k + 1) * nodes] = np.eye(nodes) * (-1 if family == 2 else 1)
     move, turn = (np.pad(by_springs, ((0, 0), (strained, 0))) for by_springs in beam.root.directions())
     loaded = [load.place for load in beam.loads if load.at is not None]
-    held = [support.place for support in beam.held_places.values()]
-    x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded, held])
+    support_places = [support.place for support in beam.held_places.values()]
+    x = np.concatenate([rule.node, [body.at for body in beam.masses], loaded, support_places])
     field = strain_field(rule, x, strains, move, turn, beam.line)
-    at, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
-    particles, rest = field.points(at, offset), np.zeros(field.size)
+    positions, mass, offset = particles_of(beam, rule, rotary=beam.rotary_inertia)
+    particles, rest = field.points(positions, offset), np.zeros(field.size)
     place, moved = particles.positions(rest), particles.slopes(rest)
     axes = np.eye(3)
     pulls = [np.broadcast_to(axis, place.shape) for axis in axes] + [np.cross(axis, place) for axis in axes]
@@ -215,12 +215,12 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
         ]
     for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
         part = angles if condition.direction.startswith("r") else slopes
-        loads.append(part[-len(held) :][held.index(condition.at), condition.number % 3])
+        loads.append(part[-len(support_places) :][support_places.index(condition.at), condition.number % 3])
 
-    def sensitivity(at: Floats) -> tuple[Floats, Floats]:
+    def sensitivity(places: Floats) -> tuple[Floats, Floats]:
         """Displacements and angles (points, 3, n) at the nodes, or at places of supports."""
-        if len(at) == 1 and at[0] in held:
-            k = len(x) - len(held) + held.index(at[0])
+        if len(places) == 1 and places[0] in support_places:
+            k = len(x) - len(support_places) + support_places.index(places[0])
             return slopes[k : k + 1], angles[k : k + 1]
         return slopes[:nodes], angles[:nodes]
 
@@ -241,7 +241,7 @@ def coupled_space(beam: Beam, rule: Quadrature, counts: Counts) -> Space:
     )
 
 
-def _loads(beam: Beam, space: Space, along: int) -> Array:
+def _loads(beam: Beam, space: Space, direction: int) -> Array:
     """Generalised forces (n, k): of uniform and of linearly growing accelerations, of turning bodies, and of loads."""
     if space.loads is not None:
         return space.loads
@@ -253,7 +253,7 @@ def _loads(beam: Beam, space: Space, along: int) -> Array:
     for body in beam.masses:
         displacement, angle = space.sensitivity(np.array([body.at]))
         uniform, growing = uniform + body.mass * displacement[0], growing + body.mass * body.at * displacement[0]
-        if along and (any(body.offset) or any(body.inertia)):
+        if direction and (any(body.offset) or any(body.inertia)):
             columns.append(angle[0])
     for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
         if condition.family in space.families:
@@ -343,20 +343,20 @@ class Enrichment:
         assert source is not None
         model_counts = source.counts
         wanted = [False] * 6
-        for group, along in zip(GROUPS, (*directions, True), strict=True):
+        for group, is_enriched in zip(GROUPS, (*directions, True), strict=True):
             for family in group:
-                wanted[family] = along
+                wanted[family] = is_enriched
         axial, *other_counts = (
-            count + new if is_wanted else count
-            for count, new, is_wanted in zip(model_counts, self.new, wanted, strict=True)
+            count + new_count if is_wanted else count
+            for count, new_count, is_wanted in zip(model_counts, self.new, wanted, strict=True)
         )
         counts: Any = (axial if MODEL_KINDS[kind].axial else 0, *other_counts)
         families: Any = tuple(_truncated(family, count) for family, count in zip(self.families, counts, strict=True))
         ratio = self.beam.damping_ratio
         springs = len(self.beam.root.springs)
         if isinstance(ratio, tuple):  # new modes have the last ratio
-            taken = len(() if self.structure.grip is None else self.structure.grip.dependents)
-            ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - taken - len(ratio)))
+            dependent_count = len(() if self.structure.grip is None else self.structure.grip.dependents)
+            ratio = (*ratio, *[ratio[-1]] * (sum(counts) + springs - dependent_count - len(ratio)))
         beam = replace(self.beam, damping_ratio=ratio)
         stations = np.asarray(self.structure.stations)
         starts = np.cumsum([0, *counts])
@@ -374,8 +374,8 @@ class Enrichment:
         rich = assembled(
             beam, kind, counts, self.rule, stations, families, source.shapes, dependents=tuple(dependents.tolist())
         )
-        kept = np.delete(index, grip.dependents)
-        return rich, kept - (dependents < kept[:, None]).sum(axis=1)
+        free_index = np.delete(index, grip.dependents)
+        return rich, free_index - (dependents < free_index[:, None]).sum(axis=1)
 
 
 def own_families(structure: Structure, beam: Beam, rule: Quadrature) -> Families:

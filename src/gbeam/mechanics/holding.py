@@ -1,8 +1,8 @@
 """Supports on many unknowns, as of a mesh or of matrices: exact conditions, springs, and what supports take up.
 
-Conditions C u = 0 are left out once, u = N z. The reaction along a motion w of what is held, while all else follows
-statically, is wᵀ(M ü - f): the elastic forces do no work along w, so that modes that a reduction leaves out, which move
-no support, are in the reaction by their inertia.
+Conditions C u = 0 are left out once, u = N z. Let what is held move by w, while all else follows statically. The
+reaction along w is wᵀ(M ü - f), since the elastic forces do no work along it. Modes that a reduction leaves out, which
+move no support, are in the reaction by their inertia.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ NOTHING = 1e-9  # of the largest: a force or moment that a place does not take u
 
 
 class Held(NamedTuple):
-    """A place that a support holds, at `centre` (3,) m: of each direction sparse rows (g, u) of its nodes' motions, and
-    levers (g, 6), the force and moment about the centre of a unit along each. It moves by sparse rows `moved` (3, u).
+    """A place that a support holds, at `centre` (3,) m.
+
+    Of each direction it has sparse rows (g, u) of its nodes' motions, and levers (g, 6), the force and moment about the
+    centre of a unit along each. It moves by sparse rows `moved` (3, u).
     """
 
     support: Support
@@ -41,8 +43,8 @@ class Held(NamedTuple):
 class Holding:
     """Conditions and springs of supports on u unknowns.
 
-    `basis` (u, f), sparse, are the motions that are left; `stiffness` and `damping` (u, u), sparse, are those of
-    springs and dampers; `yielding` (j, u) are unit loads of these, by the force or moment that they make; `lifted`
+    `basis` (u, f), sparse, are the motions that are left. `stiffness` and `damping` (u, u), sparse, are those of
+    springs and dampers. `yielding` (j, u) are unit loads of these, by the force or moment that they make. `lifted`
     (u, s) are motions of what is held rigidly, one for each force or moment that it takes up.
     """
 
@@ -52,11 +54,11 @@ class Holding:
 
         self.places = places
         empty = csr_array((0, unknowns))
-        rigid = [(k, way, *each.motions[way]) for k, each in enumerate(places) for way in each.support.rigid]
+        rigid = [(k, way, *held.motions[way]) for k, held in enumerate(places) for way in held.support.rigid]
         rows = vstack([empty, *(motion for _, _, motion, _ in rigid)], format="csr")
-        self.basis, new = free_motions(rows)
+        self.basis, is_new = free_motions(rows)
         ends = np.cumsum([0, *(len(levers) for *_, levers in rigid)])
-        told = [new[start:end] for start, end in pairwise(ends)]
+        told = [is_new[start:end] for start, end in pairwise(ends)]
         for (k, way, motion, _), told_here in zip(rigid, told, strict=True):
             if not told_here.any():
                 words, fix = "nothing moves so", f"leave {way} out"
@@ -64,17 +66,17 @@ class Holding:
                     words = "it is held already"
                     fix += ", or hold by springs: how rigid supports share a load is not known"
                 raise InputError(f"supports[{k}]", f"holds {way} at {places[k].support.at}, where {words}", fix)
-        every = np.concatenate([np.zeros((0, 6)), *(levers for *_, levers in rigid)])[new]
-        owner = np.repeat([k for k, *_ in rigid], np.diff(ends))[new]
+        levers_of_all = np.concatenate([np.zeros((0, 6)), *(levers for *_, levers in rigid)])[is_new]
+        owner = np.repeat([k for k, *_ in rigid], np.diff(ends))[is_new]
         self.taken, lifts = list[tuple[int, int]](), list[Floats]()
         for k in dict.fromkeys(owner.tolist()):
-            levers = every * (owner == k)[:, None]
+            levers = levers_of_all * (owner == k)[:, None]
             for component in _acting(levers):
                 self.taken.append((k, component))
                 lifts.append(levers[:, component])
         self.lifted = np.zeros((unknowns, 0))
         if lifts:
-            self.lifted = least_motions(rows[np.flatnonzero(new)], np.stack(lifts, axis=1))
+            self.lifted = least_motions(rows[np.flatnonzero(is_new)], np.stack(lifts, axis=1))
         self.sprung, loads, springs, dampers = list[tuple[int, int]](), [empty], list[float](), list[float]()
         self.stiffness, self.damping = csr_array((unknowns, unknowns)), csr_array((unknowns, unknowns))
         for k, place in enumerate(places):
@@ -111,9 +113,9 @@ class Holding:
         """
         if not self.taken:
             return shapes
-        left = np.asarray(self.basis @ np.concatenate([shapes, answers], axis=1))
-        left[:, shapes.shape[1] :] += self.lifted
-        return left
+        motions = np.asarray(self.basis @ np.concatenate([shapes, answers], axis=1))
+        motions[:, shapes.shape[1] :] += self.lifted
+        return motions
 
     def hold(
         self,
@@ -146,8 +148,8 @@ class Holding:
             names=tuple(place.support.name for place in self.places),
             words=tuple(place.support.words for place in self.places),
             places=Places(
-                np.array([each.centre for each in self.places]),
-                np.stack([np.asarray(each.moved @ motions) for each in self.places]),
+                np.array([held.centre for held in self.places]),
+                np.stack([np.asarray(held.moved @ motions) for held in self.places]),
             ),
             rooted=rooted,
             second=None if second is None else np.pad(second, ((0, 0), (0, count - n), (0, count - n))),
@@ -179,15 +181,15 @@ def held_at_points(
             motions[way] = csr_array(rows[[number]]), np.eye(6)[[number]]
         places.append(Held(support, structure.station_places.r0[station], motions, moved))
     holding, c = Holding(places, structure.size), structure.coefficients
-    left, stiffness = holding.basis.toarray(), c.stiffness + holding.stiffness.toarray()
-    answers = np.linalg.solve(left.T @ stiffness @ left, holding.static_loads(stiffness))
-    motions_of_all = holding.expand(np.eye(left.shape[1]), answers)
+    basis, stiffness = holding.basis.toarray(), c.stiffness + holding.stiffness.toarray()
+    answers = np.linalg.solve(basis.T @ stiffness @ basis, holding.static_loads(stiffness))
+    motions_of_all = holding.expand(np.eye(basis.shape[1]), answers)
     sprung = replace(structure, coefficients=replace(c, stiffness=stiffness))
-    held, free = sprung.turned(left), sprung.turned(motions_of_all)
+    reduced, free = sprung.turned(basis), sprung.turned(motions_of_all)
     if damping_ratio is not None:
-        kept = held.coefficients
-        held = replace(held, coefficients=kept.damped(damping_matrix(damping_ratio, kept.mass, kept.stiffness)))
-    return holding.hold(held, free, motions_of_all, rooted=rooted)
+        kept = reduced.coefficients
+        reduced = replace(reduced, coefficients=kept.damped(damping_matrix(damping_ratio, kept.mass, kept.stiffness)))
+    return holding.hold(reduced, free, motions_of_all, rooted=rooted)
 
 
 def _acting(levers: Floats) -> list[int]:

@@ -20,8 +20,10 @@ STRAINS: tuple[StrainName, ...] = get_args(StrainName)
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of model: order of the places' polynomial, None without end; flags of coordinates that are strains, of
-    equations truncated to first order, of Q_θ on a free hub, and of axial coordinates.
+    """A kind of model.
+
+    It has the order of the places' polynomial, None without end. Its flags tell whether coordinates are strains,
+    equations are truncated to first order, a free hub feels Q_θ, and there are axial coordinates.
     """
 
     order: int | None = 2
@@ -105,7 +107,7 @@ class Model:
         return cls(kind, axial if row.axial else 0, across, across, shapes or default, automatic=True)
 
     def richer(self) -> Model | None:
-        """Add two shapes across the beam, and one of each other strain; None where that is too many."""
+        """Add two shapes across the beam, and one of each other strain, or None where that is too many."""
         if max(self.y, self.z) + 2 > MOST:
             return None
         y, z = (n + 2 if n else 0 for n in (self.y, self.z))

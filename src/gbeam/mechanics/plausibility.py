@@ -86,7 +86,7 @@ def _ratios(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
         yield f"masses[{i}].inertia", largest, "kg m^2", inertia, largest / scale
         yield f"masses[{i}].offset", arm, "m", inertia, body.mass * arm**2 / scale
     rigidities = beam.rigidities(np.asarray(beam.section.stations or (0.0,)))
-    along, about_y, about_z = (np.mean(rigidity) for rigidity in rigidities)
+    axial, about_y, about_z = (np.mean(rigidity) for rigidity in rigidities)
     bending = np.sqrt(about_y * about_z) / length
     springs = [(f"root.{name}", name, value) for name, value in beam.root.springs.items() if value]
     for i, support in enumerate(beam.supports):
@@ -96,7 +96,7 @@ def _ratios(beam: Beam) -> Iterator[tuple[str, float, str, str, float]]:
         if name.startswith("r"):
             unit, stiffness = "N m/rad", bending
         elif name in ("translation_x", "x"):
-            stiffness = along / length
+            stiffness = axial / length
         yield where, value, unit, "stiffness", float(value / stiffness)
 
 
@@ -160,8 +160,8 @@ def _matching(beam: Beam) -> Iterator[str]:
         ("yield_strength", material.yield_strength, WEAKEST, STRONGEST, modulus > STIFF),
         ("shear_modulus", material.shear_modulus, LIMPEST, STIFFEST, True),
     )
-    for name, value, least, most, judged in limits:
-        if value is not None and judged and not soft and not least < value / modulus < most:
+    for name, value, low, high, judged in limits:
+        if value is not None and judged and not soft and not low < value / modulus < high:
             ratio = f"{value / modulus:.3g} times youngs_modulus, {modulus / 1e6:g} MPa"
             yield f"beam.material.{name} is {value / 1e6:g} MPa, {ratio}; {_UNITS}"
 
@@ -227,7 +227,7 @@ def input_warnings(
     base: Any = None,
     rest: Any = None,
 ) -> tuple[str, ...]:
-    """Warn of what is implausible in a structure and its motion over a `span` of time, s; nothing is judged under JAX.
+    """Warn of what is implausible in a structure and its motion over a `span` of time, s. Nothing is judged under JAX.
 
     The motion of the `base` at some times, and the circular frequencies at `rest` (n,), rad/s, are computed unless
     given.
@@ -279,7 +279,7 @@ def unstiffened(structure: Structure, base: Any, where: str) -> Iterator[str]:
 
 
 def bend(structure: Structure, q: Any) -> float:
-    """Largest displacement of a station at coordinates (..., n), as a share of the length; zero of a beam.
+    """Largest displacement of a station at coordinates (..., n), as a share of the length, or zero of a beam.
 
     It is of structures whose places are linear in the coordinates.
     """
@@ -312,8 +312,8 @@ def bent_far(structure: Structure, share: float) -> Iterator[str]:
 
 def _left_out(structure: Structure) -> str:
     """Clause on what a stiffness of first order leaves out."""
-    known = structure.richer is not None and structure.richer.bending is not None
-    return f"what that leaves out is {'stated as error of the model' if known else 'not known'}"
+    is_known = structure.richer is not None and structure.richer.bending is not None
+    return f"what that leaves out is {'stated as error of the model' if is_known else 'not known'}"
 
 
 def stretched(structure: Structure, q: Any) -> Iterator[str]:
@@ -325,10 +325,10 @@ def stretched(structure: Structure, q: Any) -> Iterator[str]:
     grip = structure.grip
     if grip is None or grip.second is None:
         return
-    held, c = np.array(grip.dependents), structure.coefficients
+    dependents, c = np.array(grip.dependents), structure.coefficients
     coordinates = np.reshape(q, (-1, structure.size))
     reactions = quadratic(grip.second, coordinates @ grip.basis.T)
-    flexibility = np.linalg.pinv(grip.free.coefficients.stiffness[np.ix_(held, held)], hermitian=True)
+    flexibility = np.linalg.pinv(grip.free.coefficients.stiffness[np.ix_(dependents, dependents)], hermitian=True)
     stretch = np.einsum("tj,jk,tk->t", reactions, flexibility, reactions) / 2
     energy = 4 * stretch.max() / max(float((coordinates @ c.stiffness * coordinates).sum(axis=1).max()), 1e-300)
     if energy > NOTICED:
@@ -402,10 +402,10 @@ def _largest_loads(structure: Structure, span: tuple[float, float]) -> Any:
     return np.abs(history(samples)).max(axis=0)
 
 
-def _remark(what: str, size: str, axis: int) -> str:
-    """Warning that `what` acts along an axis for which the model has no shapes."""
+def _remark(quantity: str, size: str, axis: int) -> str:
+    """Warning that `quantity` acts along an axis for which the model has no shapes."""
     way = "xyz"[axis]
     return (
-        f"{what} along {way} with up to {size}, where the model has no shapes: the beam stays straight there; "
+        f"{quantity} along {way} with up to {size}, where the model has no shapes: the beam stays straight there; "
         f"give model.modes.{way} = 1 or more"
     )

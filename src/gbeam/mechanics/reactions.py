@@ -34,8 +34,9 @@ class Hung(NamedTuple):
 
 
 class Reactions(NamedTuple):
-    """Forces (t, k, 3) and moments (t, k, 3) about their places (t, k, 3) of supports on the stations (k,) of a
-    structure, in axes of its root; by their names where they have some.
+    """Forces and moments (t, k, 3) of supports on the stations (k,) of a structure, in axes of its root.
+
+    Moments are about the supports' places (t, k, 3). The supports have names where they are given some.
     """
 
     station: Array
@@ -59,8 +60,10 @@ class Reactions(NamedTuple):
 def reactions_of(
     structure: Structure, base: Base, q: Array, qd: Array, qdd: Array, loads: Array | None, hung: Hung | None
 ) -> Reactions | None:
-    """Reactions of a structure's supports by motions of the base (t, 3) and its coordinates (t, n), under components of
-    its `loads` (t, loads, 6) and of bodies that are `hung` on it; None without supports.
+    """Reactions of a structure's supports, or None without supports.
+
+    They follow from motions of the base (t, 3) and the structure's coordinates (t, n), under components of its `loads`
+    (t, loads, 6) and of bodies that are `hung` on it.
 
     The free structure, which nothing but its root holds, demands forces along the coordinates that rigid supports make
     dependent. The reactions do the same work: they solve A_dᵀ R = r_d. Springs and dampers pull by how they are drawn.
@@ -70,34 +73,34 @@ def reactions_of(
         return None
     free = grip.free
     if grip.curved:
-        whole, rate, change = grip.conditions.motion(q, qd, qdd)
-        demanded = grip.equations.whole(whole, rate, change, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)[0]
+        coordinates, rate, change = grip.conditions.motion(q, qd, qdd)
+        demanded = grip.equations.whole(coordinates, rate, change, base.a_WO_B, base.w_WB_B, base.alpha_WB_B, loads)[0]
     else:
-        whole, rate, change = (values @ grip.basis.T for values in (q, qd, qdd))
+        coordinates, rate, change = (values @ grip.basis.T for values in (q, qd, qdd))
         root = Frame(None, None, None, base.w_WB_B, base.a_WO_B, base.alpha_WB_B)
-        demanded = terms_of(free).demanded(whole, rate, change, root, loads)[0]
+        demanded = terms_of(free).demanded(coordinates, rate, change, root, loads)[0]
     xp = namespace(demanded)
     stations = free.poses
     if hung is not None and len(hung.station):
         at_stations = stations[hung.station]
-        place = at_stations.positions(whole)
-        slopes, angles = at_stations.jacobians(whole)
+        place = at_stations.positions(coordinates)
+        slopes, angles = at_stations.jacobians(coordinates)
         moment = hung.moment - xp.cross(place, hung.force)
         demanded = demanded + xp.einsum("tpai,tpa->ti", slopes, hung.force) + xp.einsum("tpai,tpa->ti", angles, moment)
     rigid = demanded[:, :0]
     if grip.dependents:
-        held = np.array(grip.dependents)
-        rows = grip.conditions.measures.rows(whole) if grip.curved else grip.rows
-        rigid = xp.linalg.solve(xp.swapaxes(rows[..., held], -1, -2), demanded[:, held, None])[..., 0]
+        dependents = np.array(grip.dependents)
+        rows = grip.conditions.measures.rows(coordinates) if grip.curved else grip.rows
+        rigid = xp.linalg.solve(xp.swapaxes(rows[..., dependents], -1, -2), demanded[:, dependents, None])[..., 0]
         if grip.second is not None:
-            rigid = rigid + quadratic(grip.second, whole)
+            rigid = rigid + quadratic(grip.second, coordinates)
     if grip.curved and grip.sprung:
-        drawn, sprung_rows = grip.measures(grip.sprung).values_and_rows(whole)
+        drawn, sprung_rows = grip.measures(grip.sprung).values_and_rows(coordinates)
         drawn_rate = (sprung_rows @ rate[..., None])[..., 0]
     else:
-        drawn, drawn_rate = whole @ grip.yielding.T, rate @ grip.yielding.T
+        drawn, drawn_rate = coordinates @ grip.yielding.T, rate @ grip.yielding.T
     yielding = -grip.stiffness * drawn - grip.damping * drawn_rate
-    return _by_station(grip, stations, whole, xp.concatenate([rigid, yielding], axis=1))
+    return _by_station(grip, stations, coordinates, xp.concatenate([rigid, yielding], axis=1))
 
 
 def demanded_with_supports(
@@ -110,11 +113,11 @@ def demanded_with_supports(
 
 def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:
     """Reactions of supports by their components (t, m), those of conditions and then those of springs."""
-    xp, every = namespace(sizes), (*grip.held, *grip.sprung)
-    places = np.array(sorted({station for station, _ in every}))
-    unit = np.zeros((len(every), len(places), 6))
-    for k, (station, direction) in enumerate(every):
+    xp, conditions = namespace(sizes), (*grip.held, *grip.sprung)
+    places = np.array(sorted({station for station, _ in conditions}))
+    unit = np.zeros((len(conditions), len(places), 6))
+    for k, (station, direction) in enumerate(conditions):
         unit[k, np.searchsorted(places, station), direction] = 1.0
     wrench = xp.einsum("tm,mkd->tkd", sizes, unit)
-    at = stations[places] if grip.places is None else grip.places[places]
-    return Reactions(places, at.positions(q), wrench[..., :3], wrench[..., 3:], grip.names)
+    station_indices = stations[places] if grip.places is None else grip.places[places]
+    return Reactions(places, station_indices.positions(q), wrench[..., :3], wrench[..., 3:], grip.names)

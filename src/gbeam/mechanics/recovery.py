@@ -17,9 +17,11 @@ from gbeam.structure.beam import Beam
 
 @record
 class Sections:
-    """Sections at root and stations (s,): their `values`, the mass (s, particles) kg and the shares of loads (s,
-    loaded) outboard of each, axes of the root's section in columns (3, 3), stresses by unit loads (points, 3, 6, s),
-    strength, Pa; and the positions `along` the beam, m, of the field's points.
+    """Sections at root and stations (s,).
+
+    Their `values` are those of the cross-sections. Outboard of each section are the mass (s, particles) kg and the
+    shares of loads (s, loaded). The axes of the root's section stand in columns (3, 3). Stresses by unit loads are
+    (points, 3, 6, s), the strength is in Pa. The field's points are at the positions `along` the beam, m.
     """
 
     values: Any

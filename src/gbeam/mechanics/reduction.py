@@ -1,8 +1,8 @@
 """A large linear structure in a few coordinates: its lowest modes, and its static answers to unit inertial loads.
 
-The inertia of a field of displacement that is linear in the coordinates needs the products of 1, x, y, z and the shapes
-only. Particles of equal mass that have the same products stand for the mass matrix, however large it was: D'Alembert's
-sum over them is that over the mesh, to the last digits, at a cost that does not depend on it.
+A field of displacement that is linear in the coordinates has an inertia that needs only the products of 1, x, y, z and
+the shapes. Particles of equal mass that have the same products stand for the mass matrix, however large it was.
+D'Alembert's sum over them is that over the mesh, to the last digits. Its cost does not depend on the mesh.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def linear_fields(points: Floats) -> Floats:
 
 
 def inertial_loads(weights: Floats) -> Floats:
-    """Loads (3 k, 12) on nodes by body forces −1, −x, −y and −z along x, then along y, then along z; `weights` (k, 4)
+    """Loads (3 k, 12) on nodes by body forces −1, −x, −y and −z along x, then along y, then along z. `weights` (k, 4)
     are the products of the mass matrix with 1, x, y and z.
     """
     return -np.einsum("kf,ac->kcaf", weights, np.eye(3)).reshape(3 * len(weights), 12)
@@ -124,17 +124,19 @@ def _reduced(
 
     `inverse` (k,) are the modes' inverse eigenvalues. The next `more` modes are added behind, to judge the error.
     """
-    moving = _moving(inverse)
+    moving_count = _count_massive(inverse)
     if not inverse[:modes].min() > -ZERO * inverse.max():
         raise InputError("stiffness", "is not positive definite", HOLD)
-    if moving < modes:
-        raise InputError("modes", f"is {modes}, and only {moving} motions move mass", f"give at most {moving}")
-    vector, beyond = vector[:, :modes], vector[:, modes : min(moving, modes + more)]
+    if moving_count < modes:
+        raise InputError(
+            "modes", f"is {modes}, and only {moving_count} motions move mass", f"give at most {moving_count}"
+        )
+    vector, extra_vectors = vector[:, :modes], vector[:, modes : min(moving_count, modes + more)]
     basis = np.concatenate([vector, _complement(stiffness, mass, vector, static)], axis=1)
     inverse, in_basis = _dense(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     if inverse.min() < -NEGATIVE * inverse.max():
         raise InputError("mass", "is not positive definite", "is it the right matrix?")
-    heavy = _moving(inverse)
+    heavy = _count_massive(inverse)
     light = basis @ in_basis[:, heavy:]  # of unit stiffness
     by_motions, by_loads = (
         (_shares(stiffness, light, answers) > FAINTLY).any() for answers in (static[:, :12] @ MOTIONS, static[:, 12:])
@@ -149,10 +151,13 @@ def _reduced(
         raise InputError("mass", problem, fix)
     inverse, shapes = inverse[:heavy], basis @ in_basis[:, :heavy]
     size = shapes.shape[1]
-    beyond = _complement(stiffness, mass, shapes, beyond)
-    if beyond.size:
-        beyond = beyond @ _dense(beyond.T @ (stiffness @ beyond), beyond.T @ (mass @ beyond))[1]
-        shapes = np.concatenate([shapes, beyond], axis=1)
+    extra_vectors = _complement(stiffness, mass, shapes, extra_vectors)
+    if extra_vectors.size:
+        extra_vectors = (
+            extra_vectors
+            @ _dense(extra_vectors.T @ (stiffness @ extra_vectors), extra_vectors.T @ (mass @ extra_vectors))[1]
+        )
+        shapes = np.concatenate([shapes, extra_vectors], axis=1)
     reduced = shapes.T @ (stiffness @ shapes)
     reduced[:size, :size] = np.diag(1 / inverse)
     return Reduced(shapes, reduced, static, static[:, :0], modes, size)
@@ -161,7 +166,7 @@ def _reduced(
 def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
     """Inverse eigenvalues 1/ω², s², descending, and modes of unit modal mass.
 
-    Modes that move no mass have eigenvalues of about zero; they are scaled to unit modal stiffness.
+    Modes that move no mass have eigenvalues of about zero. They are scaled to unit modal stiffness.
     """
     from scipy.linalg import eigh
 
@@ -172,7 +177,7 @@ def _dense(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
     return inverse[::-1], (vector / np.sqrt(np.where(inverse > ZERO * inverse[-1], inverse, 1.0)))[:, ::-1]
 
 
-def _moving(inverse: Floats) -> int:
+def _count_massive(inverse: Floats) -> int:
     """Number of motions that move mass, by inverse eigenvalues in descending order."""
     return int((inverse > ZERO * inverse[0]).sum())
 
@@ -211,9 +216,9 @@ def equivalent_particles(body: Floats, sums: Floats, moments: Floats) -> tuple[F
     """
     total, (x, y, z), (xx, yy, zz, xy, yz, zx) = body[0], body[1:4], body[4:]
     places = np.array([[total, x, y, z], [x, xx, xy, zx], [y, xy, yy, yz], [z, zx, yz, zz]])
-    across = np.concatenate([sums[None], moments.swapaxes(0, 1)]).reshape(4, -1)
-    shapes = across.T @ np.linalg.pinv(places, rcond=FAINT, hermitian=True) @ across
-    return _particles(np.block([[places, across], [across.T, shapes]]), sums.shape[-1])
+    moment_matrix = np.concatenate([sums[None], moments.swapaxes(0, 1)]).reshape(4, -1)
+    shapes = moment_matrix.T @ np.linalg.pinv(places, rcond=FAINT, hermitian=True) @ moment_matrix
+    return _particles(np.block([[places, moment_matrix], [moment_matrix.T, shapes]]), sums.shape[-1])
 
 
 def _particles(products: Floats, n: int) -> tuple[Floats, Floats, Floats]:
@@ -225,12 +230,12 @@ def _particles(products: Floats, n: int) -> tuple[Floats, Floats, Floats]:
     size = np.sqrt(np.diagonal(products) / total)
     scale = np.where(size > 0, size, 1.0)
     value, vector = np.linalg.eigh(products / np.outer(scale, scale) / total)
-    kept = value > FAINT * value[-1]
-    root = vector[:, kept] * np.sqrt(value[kept])
+    is_large = value > FAINT * value[-1]
+    root = vector[:, is_large] * np.sqrt(value[is_large])
     # A reflection after which all particles have the same share of the mass.
-    shares, equal = root[0] / np.linalg.norm(root[0]), np.full(kept.sum(), 1 / np.sqrt(kept.sum()))
+    shares, equal = root[0] / np.linalg.norm(root[0]), np.full(is_large.sum(), 1 / np.sqrt(is_large.sum()))
     normal = shares - equal
     if normal.any():
         root = root - 2 * np.outer(root @ normal, normal) / (normal @ normal)
-    values = (scale[:, None] * root * np.sqrt(kept.sum())).T
+    values = (scale[:, None] * root * np.sqrt(is_large.sum())).T
     return np.full(len(values), total / len(values)), values[:, 1:4], values[:, 4:].reshape(-1, 3, n)

@@ -37,8 +37,9 @@ _BLOCK = 256  # times handled together: what stays in a cache
 
 
 class Carried(NamedTuple):
-    """Forces and moments (t, s, 3) that sections carry, in axes of the base and in their own; absolute accelerations
-    (specific forces where gravity acts) and places of the sections, base axes.
+    """Forces and moments (t, s, 3) that sections carry, in axes of the base and in their own.
+
+    With them are absolute accelerations (specific forces where gravity acts) and places of the sections, base axes.
     """
 
     force: Array
@@ -60,8 +61,9 @@ def section_forces(
     motion: Motion | None = None,
     hung: Hung | None = None,
 ) -> Loads:
-    """Loads at root and stations by motions of the base (t, 3) and of the beam (t, n), with bodies `hung` on it; of a
-    structure without sections at its root and tip only.
+    """Loads at root and stations by motions of the base (t, 3) and of the beam (t, n), with bodies `hung` on it.
+
+    A structure without sections has them at its root and tip only.
     """
     if structure.sections is None:
         return add_hub_torques(_end_loads(structure, base, q, qd, qdd, time, hung), motion, base.alpha_WB_B)
@@ -143,10 +145,10 @@ def _end_loads(
     )
     if reactions is None or structure.grip is None:
         return loads
-    held, nothing = with_supports(loads, structure, reactions), 0 * force
+    all_loads, nothing = with_supports(loads, structure, reactions), 0 * force
     if structure.grip.rooted:
-        return held
-    return replace(held, force=nothing, moment=nothing, section_force=nothing, section_moment=nothing)
+        return all_loads
+    return replace(all_loads, force=nothing, moment=nothing, section_force=nothing, section_moment=nothing)
 
 
 def _equivalent(section_data: Sections, force: Array, moment: Array) -> Array:
@@ -189,8 +191,8 @@ def sections(
         )
     if hung is not None:
         sections_at = np.append(0.0, structure.stations)
-        beyond = (structure.stations[hung.station] >= sections_at[:, None] - 1e-9 * structure.length).astype(float)
-        force, moment_about_root = force - beyond @ hung.force, moment_about_root - beyond @ hung.moment
+        is_beyond = (structure.stations[hung.station] >= sections_at[:, None] - 1e-9 * structure.length).astype(float)
+        force, moment_about_root = force - is_beyond @ hung.force, moment_about_root - is_beyond @ hung.moment
     moment = moment_about_root - _cross(xp, stations[0], force)
     straight = xp.broadcast_to(xp.asarray(outboard.root_axes), (len(q), 1, 3, 3))
     rotation = xp.concatenate([straight, turned], axis=1)
@@ -224,14 +226,14 @@ def accelerations(structure: Structure, base: Base, q: Array, qd: Array, qdd: Ar
 def absolute_accelerations(xp: Any, base: Base, r: Array, rd: Array, rdd: Array) -> Array:
     """Absolute accelerations (t, p, 3) of points, base axes, from their motion (t, p, 3) relative to the base.
 
-    They are a_O + (α× + ω×ω×) r + 2 ω × ṙ + r̈; the products with r and ṙ are one product of matrices.
+    They are a_O + (α× + ω×ω×) r + 2 ω × ṙ + r̈. The products with r and ṙ are one product of matrices.
     """
-    w, alpha, along = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]
+    w, alpha, linear = base.w_WB_B, base.alpha_WB_B, base.a_WO_B[:, None, :]
     if xp is np and not (w.any() or alpha.any()):
-        return along + rdd
+        return linear + rdd
     spin = skew(xp, w)
     by_place_and_rate = xp.concatenate([skew(xp, alpha) + spin @ spin, 2 * spin], axis=-1)
-    return along + xp.concatenate([r, rd], axis=-1) @ xp.swapaxes(by_place_and_rate, -1, -2) + rdd
+    return linear + xp.concatenate([r, rd], axis=-1) @ xp.swapaxes(by_place_and_rate, -1, -2) + rdd
 
 
 def _cross(xp: Any, left: Array, right: Array) -> Array:

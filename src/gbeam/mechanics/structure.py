@@ -37,8 +37,8 @@ class Grip:
     """Grip of supports on a structure, and the structure that they hold.
 
     Its coordinates q (m,) are `basis` (m, n) times those of the structure. Conditions are zero, `rows` (k, m) times q,
-    by which the `dependents` of q follow; they are `curved` where the rows change with q. Springs and dampers act along
-    `yielding` (j, m) rows. All act on stations in the directions, 0 to 5, of `held` and `sprung`; where supports have
+    by which the `dependents` of q follow. They are `curved` where the rows change with q. Springs and dampers act along
+    `yielding` (j, m) rows. All act on stations in the directions, 0 to 5, of `held` and `sprung`. Where supports have
     `names`, and `words` on what they hold, on these at their `places`. What is not `rooted` has no other hold. What
     bends beside what is held pulls on conditions by ½ q · `second` (k, m, m) q.
     """
@@ -444,8 +444,8 @@ class Structure:
         if self.field is None or not (self.counts[3] or (self.source and self.source.beam.line)):
             return None
         field = self.field.sections(slice(self.first_station, None) if chosen is None else chosen)
-        along, (_, angles) = field.rotation(q)[..., 0], field.jacobians(q)
-        return namespace(angles).einsum("sa,san->sn", along, angles)
+        axes, (_, angles) = field.rotation(q)[..., 0], field.jacobians(q)
+        return namespace(angles).einsum("sa,san->sn", axes, angles)
 
     def displacement(self, q: Coordinates) -> Array:
         """Displacement of the stations relative to the base axes at coordinates `q` (..., n), (..., s, 3) m."""

@@ -50,14 +50,14 @@ class Condition(NamedTuple):
 
 def rigid_conditions(beam: Beam) -> list[Condition]:
     """Conditions of a beam's rigid supports beyond its root."""
-    held = beam.held_places.items()
-    return [Condition(i, support.place, direction) for i, support in held for direction in support.rigid]
+    places = beam.held_places.items()
+    return [Condition(i, support.place, direction) for i, support in places for direction in support.rigid]
 
 
 def yielding_conditions(beam: Beam) -> list[Condition]:
     """Directions in which springs and dampers hold a beam beyond its root."""
-    held = beam.held_places.items()
-    return [Condition(i, support.place, direction) for i, support in held for direction in support.yielding]
+    places = beam.held_places.items()
+    return [Condition(i, support.place, direction) for i, support in places for direction in support.yielding]
 
 
 def families_of(beam: Beam, condition: Condition, counts: Counts) -> tuple[int, ...]:
@@ -75,17 +75,17 @@ def static_counts(beam: Beam, counts: Counts) -> Counts:
     return axial, y, z, twist, shear_y, shear_z
 
 
-def counts_without(counts: Counts, taken: tuple[int, ...]) -> Counts:
+def counts_without(counts: Counts, indices: tuple[int, ...]) -> Counts:
     """Numbers of shapes without those whose indices are taken."""
     family = np.repeat(np.arange(6), counts)
-    left = np.delete(family, [index for index in taken if index < len(family)])
-    axial, y, z, twist, shear_y, shear_z = (int((left == k).sum()) for k in range(6))
+    remaining = np.delete(family, [index for index in indices if index < len(family)])
+    axial, y, z, twist, shear_y, shear_z = (int((remaining == k).sum()) for k in range(6))
     return axial, y, z, twist, shear_y, shear_z
 
 
-def plus(counts: Counts, more: Counts) -> Counts:
+def plus(counts: Counts, added: Counts) -> Counts:
     """Sums of numbers of shapes by family."""
-    axial, y, z, twist, shear_y, shear_z = (a + b for a, b in zip(counts, more, strict=True))
+    axial, y, z, twist, shear_y, shear_z = (a + b for a, b in zip(counts, added, strict=True))
     return axial, y, z, twist, shear_y, shear_z
 
 
@@ -117,13 +117,16 @@ def supported_shapes(beam: Beam, rule: Quadrature, counts: Counts, base: Callabl
     weights = {family: np.sqrt(rigidities[STRAINS[family]] * rule.weight) for family in statics}
     while True:
         plain = base(plus(counts, _negative(lacking)))
-        new = {family: _new(rule, weights[family], family, plain[family], each) for family, each in statics.items()}
-        counted = [len(new.get(family, ())) for family in range(6)]
+        added = {
+            family: _new_columns(rule, weights[family], family, plain[family], strains)
+            for family, strains in statics.items()
+        }
+        counted = [len(added.get(family, ())) for family in range(6)]
         if counted == lacking:
             break
         lacking = [min(pair) for pair in zip(counted, lacking, strict=True)]
     families = list(plain)
-    for family, chosen in new.items():
+    for family, chosen in added.items():
         if chosen:
             static = nodal_family(rule, statics[family][:, chosen], beam.length, axial=family not in (1, 2))
             families[family] = joined_family(families[family], static)
@@ -174,11 +177,11 @@ def _unit_strains(
 ) -> Floats:
     """Strains (6, g) at the nodes of the beam on its root alone, under a unit load along a condition's direction."""
     place, axes = beam.at_rest(rule.node)
-    at = beam.at_rest([condition.at])[0][0]
+    support_place = beam.at_rest([condition.at])[0][0]
     unit, nothing = np.eye(3)[condition.number % 3], np.zeros(3)
     turns = condition.direction.startswith("r")
     force, couple = (nothing, unit) if turns else (unit, nothing)
-    moment = np.cross(at - place, force) + couple
+    moment = np.cross(support_place - place, force) + couple
     vectors = np.stack([np.broadcast_to(force, place.shape), moment], axis=1)
     carried = np.einsum("gab,gka->gkb", axes, vectors).reshape(len(place), 6)
     carried = np.where(rule.node[:, None] < condition.at, carried, 0.0)
@@ -196,8 +199,8 @@ def _unit_strains(
 def unit_load(motions: Space, condition: Condition) -> Floats:
     """Generalised forces (n,) on strains of a unit load along a condition's direction."""
     value, angle = motions.sensitivity(np.array([condition.at]))
-    at = (angle if condition.direction.startswith("r") else value)[0]
-    return np.asarray(at if at.ndim == 1 else at[condition.number % 3])
+    components = (angle if condition.direction.startswith("r") else value)[0]
+    return np.asarray(components if components.ndim == 1 else components[condition.number % 3])
 
 
 def concerns(motions: Space, condition: Condition) -> bool:
@@ -213,27 +216,26 @@ def heat_load(motions: Space) -> Floats:
     return forces
 
 
-def _new(rule: Quadrature, weight: Floats, family: int, plain: Family, statics: Floats) -> list[int]:
+def _new_columns(rule: Quadrature, weight: Floats, family: int, plain: Family, statics: Floats) -> list[int]:
     """Indices of columns of static strains (g, k) that a family's shapes and the columns before do not contain.
 
     The squares of strains times `weight` (g,) are their energies.
     """
     shapes = plain(rule.node)
     strain = shapes.curvature if family in (1, 2) else shapes.slope
-    known, new = np.linalg.qr(weight[:, None] * strain)[0], list[int]()
+    basis, chosen = np.linalg.qr(weight[:, None] * strain)[0], list[int]()
     for k in range(statics.shape[1]):
         vector = weight * statics[:, k]
-        rest = vector - known @ (known.T @ vector)
-        rest = rest - known @ (known.T @ rest)
+        rest = vector - basis @ (basis.T @ vector)
+        rest = rest - basis @ (basis.T @ rest)
         if np.linalg.norm(rest) > NEW * np.linalg.norm(vector):
-            known = np.concatenate([known, rest[:, None] / np.linalg.norm(rest)], axis=1)
-            new.append(k)
-    return new
+            basis = np.concatenate([basis, rest[:, None] / np.linalg.norm(rest)], axis=1)
+            chosen.append(k)
+    return chosen
 
 
 def strain_sizes(beam: Beam, rule: Quadrature, slopes: Floats, angles: Floats) -> Floats:
-    """Squared sizes (n,) of unit coordinates by their strains: energies of a beam whose section is a part THICK of its
-    length thick.
+    """Squared sizes (n,) of unit coordinates by their strains, as energies of a beam that is THICK.
 
     Of a slender beam bending has so little energy that it would hold the end of a shallow arch along x, which it does
     not move any more as the arch snaps through. `slopes` and `angles` (p, 3, n) are the motions of its points, which
@@ -250,13 +252,13 @@ def strain_sizes(beam: Beam, rule: Quadrature, slopes: Floats, angles: Floats) -
 def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, shapes: int) -> tuple[int, ...]:
     """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest for their size.
 
-    `sizes` (n,) are those of :func:`strain_sizes`; the first `shapes` of the coordinates are of shapes. Raise
+    `sizes` (n,) are those of :func:`strain_sizes`. The first `shapes` of the coordinates are of shapes. Raise
     InputError where a condition says nothing that those before do not say.
     """
     scaled = rows[:, :shapes] / np.sqrt(sizes[:shapes])
     for k, condition in enumerate(conditions):
-        before = np.linalg.qr(scaled[:k].T)[0]
-        rest = scaled[k] - before @ (before.T @ scaled[k])
+        basis = np.linalg.qr(scaled[:k].T)[0]
+        rest = scaled[k] - basis @ (basis.T @ scaled[k])
         if not scaled[k].any():
             problem = f"holds {condition.direction}, in which the model has no shapes"
             fix = f"give modes.{FAMILIES[condition.family]} = 1 or more, or leave {condition.direction} out"

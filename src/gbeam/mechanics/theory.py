@@ -73,9 +73,11 @@ SLENDER, SHEAR, TWIST = (0, 4, 5), (1, 2), (3,)  # strains: stretch, shear along
 
 
 class Theory(NamedTuple):
-    """A beam by slender and by thick theory, with the structure's coordinates first. Of the thick one (n coordinates):
-    `columns` of shear and of twist, `curvature` (2, g, n) at the nodes and displacements of `bodies` (b, 3, n) per
-    coordinate; `rigidity` (2, g) N m³ is EI_y and EI_z times the nodes' weights.
+    """A beam by slender and by thick theory, with the structure's coordinates first.
+
+    The thick one has n coordinates: `columns` of shear and of twist, `curvature` (2, g, n) at the nodes and
+    displacements of `bodies` (b, 3, n) per coordinate. `rigidity` (2, g) N m³ is EI_y and EI_z times the nodes'
+    weights.
     """
 
     slender: Structure
@@ -147,7 +149,7 @@ class _Parts:
         loaded = [load.at for load in beam.loads if load.at is not None]
         self.first_load = len(x) + len(beam.masses)
         self.first_station = self.first_load + len(loaded)
-        supports = [int(np.argmin(np.abs(structure.stations - each.at))) for each in beam.held_places.values()]
+        supports = [int(np.argmin(np.abs(structure.stations - support.at))) for support in beam.held_places.values()]
         self.hung = [self.first_station + k for k in {*hung, *supports}]
         self.points = np.concatenate([x, [body.at for body in beam.masses], loaded, structure.stations])
         self.cumulative, self.at_nodes = rule.cumulative(self.points), rule.cumulative(x)
@@ -178,24 +180,24 @@ class _Parts:
         """Strains (m, k) of the thick beam under static loads.
 
         The loads are the inertia forces of shapes with strains (m, n), unit accelerations, the beam's loads and forces
-        where bodies hang; on each further level they are the inertia forces of the last answers.
+        where bodies hang. On each further level they are the inertia forces of the last answers.
         """
         station, mass, offset = particles_of(self.beam, self.rule, rotary=True)
         arm = np.einsum("pab,pb->ap", self.axes[station], offset)[..., None]
-        onto = station == np.arange(len(self.points))[:, None]  # (points, particles)
+        selection = station == np.arange(len(self.points))[:, None]  # (points, particles)
 
         def inertia(move: Floats, turn: Floats) -> Floats:
             force = mass[:, None] * (move[:, station] + np.cross(turn[:, station], arm, axis=0))
-            return self.pulled(onto @ force, onto @ np.cross(arm, force, axis=0))
+            return self.pulled(selection @ force, selection @ np.cross(arm, force, axis=0))
 
         def inertia_of(strains: Floats) -> Floats:
             moved, turned = self.field(strains).jacobians(np.zeros(strains.shape[1]))
             return inertia(np.moveaxis(moved, 0, 1), np.moveaxis(turned, 0, 1))
 
-        still = np.zeros((3, len(self.points), 3))
-        unit = still + np.eye(3)[:, None]  # unit vectors along x, y and z at every point
+        zeros = np.zeros((3, len(self.points), 3))
+        unit = zeros + np.eye(3)[:, None]  # unit vectors along x, y and z at every point
         place = self.place.T[..., None]
-        loads = [inertia_of(coordinates), inertia(unit, still), inertia(np.cross(unit, place, axis=0), unit)]
+        loads = [inertia_of(coordinates), inertia(unit, zeros), inertia(np.cross(unit, place, axis=0), unit)]
         acting = [np.arange(len(self.points)) == k for k in self.hung]  # weights of the points, of each load
         if self.beam.loads:
             work, points = self.work(self.field(coordinates), None)
@@ -203,7 +205,7 @@ class _Parts:
                 acting.append(np.bincount(points, work.weight * (work.load == load), len(self.points)))
         for weights in acting:
             vectors = weights[:, None] * unit
-            loads += [self.pulled(vectors, still), self.pulled(still, vectors)]
+            loads += [self.pulled(vectors, zeros), self.pulled(zeros, vectors)]
         answers = [self.answer(np.concatenate(loads, axis=1))]
         for _ in range(LEVELS - 1):
             answers.append(self.answer(inertia_of(answers[-1])))
@@ -251,15 +253,15 @@ class _Parts:
         offset = np.array([body.offset for body in self.beam.masses]).reshape(-1, 3)
         _, about_y, about_z = self.beam.rigidities(self.rule.node)
         models = self.model(slender, rotary=self.beam.rotary_inertia), self.model(thick, rotary=True)
-        grip, taken = models[1].grip, 0
+        grip, dependents = models[1].grip, 0
         if grip is not None:
-            thick, taken = thick @ grip.basis, len(grip.dependents)
+            thick, dependents = thick @ grip.basis, len(grip.dependents)
         bodies = self.field(thick)[nodes : nodes + len(self.beam.masses)]
         return Theory(
             *models,
             {
-                "shear": slice(block_ends[1] - taken, block_ends[2] - taken),
-                "twist": slice(block_ends[2] - taken, block_ends[3] - taken),
+                "shear": slice(block_ends[1] - dependents, block_ends[2] - dependents),
+                "twist": slice(block_ends[2] - dependents, block_ends[3] - dependents),
             },
             thick[4 * nodes : 6 * nodes].reshape(2, nodes, -1),
             np.stack([about_y, about_z]) * self.rule.weight,
@@ -273,10 +275,10 @@ class _Parts:
         nodal = shaped_strains(self.rule, families)
         strains = nodal.reshape(-1, nodal.shape[2])
         springs = self.move.shape[1]
-        out = np.zeros((len(self.stiffness), strains.shape[1] + springs))
-        out[: len(strains), : strains.shape[1]] = strains
-        out[len(strains) :, strains.shape[1] :] = np.eye(springs)
-        return out
+        padded = np.zeros((len(self.stiffness), strains.shape[1] + springs))
+        padded[: len(strains), : strains.shape[1]] = strains
+        padded[len(strains) :, strains.shape[1] :] = np.eye(springs)
+        return padded
 
     def others(self, answers: Floats, families: tuple[int, ...], coordinates: Floats | None = None) -> Floats:
         """Strains (m, l), orthonormal in energy, that span the parts of `answers` in some families (0 to 5).
@@ -306,13 +308,13 @@ class _Parts:
             return np.asarray(strains.T @ (np.where(self.known, stiffness, 0.0)[:, None] * strains))
         nodal, root = np.split(strains, [6 * len(self.rule.node)])
         nodal = nodal.reshape(6, -1, strains.shape[1])
-        kept = [k for k in range(6) if nodal[k].any()]
-        forces = np.einsum("gab,bgj->agj", condensed(self.coupling, kept), nodal[kept])
+        strained = [k for k in range(6) if nodal[k].any()]
+        forces = np.einsum("gab,bgj->agj", condensed(self.coupling, strained), nodal[strained])
         springs = root.T @ (self.stiffness[-len(root) :, None] * root) if len(root) else 0.0
-        return np.asarray(np.einsum("agi,agj->ij", nodal[kept], forces) + springs)
+        return np.asarray(np.einsum("agi,agj->ij", nodal[strained], forces) + springs)
 
     def heat(self, strains: Floats) -> Floats | None:
-        """Forces (n,) of a rise of the temperature by 1 K on shapes with the strains (m, n); None without any."""
+        """Forces (n,) of a rise of the temperature by 1 K on shapes with the strains (m, n), or None without any."""
         nodes = len(self.rule.node)
         return heat_of(self.beam, self.rule, strains[: 6 * nodes].reshape(6, nodes, -1))
 
@@ -336,7 +338,7 @@ class _Parts:
         stiffness: Floats,
         damping: Floats | None,
         heat: Floats | None,
-        taken: tuple[int, ...],
+        dependents: tuple[int, ...],
         *,
         rotary: bool,
     ) -> Structure:

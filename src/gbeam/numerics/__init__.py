@@ -1,4 +1,4 @@
-"""Small numerics that several rooms share; nothing here knows a beam, a base or a result."""
+"""Small numerics that several rooms share. Nothing here knows a beam, a base or a result."""
 
 import lazy_loader
 

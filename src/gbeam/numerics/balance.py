@@ -18,17 +18,17 @@ def loose(stiffness: Floats, velocity: Floats) -> Flags:
     return np.asarray(~(stiffness.any(axis=0) | velocity.any(axis=0)))
 
 
-def keeps_turning(k: Floats, mass: Floats, faster: Floats, which: Flags, turn: Flags) -> bool:
-    """True if a body can go on turning as the accelerations `faster` (n,) of the coordinates `which` turn with it.
+def keeps_turning(k: Floats, mass: Floats, faster: Floats, is_light: Flags, turn: Flags) -> bool:
+    """True if a body can go on turning as the accelerations `faster` (n,) of its light coordinates turn with it.
 
     `turn` flags the one or three coordinates of its rotation. By K and M (n, n), turning may change no force but the
     directions of these accelerations.
     """
-    (held,) = carried(mass, which, k)
-    size = np.abs(k) + np.abs(k - held) + np.abs(mass)
-    moved = pulled(k, mass, which)[turn][:, turn] + following(faster[turn])
-    alone = np.abs(held[:, turn]).max() <= SAME * size[:, turn].max()
-    return bool(alone and np.abs(moved).max() <= SAME * (1.0 + np.abs(faster[turn]).max()))
+    (pulled_forces,) = carried(mass, is_light, k)
+    size = np.abs(k) + np.abs(k - pulled_forces) + np.abs(mass)
+    moved = pulled(k, mass, is_light)[turn][:, turn] + following(faster[turn])
+    decoupled = np.abs(pulled_forces[:, turn]).max() <= SAME * size[:, turn].max()
+    return bool(decoupled and np.abs(moved).max() <= SAME * (1.0 + np.abs(faster[turn]).max()))
 
 
 def following(alpha: Floats) -> Floats:
@@ -36,16 +36,19 @@ def following(alpha: Floats) -> Floats:
     return np.cross(alpha, np.eye(3)).T if len(alpha) == 3 else np.zeros((1, 1))
 
 
-def carried(mass: Floats, which: Flags, *forces: Floats) -> tuple[Floats, ...]:
-    """Forces (n, ...) plus the inertia of the coordinates `which`, so accelerated that the forces on these vanish."""
-    inertia = mass[:, which] @ np.linalg.pinv(mass[which][:, which])
-    return tuple(force - inertia @ force[which] for force in forces)
+def carried(mass: Floats, is_light: Flags, *forces: Floats) -> tuple[Floats, ...]:
+    """Forces (n, ...) plus the inertia of the light coordinates.
+
+    These, flagged in `is_light`, are so accelerated that the forces on them vanish.
+    """
+    inertia = mass[:, is_light] @ np.linalg.pinv(mass[is_light][:, is_light])
+    return tuple(force - inertia @ force[is_light] for force in forces)
 
 
-def pulled(residual: Floats, mass: Floats, which: Flags) -> Floats:
-    """Accelerations (n, ...) of the coordinates `which` alone that leave nothing of a residual (n, ...) on them."""
+def pulled(residual: Floats, mass: Floats, is_light: Flags) -> Floats:
+    """Accelerations (n, ...) of the coordinates `is_light` alone that leave nothing of a residual (n, ...) on them."""
     faster = np.zeros_like(residual)
-    faster[which] = -np.linalg.pinv(mass[which][:, which]) @ residual[which]
+    faster[is_light] = -np.linalg.pinv(mass[is_light][:, is_light]) @ residual[is_light]
     return faster
 
 
@@ -78,26 +81,26 @@ def unheld(stiffness: Floats, mass: Floats) -> Floats:
     return np.linalg.qr(size[:, None] * directions[:, sizes <= HELD * sizes.max(initial=0.0)])[0]
 
 
-def relaxation(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> Floats:
-    """Displacements (n,) of a step down the forces of a residual (n,), with the coordinates `which` accelerated.
+def relaxation(residual: Floats, stiffness: Floats, mass: Floats, is_free: Flags) -> Floats:
+    """Displacements (n,) of a step down the forces of a residual (n,), with the coordinates `is_free` accelerated.
 
     They are about STRIDE where the forces are large, and those of Newton's method near a state that the stiffness
     holds.
     """
-    held = ~which
-    force, k, m = carried(mass, which, residual, stiffness, mass)
-    force, k, m = force[held], k[held][:, held], m[held][:, held]
+    is_held = ~is_free
+    force, k, m = carried(mass, is_free, residual, stiffness, mass)
+    force, k, m = force[is_held], k[is_held][:, is_held], m[is_held][:, is_held]
     acceleration, square = np.linalg.solve(m, force), np.linalg.eigvals(np.linalg.solve(m, k))
     # With so much inertia added, the stiffness is positive, and no coordinate moves far.
     shift = max(0.0, -2 * square.real.min(initial=0.0)) + np.abs(acceleration).max(initial=0.0) / STRIDE
     change = np.zeros_like(residual)
-    change[held] = np.linalg.solve(k + (shift + HELD * np.abs(square).max(initial=0.0)) * m, -force)
+    change[is_held] = np.linalg.solve(k + (shift + HELD * np.abs(square).max(initial=0.0)) * m, -force)
     return change
 
 
-def balanced(residual: Floats, stiffness: Floats, mass: Floats, which: Flags) -> tuple[Floats, Floats]:
-    """Displacements (n,), and accelerations (n,) of the coordinates `which`, that balance a residual (n,)."""
-    remaining, k = carried(mass, which, residual, stiffness)
-    k[:, which] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle
+def balanced(residual: Floats, stiffness: Floats, mass: Floats, is_free: Flags) -> tuple[Floats, Floats]:
+    """Displacements (n,), and accelerations (n,) of the coordinates `is_free`, that balance a residual (n,)."""
+    remaining, k = carried(mass, is_free, residual, stiffness)
+    k[:, is_free] = 0.0  # of slides already; a rotation that changes nothing else keeps its angle
     change = answered(k, mass, -remaining)
-    return change, pulled(residual + stiffness @ change, mass, which)
+    return change, pulled(residual + stiffness @ change, mass, is_free)

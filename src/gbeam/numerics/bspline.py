@@ -31,7 +31,7 @@ def _matrix() -> Floats:
 
 
 _BASIS = _matrix()
-_WHOLE = _BASIS.T @ (1 / np.arange(1, PIECE + 1))  # integrals of the six basis functions over one piece
+_INTEGRALS = _BASIS.T @ (1 / np.arange(1, PIECE + 1))  # integrals of the six basis functions over one piece
 # [k, j]: weights of xᵏ in the j-th Taylor coefficient at x, for each of the six basis functions.
 _TAYLOR = np.array(
     [[comb(k + j, j) * _BASIS[k + j] if k + j < PIECE else np.zeros(PIECE) for j in range(PIECE)] for k in range(PIECE)]
@@ -44,7 +44,7 @@ _ROUNDING = 1e-9  # of a piece
 
 @record
 class Spline:
-    """k quintic splines, uniform knots from `start`, `step` s apart; the last piece goes on beyond the end."""
+    """k quintic splines, uniform knots from `start`, `step` s apart. The last piece goes on beyond the end."""
 
     start: Any
     step: Any
@@ -67,9 +67,13 @@ class Spline:
         """Integrals from the start to times `t` (s, any shape), (..., k)."""
         xp, piece, powers = self._locate(t)
         weights = xp.stack([power * powers[1] / (k + 1) for k, power in enumerate(powers)], axis=-1) @ _BASIS
-        whole = xp.einsum("i,pik->pk", _WHOLE, self._local_coefficients(np.arange(len(self.coefficients) - DEGREE)))
-        before = xp.cumsum(whole, axis=0) - whole
-        return self.step * (before[piece] + (weights[..., None, :] @ self._local_coefficients(piece))[..., 0, :])
+        piece_integrals = xp.einsum(
+            "i,pik->pk", _INTEGRALS, self._local_coefficients(np.arange(len(self.coefficients) - DEGREE))
+        )
+        integral_before = xp.cumsum(piece_integrals, axis=0) - piece_integrals
+        return self.step * (
+            integral_before[piece] + (weights[..., None, :] @ self._local_coefficients(piece))[..., 0, :]
+        )
 
     def _locate(self, t: Any) -> tuple[Any, Any, list[Any]]:
         """Namespace, the pieces (...) where times lie, and powers 0 to 5 of the place in the piece, from 0 to 1."""

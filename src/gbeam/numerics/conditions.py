@@ -12,44 +12,45 @@ ALIKE = 1e-9  # of a condition's length: less of it is nothing that the other co
 
 
 def free_motions(rows: Any) -> tuple[Any, Flags]:
-    """Sparse basis (u, f) of the unknowns that conditions with sparse rows (m, u) leave free, q = N p with rows N = 0,
-    and flags (m,) of the conditions that say something that those before do not.
+    """Sparse basis (u, f) of the unknowns that conditions with sparse rows (m, u) leave free, q = N p with rows N = 0.
 
-    A condition on one unknown takes it; of the others each takes the unknown on which it acts most.
+    Flags (m,) tell the conditions that say something that those before do not.
+
+    A condition on one unknown takes it. Each of the others takes the unknown on which it acts most.
     """
     from scipy.sparse import coo_array, csr_array, diags_array
 
     rows = csr_array(rows)
-    unknowns, held, new = rows.shape[1], np.zeros(rows.shape[1], dtype=bool), np.zeros(rows.shape[0], dtype=bool)
+    unknowns, is_held, is_new = rows.shape[1], np.zeros(rows.shape[1], dtype=bool), np.zeros(rows.shape[0], dtype=bool)
     size = np.sqrt(rows.power(2).sum(axis=1))
     rows = (diags_array(1 / np.where(size > 0, size, np.inf)) @ rows).tocsr()
-    left = np.arange(len(new))
+    remaining = np.arange(len(is_new))
     while True:
         rows.data[np.abs(rows.data) < ALIKE] = 0.0
         rows.eliminate_zeros()
         acting = np.diff(rows.indptr)
-        rows, left, acting = rows[acting > 0], left[acting > 0], acting[acting > 0]
+        rows, remaining, acting = rows[acting > 0], remaining[acting > 0], acting[acting > 0]
         single = np.flatnonzero(acting == 1)
         if not len(single):
             break
         columns, first = np.unique(rows.indices[rows.indptr[single]], return_index=True)
-        new[left[single[first]]], held[columns] = True, True
-        rows = (rows @ diags_array(np.where(held, 0.0, 1.0))).tocsr()
+        is_new[remaining[single[first]]], is_held[columns] = True, True
+        rows = (rows @ diags_array(np.where(is_held, 0.0, 1.0))).tocsr()
     entries: list[tuple[Indices, Indices, Floats]] = []
-    for which in _parts(rows):
-        columns = np.unique(rows[which].indices)
-        block = rows[which][:, columns].toarray()
+    for rows_together in _parts(rows):
+        columns = np.unique(rows[rows_together].indices)
+        block = rows[rows_together][:, columns].toarray()
         told = _independent(block)
-        new[left[which[told]]] = True
-        followers, others, factors = _dependents(block[told])
-        held[columns[followers]] = True
+        is_new[remaining[rows_together[told]]] = True
+        followers, independent, factors = _dependents(block[told])
+        is_held[columns[followers]] = True
         shape = factors.shape
-        row, column = np.broadcast_to(columns[followers][:, None], shape), np.broadcast_to(columns[others], shape)
+        row, column = np.broadcast_to(columns[followers][:, None], shape), np.broadcast_to(columns[independent], shape)
         entries.append((row.ravel(), column.ravel(), factors.ravel()))
-    free = np.flatnonzero(~held)
-    number = np.cumsum(~held) - 1
+    free = np.flatnonzero(~is_held)
+    number = np.cumsum(~is_held) - 1
     row, column, value = (np.concatenate(part) for part in zip((free, free, np.ones(len(free))), *entries, strict=True))
-    return coo_array((value, (row, number[column])), shape=(unknowns, len(free))).tocsr(), new
+    return coo_array((value, (row, number[column])), shape=(unknowns, len(free))).tocsr(), is_new
 
 
 def least_motions(rows: Any, values: Floats) -> Floats:

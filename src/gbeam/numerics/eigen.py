@@ -16,9 +16,9 @@ def symmetric_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     """Eigenvalues (..., n), ascending, and eigenvectors (..., n, n) in columns, of unit length in M."""
     xp = namespace(stiffness, mass)
     scale = xp.linalg.inv(xp.linalg.cholesky(mass))
-    across = xp.swapaxes(scale, -1, -2)
-    value, vector = xp.linalg.eigh(scale @ stiffness @ across)
-    return value, across @ vector
+    transposed = xp.swapaxes(scale, -1, -2)
+    value, vector = xp.linalg.eigh(scale @ stiffness @ transposed)
+    return value, transposed @ vector
 
 
 def positive_definite(matrices: Array) -> bool:
@@ -45,7 +45,7 @@ UNSYMMETRIC = 1e-9  # of K: above it the loads follow the beam
 
 
 def growth_limit(value: Complex, largest: float) -> Floats:
-    """Real parts, 1/s, above which eigenvalues (k,) count as growing; `largest` is the largest size of all."""
+    """Real parts, 1/s, above which eigenvalues (k,) count as growing. `largest` is the largest size of all."""
     return np.maximum(np.where(value.imag != 0, FLUTTER * np.abs(value), 0.0), ZERO * largest)
 
 
@@ -55,7 +55,7 @@ def eigenvalues(
     """Eigenvalues λ and modes of M ÿ + C ẏ + K y = 0, matrices (n, n)."""
     damping = velocity if gyroscopic else (velocity + velocity.T) / 2
     free, held = _separate_free(mass, damping, stiffness)
-    value, mode = _moving(*(held.T @ matrix @ held for matrix in (mass, damping, stiffness)))
+    value, mode = _constrained_eigenvalues(*(held.T @ matrix @ held for matrix in (mass, damping, stiffness)))
     mode = held @ mode
     if free.shape[1]:
         # Free motions N a follow: λ² a + Nᵀ K N a = −Nᵀ (λ C + K) y, with thrust that turns with the body in Nᵀ K N.
@@ -86,7 +86,7 @@ def _separate_free(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Fl
     return free, held if free.shape[1] else np.eye(len(mass))
 
 
-def _moving(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Complex, Complex]:
+def _constrained_eigenvalues(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Complex, Complex]:
     """Eigenvalues and modes of :func:`eigenvalues` where no motion is free."""
     # In modes of the symmetric part, each scaled by its own frequency, all blocks are of the size of the frequencies:
     # the raw companion matrix loses half the digits of the low ones.
@@ -95,9 +95,9 @@ def _moving(mass: Floats, damping: Floats, stiffness: Floats) -> tuple[Complex, 
     scale = np.maximum(np.sqrt(np.abs(square)), 1e-6 * reference or 1.0)
     k, c = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     n = len(square)
-    moving = np.abs(k).max(axis=0, initial=0.0) > NONE * reference**2
+    is_moving = np.abs(k).max(axis=0, initial=0.0) > NONE * reference**2
     a = np.block([[np.zeros((n, n)), np.diag(scale)], [-k / scale, -c]])
-    keep = np.concatenate([moving, np.ones(n, dtype=bool)])
+    keep = np.concatenate([is_moving, np.ones(n, dtype=bool)])
     value, vector = np.linalg.eig(a[np.ix_(keep, keep)])
     # The velocities hold a mode also where its coordinate was dropped.
     return value, basis @ vector[len(vector) - n :]
@@ -121,9 +121,11 @@ class Linear(NamedTuple):
 
 
 class Vibrations(NamedTuple):
-    """Eigenvalues `value` (k,) 1/s of oscillating motions, one of each pair, the slowest first, with modes (n, k);
-    eigenvalues `diverging` and modes `divergence` of motions that grow without oscillating; eigenvalues of those that
-    decay so; and the size of the largest of all.
+    """Eigenvalues and modes of a system's motions.
+
+    `value` (k,) 1/s are the eigenvalues of oscillating motions, one of each pair, the slowest first, with modes (n, k).
+    Eigenvalues `diverging` and modes `divergence` are those of motions that grow without oscillating. Eigenvalues of
+    motions that decay so, and the size of the largest of all, are held besides.
     """
 
     value: Complex
@@ -133,9 +135,9 @@ class Vibrations(NamedTuple):
     decaying: Floats
     largest: float
 
-    def oscillating(self, which: Any) -> Vibrations:
-        """Return the vibrations with only the oscillating modes `which`, indices or flags."""
-        return self._replace(value=self.value[which], modes=self.modes[:, which])
+    def oscillating(self, chosen: Any) -> Vibrations:
+        """Return the vibrations with only the oscillating modes `chosen`, indices or flags."""
+        return self._replace(value=self.value[chosen], modes=self.modes[:, chosen])
 
     @property
     def frequency(self) -> Floats:
@@ -158,31 +160,33 @@ def vibrations(linear: Linear, *, gyroscopic: bool = True, zero: float = ZERO) -
     """Small motions about an equilibrium, without eigenvalues less than a share `zero` of the largest."""
     value, mode = eigenvalues(*linear[:3], gyroscopic=gyroscopic)
     size = float(np.abs(value).max(initial=0.0))
-    moving, real = np.abs(value) > zero * size, np.abs(value.imag) <= ZERO * size
+    is_moving, real = np.abs(value) > zero * size, np.abs(value.imag) <= ZERO * size
 
     def chosen(which: Flags) -> tuple[Complex, Complex]:
-        order = np.flatnonzero(moving & which)
+        order = np.flatnonzero(is_moving & which)
         order = order[np.argsort(np.abs(value[order]), kind="stable")]
         return value[order], _separate_equal(value[order], mode[:, order], linear.mass)
 
-    decaying = np.sort(value[moving & real & (value.real < 0)].real)
+    decaying = np.sort(value[is_moving & real & (value.real < 0)].real)
     return Vibrations(*chosen(~real & (value.imag > 0)), *chosen(real & (value.real > 0)), decaying, size)
 
 
 def _separate_equal(value: Complex, modes: Complex, mass: Floats) -> Complex:
-    """Modes (n, k), equal eigenvalues side by side, with one reproducible basis for each group of equal ones, such as
-    two equal beams have: orthonormal in the mass, along the principal axes of a mass weighted by coordinate number.
+    """Modes (n, k), equal eigenvalues side by side, with one reproducible basis for each group of equal ones.
+
+    Two equal beams have such groups. The basis is orthonormal in the mass, along the principal axes of a mass weighted
+    by coordinate number.
     """
     starts = np.flatnonzero(np.abs(np.diff(value)) > EQUAL * np.abs(value[1:])) + 1
-    out = modes.copy()
+    separated = modes.copy()
     weight = np.sqrt(np.arange(1.0, len(mass) + 1))
     for group in np.split(np.arange(len(value)), starts):
         if len(group) > 1:
             basis = modes[:, group]
             basis = basis @ np.linalg.inv(np.linalg.cholesky(basis.conj().T @ mass @ basis)).conj().T
             weighed = weight[:, None] * basis
-            out[:, group] = basis @ np.linalg.eigh(weighed.conj().T @ mass @ weighed)[1]
-    return out
+            separated[:, group] = basis @ np.linalg.eigh(weighed.conj().T @ mass @ weighed)[1]
+    return separated
 
 
 def unsymmetric(stiffness: Floats) -> bool:
@@ -191,8 +195,10 @@ def unsymmetric(stiffness: Floats) -> bool:
 
 
 def stability_margin(mass: Floats, velocity: Floats, stiffness: Floats, zero: float = 0.0) -> float:
-    """Number that is positive while nothing grows: the lowest eigenvalue of K in M, rad²/s², with the share `zero` of
-    the largest added, which is rounding; where K is unsymmetric, by the real parts of all eigenvalues, 1/s.
+    """Number that is positive while nothing grows.
+
+    It is the lowest eigenvalue of K in M, rad²/s², with the share `zero` of the largest added, which is rounding. Where
+    K is unsymmetric it is found by the real parts of all eigenvalues, 1/s.
     """
     if not unsymmetric(stiffness):
         square = symmetric_modes(symmetric(stiffness), symmetric(mass))[0]
@@ -224,7 +230,7 @@ class Steady:
 
     @property
     def whirl(self) -> Whirl | None:
-        """Points as they turn in the ground frame; None where nothing turns."""
+        """Points as they turn in the ground frame, or None where nothing turns."""
         raise NotImplementedError
 
     def directions(self, modes: Complex) -> tuple[str, ...]:
@@ -246,20 +252,20 @@ class Steady:
         return stability_margin(*self.linear[:3], self.zero**2)
 
 
-def matched(alike: Floats) -> tuple[Indices, Floats]:
+def matched(likeness: Floats) -> tuple[Indices, Floats]:
     """For each row of MACs (k, l) the column that it resembles most, each of them once, −1 for none; and their MAC."""
-    rows, columns = np.arange(len(alike)), alike.argmax(axis=1)
+    rows, columns = np.arange(len(likeness)), likeness.argmax(axis=1)
     if len(set(columns)) < len(columns):  # two want the same one
         from scipy.optimize import linear_sum_assignment
 
-        rows, columns = linear_sum_assignment(-alike)
-    match, value = np.full(len(alike), -1), np.full(len(alike), np.nan)
-    match[rows], value[rows] = columns, alike[rows, columns]
+        rows, columns = linear_sum_assignment(-likeness)
+    match, value = np.full(len(likeness), -1), np.full(len(likeness), np.nan)
+    match[rows], value[rows] = columns, likeness[rows, columns]
     return match, value
 
 
 def growth_rate(mass: Floats, velocity: Floats, stiffness: Floats) -> float:
-    """Real part of the eigenvalue that grows fastest, 1/s; zero where none grows."""
+    """Real part of the eigenvalue that grows fastest, 1/s, or zero where none grows."""
     value, _ = eigenvalues(mass, velocity, stiffness)
     return float(value.real.max(where=value.real > growth_limit(value, np.abs(value).max(initial=0.0)), initial=0.0))
 

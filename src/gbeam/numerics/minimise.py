@@ -27,7 +27,7 @@ def refine(evaluate: Evaluate, points: Sequence[float]) -> None:
     allowed = [i for i, (_, share) in enumerate(values) if share <= 1]
     if not allowed:
         return
-    best = min(allowed, key=lambda i: values[i][0])
+    best_index = min(allowed, key=lambda i: values[i][0])
 
     def edge(inside: float, outside: float) -> float:
         """The last number that is allowed on the way from `inside` to `outside`, by bisection of the ratio."""
@@ -41,10 +41,10 @@ def refine(evaluate: Evaluate, points: Sequence[float]) -> None:
     def neighbour(i: int) -> float:
         """Bound of the search: point i, or the last allowed number on the way to it."""
         if not 0 <= i < len(points):
-            return points[best]
-        return points[i] if values[i][1] <= 1 else edge(points[best], points[i])
+            return points[best_index]
+        return points[i] if values[i][1] <= 1 else edge(points[best_index], points[i])
 
-    low, high = neighbour(best - 1), neighbour(best + 1)
+    low, high = neighbour(best_index - 1), neighbour(best_index + 1)
     if high <= low * (1 + _RESOLUTION):
         return
     import scipy.optimize
@@ -65,8 +65,8 @@ _NOTHING = 1e-9  # a value at the start that is less is rounding
 def minimise_convex(evaluate: Callable[[Floats], tuple[float, Floats]], low: Floats, high: Floats, x: Floats) -> Floats:
     """Find the point between bounds (n,) at which a convex function is least; of several, the nearest to `x`.
 
-    The method is that of cutting planes, tangents of the function (Kelley 1960). `evaluate` gives value and slope (n,);
-    the bounds may be equal.
+    The method is that of cutting planes, tangents of the function (Kelley 1960). `evaluate` gives value and slope (n,).
+    The bounds may be equal.
     """
     import scipy.optimize
 
@@ -77,25 +77,25 @@ def minimise_convex(evaluate: Callable[[Floats], tuple[float, Floats]], low: Flo
     rows, sides = [*distances], [*start_share, *-start_share]
     bounds, costs = [*[(0.0, 1.0)] * n, (0.0, np.inf), *[(0.0, 1.0)] * n], np.zeros(2 * n + 1)
     costs[n] = 1.0
-    x, best = start, (np.inf, start)
+    x, best_point = start, (np.inf, start)
     unit = 0.0  # the value at the start
     for _ in range(_CUTS):
         value, slope = evaluate(x)
         unit = unit or max(value, _NOTHING)
-        if costs[n] == 0 and value <= best[0] + _WORTH * unit:
+        if costs[n] == 0 and value <= best_point[0] + _WORTH * unit:
             return x
-        best = min(best, (value, x), key=lambda pair: pair[0])
+        best_point = min(best_point, (value, x), key=lambda pair: pair[0])
         rows.append(np.concatenate([slope * width / unit, [-1.0], np.zeros(n)]))
         sides.append(float(slope @ (x - low) - value) / unit)
         solved = scipy.optimize.linprog(costs, np.array(rows), sides, bounds=bounds)
-        if costs[n] and (not solved.success or best[0] / unit - solved.x[n] <= _ENDED):
+        if costs[n] and (not solved.success or best_point[0] / unit - solved.x[n] <= _ENDED):
             costs[:], costs[n + 1 :] = 0.0, 1.0  # the least is known: now the nearest of those
-            bounds[n] = 0.0, best[0] / unit + _WORTH / 2
+            bounds[n] = 0.0, best_point[0] / unit + _WORTH / 2
             solved = scipy.optimize.linprog(costs, np.array(rows), sides, bounds=bounds)
         if not solved.success:
             break
         x = low + width * np.clip(solved.x[:n], 0.0, 1.0)
-    return best[1]
+    return best_point[1]
 
 
 _TOLERANCE = 1e-7  # of what limits leave, which are of the order of one, and of the slope
@@ -104,7 +104,9 @@ _SCALE = 1e4  # of the cost: the solver adds up to 1e-10 to H, which must be sma
 
 
 def solve_quadratic(hessian: Any, slope: Floats, rows: Any, lower: Floats, upper: Floats) -> Floats | None:
-    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper, H (n, n), A (m, n); None if not solved."""
+    """Find the x that minimises ½ xᵀHx + gᵀx within lower <= A x <= upper, H (n, n), A (m, n),
+    or None if not solved.
+    """
     import piqp
 
     solver = piqp.SparseSolver()
@@ -156,26 +158,26 @@ def minimise(cost: Cost, limits: Limits, x: Floats) -> tuple[Floats, float]:
     for _ in range(_STEPS):
         hessian, slope = cost.model(x)
         rows, lower, upper = limits.linearise(x)
-        now = rows @ x
-        move = solve_quadratic(hessian, slope, rows, lower - now, upper - now)
+        row_values = rows @ x
+        move = solve_quadratic(hessian, slope, rows, lower - row_values, upper - row_values)
         if move is None:
             break
         promised, fraction = float(slope @ move), 1.0  # promised: change of the cost, negative
-        while (new := cost.cost(x + fraction * move)) > value + _SUFFICIENT * fraction * promised:
+        while (new_cost := cost.cost(x + fraction * move)) > value + _SUFFICIENT * fraction * promised:
             fraction /= 2
             if fraction < _SHORTEST:
                 return x, value
-        x, gain, value = x + fraction * move, value - new, new
+        x, gain, value = x + fraction * move, value - new_cost, new_cost
         if gain <= _ENOUGH * (value - cost.bound):
             break
     return x, value
 
 
 def nearest_point(limits: Limits, x: Floats) -> Floats | None:
-    """Find the point within the limits that is nearest to `x`; None if there is none."""
+    """Find the point within the limits that is nearest to `x`, or None if there is none."""
     import scipy.sparse
 
     rows, lower, upper = limits.linearise(x)
-    now = rows @ x
-    move = solve_quadratic(scipy.sparse.eye_array(x.size), 0 * x, rows, lower - now, upper - now)
+    row_values = rows @ x
+    move = solve_quadratic(scipy.sparse.eye_array(x.size), 0 * x, rows, lower - row_values, upper - row_values)
     return None if move is None else x + move

@@ -48,14 +48,14 @@ def near_maxima(time: Floats, values: Floats) -> Indices:
     peaked = (values[:, 1:-1] > values[:, :-2]) & (values[:, 1:-1] >= values[:, 2:])
     peaked[:, [0, -1]] = True
     run, row, column = np.nonzero(peaked)
-    around = row + np.arange(3)[:, None]
-    _, height = _vertex(time[around], values[run, around, column])
+    neighbours = row + np.arange(3)[:, None]
+    _, height = _vertex(time[neighbours], values[run, neighbours, column])
     history = run * values.shape[2] + column
     gain, highest = np.zeros(len(values) * values.shape[2]), np.full(len(values) * values.shape[2], -np.inf)
     np.maximum.at(gain, history, height - values[run, row + 1, column])
     np.maximum.at(highest, history, height)
-    near = height >= highest[history] - 0.5 * gain[history]
-    history, place, height = history[near], (run * count + row + 1)[near], height[near]
+    is_near = height >= highest[history] - 0.5 * gain[history]
+    history, place, height = history[is_near], (run * count + row + 1)[is_near], height[is_near]
     if len(history) > _COUNT:  # keep the highest of each history
         order = np.lexsort((-height, history))
         history, place = history[order], place[order]
@@ -66,30 +66,34 @@ def near_maxima(time: Floats, values: Floats) -> Indices:
 
 
 def maxima(
-    time: Floats, values: Floats, t: Floats, between: Floats, at: Indices | None = None
+    time: Floats, values: Floats, t: Floats, refined: Floats, samples: Indices | None = None
 ) -> tuple[Floats, Floats]:
-    """Largest value of each history (t, k), or (b, t, k) of runs, and its time. `between` are values at times t (u, p)
-    beside the samples `at` (u,), which belong to all histories, or to those of a run.
+    """Largest value of each history (t, k), or (b, t, k) of runs, and its time.
+
+    The `refined` values are those at times t (u, p) beside `samples` (u,). These belong to all histories, or to those
+    of a run.
     """
     first, columns = values.argmax(axis=-2), np.arange(values.shape[-1])
-    largest, when = np.take_along_axis(values, first[..., None, :], axis=-2)[..., 0, :], time[first]
-    if not len(between):
-        return largest, when
-    starts = np.zeros(1, dtype=np.intp) if at is None else np.searchsorted(at, len(time) * np.arange(len(values)))
-    best = [of_run.reshape(-1, len(columns)).argmax(axis=0) for of_run in np.split(between, starts[1:])]
-    window, place = np.divmod(np.reshape(best, first.shape), between.shape[1])
+    largest, peak_time = np.take_along_axis(values, first[..., None, :], axis=-2)[..., 0, :], time[first]
+    if not len(refined):
+        return largest, peak_time
+    starts = (
+        np.zeros(1, dtype=np.intp) if samples is None else np.searchsorted(samples, len(time) * np.arange(len(values)))
+    )
+    best_place = [of_run.reshape(-1, len(columns)).argmax(axis=0) for of_run in np.split(refined, starts[1:])]
+    window, place = np.divmod(np.reshape(best_place, first.shape), refined.shape[1])
     window = window + starts.reshape(-1, *[1] * (values.ndim - 2))
-    around = np.clip(place, 1, between.shape[1] - 2) + np.arange(-1, 2).reshape(-1, *[1] * place.ndim)
-    vertex, value = _vertex(t[window, around], between[window, around, columns])
-    better = value > largest
-    return np.where(better, value, largest), np.where(better, vertex, when)
+    neighbours = np.clip(place, 1, refined.shape[1] - 2) + np.arange(-1, 2).reshape(-1, *[1] * place.ndim)
+    vertex, value = _vertex(t[window, neighbours], refined[window, neighbours, columns])
+    is_larger = value > largest
+    return np.where(is_larger, value, largest), np.where(is_larger, vertex, peak_time)
 
 
 def turning_points(time: Floats, values: Floats) -> Floats:
     """First value, local extremes between samples and last value (e,) of one history (t,), in order of time."""
     slope = np.sign(np.diff(values))
-    moving = np.flatnonzero(slope)
-    turns = moving[1:][slope[moving[1:]] != slope[moving[:-1]]]
+    changes = np.flatnonzero(slope)
+    turns = changes[1:][slope[changes[1:]] != slope[changes[:-1]]]
     ends = values[[0, -1]]
     if len(values) < FEWEST or not turns.size:
         return np.concatenate([ends[:1], values[turns], ends[1:]])
@@ -97,23 +101,24 @@ def turning_points(time: Floats, values: Floats) -> Floats:
     t, y = seven_point(time, values[:, None], turns)
     y = y[..., 0] * sign[:, None]
     rows = np.arange(len(turns))
-    around = np.clip(y.argmax(axis=1), 1, y.shape[1] - 2) + np.arange(-1, 2)[:, None]
-    _, value = _vertex(t[rows, around], y[rows, around])
+    neighbours = np.clip(y.argmax(axis=1), 1, y.shape[1] - 2) + np.arange(-1, 2)[:, None]
+    _, value = _vertex(t[rows, neighbours], y[rows, neighbours])
     return np.concatenate([ends[:1], sign * np.maximum(value, sign * values[turns]), ends[1:]])
 
 
-def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, at: Indices) -> tuple[Floats, Floats]:
-    """Times (u, p) and q (u, p, n) in the two steps beside samples `at` (u,), by values and derivatives (t, n) or, of
-    runs, (b, t, n).
+def quintic_hermite(time: Floats, q: Floats, qd: Floats, qdd: Floats, samples: Indices) -> tuple[Floats, Floats]:
+    """Times (u, p) and q (u, p, n) in the two steps beside each of the `samples` (u,).
+
+    They follow from values and derivatives (t, n) or, of runs, (b, t, n).
     """
-    count, sample = int(np.prod(q.shape[:-1])), at % len(time)
+    count, sample = int(np.prod(q.shape[:-1])), samples % len(time)
     history = np.stack([q, qd, qdd], axis=-2).reshape(count, 3, q.shape[-1])
-    resolved = np.reshape(_resolved(time, q, qd), (count // len(time), 1, q.shape[-1]))[at // len(time)]
+    resolved = np.reshape(_resolved(time, q, qd), (count // len(time), 1, q.shape[-1]))[samples // len(time)]
 
     def step(shift: int) -> Floats:
         j = sample + shift
         scale = (time[j + 1] - time[j])[:, None, None] ** np.arange(3)[:, None]
-        before, after = history[at + shift], history[at + shift + 1]
+        before, after = history[samples + shift], history[samples + shift + 1]
         straight = before[:, :1] + _SHARES[:, None] * (after - before)[:, :1]
         return np.where(resolved, _QUINTIC @ np.concatenate([scale * before, scale * after], axis=1), straight)
 
@@ -131,14 +136,15 @@ def _resolved(time: Floats, q: Floats, qd: Floats) -> Any:
     return (1 - _RESOLVED) * squares <= 2 * np.einsum("...tn,...tn->...n", change, predicted)
 
 
-def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floats]:
-    """Times (u, p) and values (u, p, c) in the two steps beside samples `at` (u,), from values (t, c) alone, or (b, t,
-    c) of runs, through all of which they count. Where the polynomial of sixth degree does not converge, as at a jump,
-    the sample stands for all.
+def seven_point(time: Floats, values: Floats, samples: Indices) -> tuple[Floats, Floats]:
+    """Times (u, p) and values (u, p, c) in the two steps beside each of the `samples` (u,).
+
+    They follow from values (t, c) alone, or (b, t, c) of runs, through all of which samples count. Where the polynomial
+    of sixth degree does not converge, as at a jump, the sample stands for all.
     """
     if len(time) < FEWEST:
-        at = at[:0]
-    run, sample = np.divmod(at, len(time))
+        samples = samples[:0]
+    run, sample = np.divmod(samples, len(time))
     sample, window = np.unique(sample, return_inverse=True)  # runs that peak at one time share its polynomials
     t, n, values = _subdivided(time, sample), max(len(time), FEWEST), values.reshape(-1, values.shape[-1])
 
@@ -148,15 +154,15 @@ def seven_point(time: Floats, values: Floats, at: Indices) -> tuple[Floats, Floa
         return _lagrange(time[nearest], t)[window] @ values[run[:, None] * len(time) + nearest[window]]
 
     high, low, parabola = polynomial(7), polynomial(5), polynomial(3)
-    sampled = values[at][:, None]
+    sampled = values[samples][:, None]
     change = np.abs(high - low).max(axis=1, keepdims=True)
     rough = change > np.maximum(_SMOOTH * np.abs(low - parabola).max(axis=1, keepdims=True), 1e-9 * np.abs(sampled))
     return t[window], np.where(rough, sampled, high)
 
 
-def _subdivided(time: Floats, at: Indices) -> Floats:
-    """Evenly spaced times (u, p) in the two steps beside samples `at` (u,)."""
-    before, centre, after = time[at - 1][:, None], time[at][:, None], time[at + 1][:, None]
+def _subdivided(time: Floats, samples: Indices) -> Floats:
+    """Evenly spaced times (u, p) in the two steps beside each of the `samples` (u,)."""
+    before, centre, after = time[samples - 1][:, None], time[samples][:, None], time[samples + 1][:, None]
     return np.concatenate([before + _SHARES * (centre - before), centre + _SHARES[1:] * (after - centre)], axis=1)
 
 
@@ -197,19 +203,19 @@ def vector_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
 
 def length_peaks(time: Floats, vectors: Floats) -> tuple[Floats, Floats]:
     """Largest lengths (...) of vectors (..., t, 3), and their times, between samples."""
-    value, when = _measured(time, vectors, lambda vectors: np.sqrt((vectors**2).sum(axis=-1, keepdims=True)))
-    return value[..., 0], when[..., 0]
+    value, peak_time = _measured(time, vectors, lambda vectors: np.sqrt((vectors**2).sum(axis=-1, keepdims=True)))
+    return value[..., 0], peak_time[..., 0]
 
 
 def _measured(time: Floats, histories: Floats, measure: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
     """Largest values (..., m) of m measures of histories (..., t, c), and their times, between samples."""
     runs = histories.reshape(-1, *histories.shape[-2:])
     values = measure(runs)
-    at = near_maxima(time, values)
-    t, between = seven_point(time, runs, at)
-    value, when = maxima(time, values, t, measure(between), at)
+    samples = near_maxima(time, values)
+    t, refined = seven_point(time, runs, samples)
+    value, peak_time = maxima(time, values, t, measure(refined), samples)
     shape = *histories.shape[:-2], values.shape[-1]
-    return value.reshape(shape), when.reshape(shape)
+    return value.reshape(shape), peak_time.reshape(shape)
 
 
 def sizes(vectors: Floats) -> Floats:
@@ -221,8 +227,8 @@ def sizes(vectors: Floats) -> Floats:
 
 def column_peaks(time: Floats, columns: Floats) -> tuple[Floats, Floats]:
     """Largest values (k,) of histories (t, k), each looked at by itself, and their times, between samples."""
-    value, when = _measured(time, np.ascontiguousarray(columns.T)[..., None], lambda values: values)
-    return value[:, 0], when[:, 0]
+    value, peak_time = _measured(time, np.ascontiguousarray(columns.T)[..., None], lambda values: values)
+    return value[:, 0], peak_time[:, 0]
 
 
 def extremes(time: Floats, values: Floats) -> Floats:
@@ -245,18 +251,18 @@ def _window_extremes(time: Floats, values: Floats) -> Floats:
     return np.asarray(value[..., 0].max(axis=1))
 
 
-def peak_difference(time: Floats, values: Floats, others: Floats) -> float:
+def peak_difference(time: Floats, values: Floats, other_values: Floats) -> float:
     """Largest difference of the highest and lowest values of two histories (t,) or (t, c), whenever each is reached.
 
     Of histories with more columns than vectors have, only columns that reach half of the largest value count.
     """
-    return largest_peak_difference(time, values[None], others[None])
+    return largest_peak_difference(time, values[None], other_values[None])
 
 
-def largest_peak_difference(time: Floats, values: Floats, others: Floats) -> float:
+def largest_peak_difference(time: Floats, values: Floats, other_values: Floats) -> float:
     """Largest :func:`peak_difference` of histories in windows (w, t, ...) that have their times alike."""
     if values.ndim == 3 and values.shape[2] > WIDE:
-        most = np.abs(values).max(axis=(0, 1))
-        large = most >= most.max() / 2
-        values, others = values[..., large], others[..., large]
-    return float(np.abs(_window_extremes(time, values) - _window_extremes(time, others)).max())
+        largest = np.abs(values).max(axis=(0, 1))
+        large = largest >= largest.max() / 2
+        values, other_values = values[..., large], other_values[..., large]
+    return float(np.abs(_window_extremes(time, values) - _window_extremes(time, other_values)).max())

@@ -37,14 +37,16 @@ def thinned(x: Floats, y: Floats, columns: int) -> tuple[Floats, Floats]:
     index = np.minimum(np.arange(width * -(-len(x) // width)), len(x) - 1).reshape(-1, width)
     rows, shown = np.arange(len(index)), y[index]
     ends = index[:, 0], index[:, -1], index[rows, shown.argmin(axis=1)], index[rows, shown.argmax(axis=1)]
-    kept = np.unique(np.concatenate(ends))
-    return x[kept], y[kept]
+    chosen = np.unique(np.concatenate(ends))
+    return x[chosen], y[chosen]
 
 
-def interpolated(time: Floats, known: Floats, values: Floats) -> Floats:
-    """Values (t, ...) at the times `known`, at `time` (u,): on straight lines, and constant beyond the ends."""
-    columns = np.reshape(values, (len(known), -1)).T
-    return np.stack([np.interp(time, known, column) for column in columns], axis=1).reshape(-1, *np.shape(values)[1:])
+def interpolated(time: Floats, is_known: Floats, values: Floats) -> Floats:
+    """Values (t, ...) at the times `is_known`, at `time` (u,): on straight lines, and constant beyond the ends."""
+    columns = np.reshape(values, (len(is_known), -1)).T
+    return np.stack([np.interp(time, is_known, column) for column in columns], axis=1).reshape(
+        -1, *np.shape(values)[1:]
+    )
 
 
 def cumulative(time: Floats, value: Floats, slope: Floats) -> Floats:
@@ -59,12 +61,14 @@ def attitude(time: Floats, w_WB_B: Floats) -> Floats:
     from scipy.spatial.transform import Rotation
 
     turns = Rotation.from_rotvec(0.5 * (w_WB_B[1:] + w_WB_B[:-1]) * np.diff(time)[:, None])
-    since = Rotation.concatenate([Rotation.identity(), turns]) if len(turns) else Rotation.from_quat([[0, 0, 0, 1]])
+    turns_since = (
+        Rotation.concatenate([Rotation.identity(), turns]) if len(turns) else Rotation.from_quat([[0, 0, 0, 1]])
+    )
     reach = 1
-    while reach < len(since):  # products of 2, 4, 8, ... intervals at once
-        since = Rotation.concatenate([since[:reach], since[:-reach] * since[reach:]])
+    while reach < len(turns_since):  # products of 2, 4, 8, ... intervals at once
+        turns_since = Rotation.concatenate([turns_since[:reach], turns_since[:-reach] * turns_since[reach:]])
         reach *= 2
-    return np.roll(since.as_quat(), 1, axis=1)
+    return np.roll(turns_since.as_quat(), 1, axis=1)
 
 
 def separate_peaks(values: Floats, floor: float, dip: float) -> list[tuple[int, slice]]:
@@ -77,21 +81,21 @@ def separate_peaks(values: Floats, floor: float, dip: float) -> list[tuple[int, 
         rises = np.concatenate([[True], part[1:] > part[:-1]])
         falls = np.concatenate([part[:-1] >= part[1:], [True]])
         tops = np.flatnonzero(rises & falls)
-        kept, lowest = [int(tops[0])], np.inf
+        separate, lowest = [int(tops[0])], np.inf
         for top, before in zip(tops[1:].tolist(), np.minimum.reduceat(part, tops)[:-1].tolist(), strict=True):
             lowest = min(lowest, before)
-            if lowest < dip * min(part[kept[-1]], part[top]):
-                kept.append(top)
-            elif part[top] > part[kept[-1]]:
-                kept[-1] = top
+            if lowest < dip * min(part[separate[-1]], part[top]):
+                separate.append(top)
+            elif part[top] > part[separate[-1]]:
+                separate[-1] = top
             else:
                 continue
             lowest = np.inf
-        lows = [first + int(np.argmin(part[first:second])) for first, second in pairwise(kept)]
+        lows = [first + int(np.argmin(part[first:second])) for first, second in pairwise(separate)]
         edges = [0, *lows, len(part)]
         peaks += [
             (run.start + top, slice(run.start + begin, run.start + end))
-            for top, (begin, end) in zip(kept, pairwise(edges), strict=True)
+            for top, (begin, end) in zip(separate, pairwise(edges), strict=True)
         ]
     return peaks
 
@@ -111,8 +115,8 @@ def low_pass(values: Floats, step: float, cutoff: float) -> Floats:
     import scipy.signal
 
     sections = scipy.signal.butter(ORDER, cutoff, fs=1 / step, output="sos")
-    beyond = min(len(values) - 1, math.ceil(1 / (cutoff * step)))
-    return np.asarray(scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=beyond))
+    extension = min(len(values) - 1, math.ceil(1 / (cutoff * step)))
+    return np.asarray(scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=extension))
 
 
 def displacement(load: Floats, frequency: ArrayLike, damping: float, step: float) -> Floats:

@@ -24,9 +24,9 @@ class Series:
     @classmethod
     def variable(cls, t: Any, order: int) -> Series:
         """Time itself at times `t` (s)."""
-        now = as_array(t)
-        xp = namespace(now)
-        return cls.from_derivatives([now, xp.ones_like(now)], order)
+        time = as_array(t)
+        xp = namespace(time)
+        return cls.from_derivatives([time, xp.ones_like(time)], order)
 
     @classmethod
     def from_derivatives(cls, derivatives: Sequence[Any], order: int) -> Series:
@@ -156,7 +156,7 @@ def arctan2(y: Series, x: Series) -> Series:
 
 
 def where(condition: Any, chosen: Series | Any, other: Series | Any) -> Series:
-    """One series where a condition on each time holds, another elsewhere; either may be a constant."""
+    """One series where a condition on each time holds, another elsewhere. Either may be a constant."""
     a, b = (s.coefficients if isinstance(s, Series) else None for s in (chosen, other))
     length = min(len(c) for c in (a, b) if c is not None)
     a, b = (c or (s, *[0.0] * length) for c, s in ((a, chosen), (b, other)))

@@ -46,8 +46,8 @@ def solver() -> str:
 
 def cost(unknowns: float) -> tuple[float, float]:
     """Memory, bytes, and time, s, that factors of a solid with so many unknowns take at most, roughly."""
-    which = solver()
-    return BYTES[which] * unknowns ** (4 / 3), SECONDS[which] * unknowns**2
+    solver_name = solver()
+    return BYTES[solver_name] * unknowns ** (4 / 3), SECONDS[solver_name] * unknowns**2
 
 
 def refuse_cost(where: str, unknowns: float, cause: str = "makes") -> None:
@@ -123,10 +123,12 @@ SAME = 1e-13  # of the largest eigenvalue of the products of unit vectors: two t
 
 
 def lowest_modes(
-    solve: Callable[[Floats], Floats], mass: Any, start: Floats, modes: int, more: int = 0
+    solve: Callable[[Floats], Floats], mass: Any, start: Floats, modes: int, extra: int = 0
 ) -> tuple[Floats, Floats]:
-    """Inverse eigenvalues (m,), the largest in size first, and vectors (n, m) of unit modal mass, of `modes` that have
-    converged and of some `more` roughly; fewer where no more motions move mass.
+    """Inverse eigenvalues (m,), the largest in size first, and vectors (n, m) of unit modal mass.
+
+    They are those of `modes` that have converged and of some `extra` roughly. There are fewer where no more motions
+    move mass.
 
     `solve` applies the inverse of the stiffness, and `start` (n, b) begins the space. All of its vectors are kept
     orthogonal (Golub and Underwood 1977, The block Lanczos method for computing eigenvalues).
@@ -134,47 +136,47 @@ def lowest_modes(
     basis, steps = list[Floats](), list[Floats]()
     flexibility, value = np.zeros((0, 0)), np.zeros(0)
     vector, residual = flexibility, value
-    new, weighed = _orthonormal(start, mass @ start, basis, mass)
-    close = np.repeat([CLOSE, ROUGH], [modes, more])
-    while new.shape[1] and not (len(value) == modes + more and (residual < close * np.abs(value)).all()):
-        basis.append(new)
+    directions, weighed = _orthonormal(start, mass @ start, basis, mass)
+    close = np.repeat([CLOSE, ROUGH], [modes, extra])
+    while directions.shape[1] and not (len(value) == modes + extra and (residual < close * np.abs(value)).all()):
+        basis.append(directions)
         step = solve(weighed)
         steps.append(step)
         heavy = mass @ step
-        across = _products(basis, heavy)
-        flexibility = np.block([[flexibility, across[: len(flexibility)]], [across.T]])
-        new, weighed = _orthonormal(step, heavy, basis, mass, across)
+        products = _products(basis, heavy)
+        flexibility = np.block([[flexibility, products[: len(flexibility)]], [products.T]])
+        directions, weighed = _orthonormal(step, heavy, basis, mass, products)
         value, vector = np.linalg.eigh(flexibility)
-        lowest = np.argsort(-np.abs(value), kind="stable")[: modes + more]
+        lowest = np.argsort(-np.abs(value), kind="stable")[: modes + extra]
         value, vector = value[lowest], vector[:, lowest]
-        residual = np.linalg.norm(new.T @ heavy @ vector[-step.shape[1] :], axis=0)
+        residual = np.linalg.norm(directions.T @ heavy @ vector[-step.shape[1] :], axis=0)
     # Once more by the stiffness: without what has no mass, of which products with the mass do not know.
     return value, _combined(steps, vector) / value if steps else vector
 
 
 def _orthonormal(
-    vectors: Floats, weighed: Floats, basis: list[Floats], mass: Any, across: Floats | None = None
+    vectors: Floats, weighed: Floats, basis: list[Floats], mass: Any, cross_products: Floats | None = None
 ) -> tuple[Floats, Floats]:
     """Vectors W (n, l), orthonormal in the mass M, that span what `vectors` V (n, b) have beside a basis Q; and M W.
 
-    `weighed` (n, b) is M V, and `across` (m, b) Qᵀ M V.
+    `weighed` (n, b) is M V, and `cross_products` (m, b) Qᵀ M V.
     """
     lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, weighed), 0.0))
     for _ in range(3):  # twice is enough, and once more for what was small
         if basis:
-            across = _products(basis, weighed) if across is None else across
-            vectors = vectors - _combined(basis, across)
-            weighed, across = mass @ vectors, None
+            cross_products = _products(basis, weighed) if cross_products is None else cross_products
+            vectors = vectors - _combined(basis, cross_products)
+            weighed, cross_products = mass @ vectors, None
         products = vectors.T @ weighed
         size = np.sqrt(np.maximum(np.diagonal(products), 0.0))
-        beside = (size > NONE * lengths) & (lengths > 0)
-        size, products, share = size[beside], products[np.ix_(beside, beside)], size[beside] / lengths[beside]
+        is_new = (size > NONE * lengths) & (lengths > 0)
+        size, products, share = size[is_new], products[np.ix_(is_new, is_new)], size[is_new] / lengths[is_new]
         value, vector = np.linalg.eigh(products / np.outer(size, size))
-        kept = value > SAME * value.max(initial=0.0)
-        change = vector[:, kept] / np.sqrt(value[kept]) / size[:, None]
-        vectors, weighed = vectors[:, beside] @ change, weighed[:, beside] @ change
+        is_independent = value > SAME * value.max(initial=0.0)
+        change = vector[:, is_independent] / np.sqrt(value[is_independent]) / size[:, None]
+        vectors, weighed = vectors[:, is_new] @ change, weighed[:, is_new] @ change
         lengths = np.ones(vectors.shape[1])
-        if value[kept].min(initial=1.0) * share.min(initial=1.0) ** 2 > OUTSIDE:
+        if value[is_independent].min(initial=1.0) * share.min(initial=1.0) ** 2 > OUTSIDE:
             break
     return vectors, weighed
 

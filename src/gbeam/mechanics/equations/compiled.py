@@ -18,17 +18,17 @@ CLOSE, NOTHING = 1e-9, 1e-13  # of the coordinates, and m or rad: a last correct
 
 @jax.jit
 def resting(equations: Any, base: Base, loads: Array | None) -> Array:
-    """Coordinates (n,) of the equilibrium on a base with constant motion; NaN where Newton's method
+    """Coordinates (n,) of the equilibrium on a base with constant motion, or NaN where Newton's method
     does not converge.
     """
-    still = jnp.zeros(equations.size)
+    zeros = jnp.zeros(equations.size)
 
     def force(q: Array, share: Any) -> Array:
         spin_share: Any = jnp.sqrt(share)  # centrifugal forces grow with the square of the spin
         part = share * base.a_WO_B, spin_share * base.w_WB_B, share * base.alpha_WB_B
-        return equations.residual(q, still, still, *part, None if loads is None else share * loads)
+        return equations.residual(q, zeros, zeros, *part, None if loads is None else share * loads)
 
-    return root(force, still)
+    return root(force, zeros)
 
 
 @partial(jax.jit, static_argnames=("stations", "axes"))
@@ -49,13 +49,13 @@ def displaced(structure: Any, stations: tuple[int, ...], axes: tuple[int, ...], 
 
 
 def root(function: Any, start: Array) -> Array:
-    """Root x of ``function(x, share)`` at a share of 1; NaN where Newton's method does not converge.
+    """Root x of ``function(x, share)`` at a share of 1, or NaN where Newton's method does not converge.
 
     The share grows in strides of some iterations each. Derivatives are implicit: they need no iterations.
     """
 
     def newton(_: Any, start: Array) -> tuple[Array, Array]:
-        """Solution and the size of the last correction; the share grows after every :data:`ITERATIONS` steps."""
+        """Solution and the size of the last correction. The share grows after every :data:`ITERATIONS` steps."""
 
         def correct(k: Any, state: tuple[Array, Array]) -> tuple[Array, Array]:
             x, _ = state

@@ -35,7 +35,7 @@ class Demanding:
 
 @record
 class Complete(Demanding):
-    """The equations of a complete model; `damping` and `stiffness` (n, n) are constant."""
+    """The equations of a complete model. `damping` and `stiffness` (n, n) are constant."""
 
     inertia: Inertia
     damping: Array

@@ -36,20 +36,20 @@ class HeldInertia:
 
     def forces(self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array) -> tuple[Array, Array, Array]:
         """Forces on the coordinates (..., n), resultant of m a, and moment about the root (..., 3)."""
-        whole, rate, change, basis = self.conditions.moving(q, qd, qdd)
-        along, force, moment = self.free.forces(whole, rate, change, a, w, alpha)
-        return projection(basis, along), force, moment
+        coordinates, rate, change, basis = self.conditions.moving(q, qd, qdd)
+        generalised, force, moment = self.free.forces(coordinates, rate, change, a, w, alpha)
+        return projection(basis, generalised), force, moment
 
     def expand(self, q: Array) -> tuple[Places, Geometric]:
         """Places about coordinates (n,), and geometric stiffness."""
-        whole, held = self.conditions.lifted(q), np.array(self.conditions.dependent, dtype=int)
-        places, geometric = self.free.expand(whole)
+        coordinates, dependent = self.conditions.lifted(q), np.array(self.conditions.dependent, dtype=int)
+        places, geometric = self.free.expand(coordinates)
         if geometric is None:
             geometric = geometric_by(self.mass, places)
-        phi = self.conditions.basis(whole)
+        phi = self.conditions.basis(coordinates)
         weights = np.concatenate([self.mass[None], self.mass * places.r0.T])
-        by_held = np.einsum("wp,pad->wad", weights, places.first[..., held])
-        bent = np.einsum("wad,dij->waij", by_held, self.conditions.curvature(whole, phi))
+        by_held = np.einsum("wp,pad->wad", weights, places.first[..., dependent])
+        bent = np.einsum("wad,dij->waij", by_held, self.conditions.curvature(coordinates, phi))
         return Places(places.r0, places.first @ phi), geometric.turned(phi) + geometric_of(bent[0], bent[1:])
 
 
@@ -111,17 +111,17 @@ class HeldComplete(Demanding):
 
     def strain_energy(self, q: Array) -> Array:
         """U, J, at coordinates (..., n)."""
-        whole = self.conditions.lifted(q)
-        energy = self.free.strain_energy(whole)
-        return energy if self.springs is None else energy + self.springs.energy(whole)
+        coordinates = self.conditions.lifted(q)
+        energy = self.free.strain_energy(coordinates)
+        return energy if self.springs is None else energy + self.springs.energy(coordinates)
 
     def elastic(self, q: Array) -> Array:
         """Forces of the strain energy on the coordinates (..., n)."""
-        whole = self.conditions.lifted(q)
-        forces = self.free.elastic(whole)
+        coordinates = self.conditions.lifted(q)
+        forces = self.free.elastic(coordinates)
         if self.springs is not None:
-            forces = forces + self.springs.elastic(whole)
-        return self.conditions.projected(whole, forces)
+            forces = forces + self.springs.elastic(coordinates)
+        return self.conditions.projected(coordinates, forces)
 
     def demanded(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None
@@ -129,9 +129,9 @@ class HeldComplete(Demanding):
         """Forces that a motion demands, less those of the loads: on the coordinates (..., n), and force, N, and moment,
         N m, at the root (..., 3) by root and supports together.
         """
-        whole, rate, change, basis = self.conditions.moving(q, qd, qdd)
-        along, force, moment = self.whole(whole, rate, change, a, w, alpha, loads)
-        return projection(basis, along), force, moment
+        coordinates, rate, change, basis = self.conditions.moving(q, qd, qdd)
+        generalised, force, moment = self.whole(coordinates, rate, change, a, w, alpha, loads)
+        return projection(basis, generalised), force, moment
 
     def whole(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None

@@ -76,7 +76,7 @@ class Bodies:
 
     The places of sections are constant sums C t of the field's tangents: `pairs` CᵀmC (G, G) and `first` Cᵀm (G,), kg,
     have their `mass`. `moments_of_inertia` kg m² are the sections' about the axis, the principal ones (3, G) or those
-    and the products xy, yz, zx (6, G), or None; `first_moments` (3, G) kg m are those of their mass, or None.
+    and the products xy, yz, zx (6, G), or None. `first_moments` (3, G) kg m are those of their mass, or None.
     """
 
     field: StrainField
@@ -98,14 +98,14 @@ class Bodies:
     def _demanded(self, tangents: Tangents, a: Vector) -> Demanded:
         """Forces at the nodes that the motion demands, and resultants at the root.
 
-        `turn` is the part of the sections' own rotary inertia, `push` that of particles beside the axis; mass on the
+        `turn` is the part of the sections' own rotary inertia, `push` that of particles beside the axis. Mass on the
         axis makes the rest. `a` is the base's acceleration. Forces and moments are on the tangents and on the angles of
         the nodes.
         """
         force, moment = add(mapped(tangents.tdd, self.pairs), scaled(self.first, a)), NONE
         base: Any = tuple(part if absent(part) else part[..., 0] for part in a)  # without the axis of nodes
         total = add(_weighted(tangents.tdd, self.first), scaled(self.mass, base))
-        about = _summed(cross(tangents.t, force))
+        moments = _summed(cross(tangents.t, force))
         turn, push = NONE, NONE
         if self.moments_of_inertia is not None:
             turn = self._rotary_moments(tangents)
@@ -116,17 +116,17 @@ class Bodies:
                 on_sections = add(turn, lever)
                 place = mapped(tangents.t, self.field.node_cumulative)
                 total = add(total, _summed(aside))
-                about = add(about, _summed(cross(place, aside)))
+                moments = add(moments, _summed(cross(place, aside)))
             moment = mapped(on_sections, self.field.node_cumulative.T)
-            about = add(about, _summed(on_sections))
+            moments = add(moments, _summed(on_sections))
         if len(self.off_axis_mass):
             r, _, rdd = self.field.carried(tangents)
             push = scaled(self.off_axis_mass, add(rdd, a))
             node_force, node_moment = self.field.nodal_forces(tangents, push)
             force, moment = add(force, node_force), add(moment, node_moment)
             total = add(total, _summed(push))
-            about = add(about, _summed(cross(r, push)))
-        return Demanded(force, moment, total, about, turn, push)
+            moments = add(moments, _summed(cross(r, push)))
+        return Demanded(force, moment, total, moments, turn, push)
 
     def slopes(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, axes: list[int], *, still: bool
@@ -230,7 +230,7 @@ class Bodies:
 
 @record
 class Inertia:
-    """Particles (p,) kg of a field, of quadrature points and bodies; `reduced` has the same inertia in fewer sums."""
+    """Particles (p,) kg of a field, of quadrature points and bodies. `reduced` has the same inertia in fewer sums."""
 
     field: StrainField | SeriesField | Places
     mass: Array
@@ -249,9 +249,9 @@ class Inertia:
                 return stepped[..., :-6], stepped[..., -6:-3], stepped[..., -3:]
         xp = namespace(self.mass, q, a)
         shape = np.broadcast_shapes(*(array.shape[:-1] for array in motion))
-        along, total, moment = self.reduced.forces(q, qd, qdd, *(_components(vector) for vector in (a, w, alpha)))
-        along = xp.broadcast_to(along, (*shape, along.shape[-1]))
-        return along, joined(xp, total, shape), joined(xp, moment, shape)
+        generalised, total, moment = self.reduced.forces(q, qd, qdd, *(_components(vector) for vector in (a, w, alpha)))
+        generalised = xp.broadcast_to(generalised, (*shape, generalised.shape[-1]))
+        return generalised, joined(xp, total, shape), joined(xp, moment, shape)
 
     def _stepped(self, motion: tuple[Array, ...]) -> Array | None:
         """Forces, resultant and moment (..., n + 6) of a real motion with complex steps along the first axis.
@@ -365,7 +365,9 @@ def _components(vectors: Array) -> Vector:
 
 
 def _common(part: Array, axes: int) -> Array:
-    """Real part without its first axis, where it has one (`axes` axes in all); None where it differs along this one."""
+    """Real part without its first axis, where it has one (`axes` axes in all),
+    or None where it differs along this one.
+    """
     real = part.real
     if part.ndim < axes:
         return real
@@ -396,10 +398,10 @@ def inertia_of(
     if not isinstance(field, StrainField):
         return Inertia(field, mass, Particles(field, mass))
     offset = field.offset
-    beside = np.zeros(len(mass), bool)
+    is_offset = np.zeros(len(mass), bool)
     if offset is not None:
-        beside[line:] = True if is_jax(offset) else np.any(offset[line:], axis=1)
-    on_axis, off_axis = np.flatnonzero(~beside), np.flatnonzero(beside)
+        is_offset[line:] = True if is_jax(offset) else np.any(offset[line:], axis=1)
+    on_axis, off_axis = np.flatnonzero(~is_offset), np.flatnonzero(is_offset)
     c, axis_mass = field.cumulative[on_axis], mass[on_axis]
     turning, aside = None, None
     if offset is not None and line and not (symmetric and line == nodes):

@@ -59,10 +59,10 @@ class LoadTerms:
     def generalised(self, q: Array, values: Array) -> Array:
         """Resultant at the root and forces on the coordinates under load components (..., loads, 6), (..., 6 + n)."""
         xp, n = namespace(self.constant, q, values), q.shape[-1]
-        flat = xp.reshape(values, (*values.shape[:-2], -1))
-        constant, slope = (xp.reshape(part, (flat.shape[-1], -1)) for part in (self.constant, self.slope))
-        by_coordinate = xp.reshape(flat @ slope, (*flat.shape[:-1], -1, n))
-        return flat @ constant + (by_coordinate * q[..., None, :]).sum(axis=-1)
+        rows = xp.reshape(values, (*values.shape[:-2], -1))
+        constant, slope = (xp.reshape(part, (rows.shape[-1], -1)) for part in (self.constant, self.slope))
+        by_coordinate = xp.reshape(rows @ slope, (*rows.shape[:-1], -1, n))
+        return rows @ constant + (by_coordinate * q[..., None, :]).sum(axis=-1)
 
     def turned(self, basis: Array) -> LoadTerms:
         """Terms in coordinates p with q = basis p."""
@@ -114,7 +114,7 @@ class Bending:
 
 @record
 class Coefficients:
-    """Constant coefficients of a linear model (2020 (16), (20)–(22); 2009 (24)–(34)); `rigid` (10,) is of the straight
+    """Constant coefficients of a linear model (2020 (16), (20)–(22); 2009 (24)–(34)). `rigid` (10,) is of the straight
     structure: mass, first moment, second moments xx, yy, zz, xy, yz, zx.
     """
 
@@ -198,7 +198,7 @@ class Coefficients:
         alpha_WB_B: Array,
         load_values: Array | None = None,
     ) -> Array:
-        """Residual on a base whose motion is given, (..., n); zero where the equations hold."""
+        """Residual on a base whose motion is given, (..., n), or zero where the equations hold."""
         velocity, stiffness, force = self.evaluate(a_WO_B, w_WB_B, alpha_WB_B, load_values)
         internal = velocity @ qd[..., None] + stiffness @ q[..., None]
         residual = qdd @ self.mass + internal[..., 0] - force
@@ -287,8 +287,8 @@ def geometric_by(mass: Array, places: Places) -> Geometric:
     """Geometric stiffness by the second derivatives H of the places of particles (k,) kg."""
     xp = namespace(mass, places.r0, places.first, places.second)
     points, axes, n, _ = places.second.shape
-    flat = xp.reshape(places.second, (points, -1))
-    even, growing = _summed(xp, mass[:, None], flat), _summed(xp, mass[:, None] * places.r0, flat)
+    rows = xp.reshape(places.second, (points, -1))
+    even, growing = _summed(xp, mass[:, None], rows), _summed(xp, mass[:, None] * places.r0, rows)
     return geometric_of(xp.reshape(even, (axes, n, n)), xp.reshape(growing, (-1, axes, n, n)))
 
 

@@ -71,22 +71,28 @@ class Moments(Demanding):
         swelling = (w[..., None, None, :] @ Ji)[..., 0, :]  # ∂(J ω)/∂q
         moment = cross(S, a) + turned(J, alpha) + turned(swelling, felt) + hd
         moment = moment + cross(w, turned(J, w) + h)
-        along = qdd @ c.mass + qd @ c.damping + c.elastic(q)
-        along = along + turned_back(Si, a) + turned_back(hi, alpha)
-        along = along + turned_back(times(c.gyroscopic, qd) - 0.5 * swelling, w)
+        generalised = qdd @ c.mass + qd @ c.damping + c.elastic(q)
+        generalised = generalised + turned_back(Si, a) + turned_back(hi, alpha)
+        generalised = generalised + turned_back(times(c.gyroscopic, qd) - 0.5 * swelling, w)
         if self.carried is not None:  # the mean motion v, ω that has the momentum of deforming, R (v, ω) = (Ṡ, h)
             mean_v, mean_w = _mean_motion(c.rigid[0], S, J, Sd, h)
             swelling = (mean_w[..., None, None, :] @ Ji)[..., 0, :]
             push, spin = Sdd - cross(mean_w, Sd), hd - cross(Sd, mean_v) - turned(swelling, qd)
             vd, wd = _mean_motion(c.rigid[0], S, J, push, spin)
-            along = along - qdd @ self.carried + turned_back(Si, vd + cross(mean_v, mean_w)) + turned_back(hi, wd)
-            along = along + turned_back(times(c.gyroscopic, qd) + 0.5 * swelling, mean_w)
+            generalised = (
+                generalised - qdd @ self.carried + turned_back(Si, vd + cross(mean_v, mean_w)) + turned_back(hi, wd)
+            )
+            generalised = generalised + turned_back(times(c.gyroscopic, qd) + 0.5 * swelling, mean_w)
         if loads is not None and c.loads is not None:
             forces = c.loads.generalised(q, loads)
-            force, moment, along = force - forces[..., :3], moment - forces[..., 3:6], along - forces[..., 6:]
+            force, moment, generalised = (
+                force - forces[..., :3],
+                moment - forces[..., 3:6],
+                generalised - forces[..., 6:],
+            )
         if not self.hub_force and np.any(qd):
-            return along, *self.demanded(q, 0 * qd, qdd, a, w, alpha, loads)[1:]
-        return along, force, moment
+            return generalised, *self.demanded(q, 0 * qd, qdd, a, w, alpha, loads)[1:]
+        return generalised, force, moment
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
         """Moments S, ∂S/∂q, Ṡ and J, ∂J/∂q, the angular momentum h = Σ h_i q̇_i, and the h_i, at `q` and `qd`."""
@@ -107,8 +113,8 @@ def carried_inertia(c: Coefficients) -> Array | None:
     """
     mass, S, J = c.rigid[0], c.rigid[1:4], c.second_moment
     if not is_traced(J):
-        least, _, most = np.linalg.eigvalsh(_central_inertia(mass, S, J))
-        if not least > THIN * most:
+        smallest, _, largest = np.linalg.eigvalsh(_central_inertia(mass, S, J))
+        if not smallest > THIN * largest:
             return None
     v, w = _mean_motion(mass, S, J, c.f_a.T, c.f_al.T)
     return c.f_a.T @ v.T + c.f_al.T @ w.T

@@ -1,6 +1,6 @@
 """Virtual work of loads on the beam: their generalised forces, complete, and to first order in the coordinates.
 
-A load has six components, force and moment; `values` (loads, 6) holds those of all loads at one time.
+A load has six components, force and moment. `values` (loads, 6) holds those of all loads at one time.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ from gbeam.motion.profiles.piecewise import constant
 
 @record
 class LoadWork:
-    """Loads on a field, δW = Σ F·δr + M·δθ: of each of its points (p,) the index of the load that acts there, the
-    weight (1, or m of a load per metre), and a flag, true if the load turns with the section.
+    """Loads on a field, δW = Σ F·δr + M·δθ.
 
-    The last load may be the rise of a temperature, K, in its first component: `heat` (m,) are the forces of 1 K on the
+    Each of its points (p,) has the index of the load that acts there, the weight (1, or m of a load per metre), and a
+    flag, true if the load turns with the section.
+
+    The last load may be the rise of a temperature, K, in its first component. `heat` (m,) are the forces of 1 K on the
     coordinates, or on those of the free beam where conditions hold it.
     """
 
@@ -40,10 +42,10 @@ class LoadWork:
         moment N m at the root, base axes, (..., 3).
         """
         force, moment = self.forces(self.field.rotation(q), values)
-        along = self.field.generalised_forces(q, split(force), split(moment))
+        generalised_forces = self.field.generalised_forces(q, split(force), split(moment))
         if self.heat is not None:
-            along = along + values[..., -1, 0, None] * self._heating(q)
-        return along, *self.resultant(self.field.positions(q), force, moment)
+            generalised_forces = generalised_forces + values[..., -1, 0, None] * self._heating(q)
+        return generalised_forces, *self.resultant(self.field.positions(q), force, moment)
 
     def _heating(self, q: Array) -> Array:
         """Forces (n,) or (..., n) of a rise of the temperature by 1 K on the coordinates (..., n)."""
@@ -91,8 +93,8 @@ class LoadWork:
         if not isinstance(self.field, HeldField):
             return LoadTerms(constant, terms.slope)
         conditions = self.field.conditions
-        whole = conditions.lifted(q)
-        curved = conditions.curvature(whole, conditions.basis(whole))
+        coordinates = conditions.lifted(q)
+        curved = conditions.curvature(coordinates, conditions.basis(coordinates))
         bent = np.tensordot(self.heat[np.array(conditions.dependent, dtype=int)], curved, axes=1)
         return LoadTerms(constant, terms.slope + last[..., None, None] * np.concatenate([np.zeros((6, n)), bent]))
 

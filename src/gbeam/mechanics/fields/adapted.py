@@ -1,7 +1,8 @@
 """Shapes adapted to the structure: its own modes at rest, with its tapers, bodies and root springs.
 
-The rich space in which they are found is that of all curvatures (strains, for the bar) given at the quadrature nodes,
-a polynomial between two corners or bodies: where the section, the shear force or the moment jumps, the curvature may.
+They are found in a rich space of curvatures, or of strains for the bar. These are given at the quadrature nodes, and
+are a polynomial between two corners or bodies. Where the section, the shear force or the moment jumps, the curvature
+may jump.
 """
 
 from __future__ import annotations
@@ -39,10 +40,12 @@ def nodal_family(rule: Quadrature, nodal: Floats, length: float, *, axial: bool)
 
 class Space(NamedTuple):
     """Motions in one direction, or about x, by coordinates (n,): nodal strains of some `families`, then springs of the
-    root. `mass` is (n, n), `stiffness` (n,) the diagonal of K, unless `upper` (n, n) makes it upperᵀ upper;
-    `sensitivity` gives displacements and angles (points, n) at positions, and `line` (g,) kg and `turning` (g,) kg m²
-    are the sections' inertia. `loads` (n, k) are None unless it has motions in all directions. Coordinates that are
-    `loose` move the root where nothing holds it; their stiffness is one like the beam's.
+    root.
+
+    `mass` is (n, n). `stiffness` (n,) is the diagonal of K, unless `upper` (n, n) makes it upperᵀ upper. `sensitivity`
+    gives displacements and angles (points, n) at positions. `line` (g,) kg and `turning` (g,) kg m² are the sections'
+    inertia. `loads` (n, k) are None unless it has motions in all directions. Coordinates that are `loose` move the root
+    where nothing holds it. Their stiffness is one like the beam's.
     """
 
     rule: Quadrature
@@ -81,12 +84,12 @@ class Space(NamedTuple):
 
 def springs_for_shapes(beam: Beam) -> dict[str, Any]:
     """Stiffnesses of the root's springs by name, with one like the beam's where a root is free to move, so that static
-    answers exist; the root's motion itself is a coordinate anyway.
+    answers exist. The root's motion itself is a coordinate anyway.
     """
-    along, about_y, about_z = (rigidity[0] for rigidity in beam.rigidities(np.zeros(1)))
+    axial, about_y, about_z = (rigidity[0] for rigidity in beam.rigidities(np.zeros(1)))
     about_x, length = float(beam.stiffnesses(np.zeros(1))[3][0]), beam.length
     like_the_beam = {
-        "translation_x": along / length,
+        "translation_x": axial / length,
         "translation_y": about_z / length**3,
         "translation_z": about_y / length**3,
         "rotation_x": (about_y + about_z if np.isnan(about_x) else about_x) / length,
@@ -106,50 +109,52 @@ _HELD = (("translation_x", ""), ("translation_y", "rotation_z"), ("translation_z
 
 def spaces_of(beam: Beam, rule: Quadrature, counts: Counts) -> tuple[Space, ...]:
     """Spaces of displacements along x, y and z, and about x of a model that twists, without strains that are rigid."""
-    return tuple(space(beam, rule, along, counts) for along in range(4 if counts[3] else 3))
+    return tuple(space(beam, rule, direction, counts) for direction in range(4 if counts[3] else 3))
 
 
-def space(beam: Beam, rule: Quadrature, along: int, counts: Counts) -> Space:
-    """Space of displacements along x, y or z (`along` 0, 1, 2), or of turning about x (3), by nodal strains.
+def space(beam: Beam, rule: Quadrature, direction: int, counts: Counts) -> Space:
+    """Space of displacements along x, y or z (`direction` 0, 1, 2), or of turning about x (3), by nodal strains.
 
     Panels of `rule` end at corners and bodies.
     """
-    first, *others = GROUPS[along]
-    families = (first, *(family for family in others if counts[family]))
+    first, *other_families = GROUPS[direction]
+    families = (first, *(family for family in other_families if counts[family]))
     section, stiffnesses = beam.section.at(rule.node), beam.stiffnesses(rule.node)
     line = beam.density * section.area * rule.weight
-    about = (0 * line, section.inertia_z, section.inertia_y, section.inertia_y + section.inertia_z)[along]
-    turning = beam.density * about * rule.weight * beam.rotary_inertia
+    second_moment = (0 * line, section.inertia_z, section.inertia_y, section.inertia_y + section.inertia_z)[direction]
+    rotary = beam.density * second_moment * rule.weight * beam.rotary_inertia
     springs = springs_for_shapes(beam)
-    held = [springs.get(name) for name in _HELD[along]]
-    free = [i for i, k in enumerate(held) if k is not None]
+    springs_at_root = [springs.get(name) for name in _HELD[direction]]
+    free = [i for i, k in enumerate(springs_at_root) if k is not None]
     sums = rule.cumulative(rule.node)
 
     def sensitivity(x: Floats) -> tuple[Floats, Floats]:
         """Displacements and section angles (points, n) of unit nodal strains, then of unit motions of the root."""
         first = rule.cumulative(x)
-        move, turn = {0: (first, 0 * first), 3: (0 * first, first)}.get(along, (first @ sums, first))
+        move, turn = {0: (first, 0 * first), 3: (0 * first, first)}.get(direction, (first @ sums, first))
         value, angle = [move, *[first] * len(families[1:])], [turn, *[0 * first] * len(families[1:])]
-        carried = 0 * x if along == 3 else x  # by a turn of the root
+        carried = 0 * x if direction == 3 else x  # by a turn of the root
         value.append(np.stack([x**0, carried], axis=1)[:, free])
         angle.append(np.stack([0 * x, x**0], axis=1)[:, free])
         return np.concatenate(value, axis=1), np.concatenate(angle, axis=1)
 
     value, angle = sensitivity(rule.node)
-    mass = value.T @ (line[:, None] * value) + angle.T @ (turning[:, None] * angle)
+    mass = value.T @ (line[:, None] * value) + angle.T @ (rotary[:, None] * angle)
     for body in beam.masses:
         value, angle = sensitivity(np.array([body.at]))
         for m, o in zip(*body.particles(), strict=True):
             # A particle off the axis moves with the section's angle: f + o_x f' across, −o_along f' along the beam.
             arms = (
-                (o[1] * angle[0], o[2] * angle[0]) if along == 3 else (value[0] + o[0] * angle[0], o[along] * angle[0])
+                (o[1] * angle[0], o[2] * angle[0])
+                if direction == 3
+                else (value[0] + o[0] * angle[0], o[direction] * angle[0])
             )
             mass += m * sum(np.outer(d, d) for d in arms)
     strained = [stiffnesses[STRAINS[family]] * rule.weight for family in families]
-    stiffness = np.concatenate([*strained, [held[i] for i in free]])
-    first_spring, values = len(stiffness) - len(free), [beam.root.springs.get(_HELD[along][i]) for i in free]
+    stiffness = np.concatenate([*strained, [springs_at_root[i] for i in free]])
+    first_spring, values = len(stiffness) - len(free), [beam.root.springs.get(_HELD[direction][i]) for i in free]
     loose = tuple(first_spring + k for k, value in enumerate(values) if not is_jax(value) and value == 0)
-    return Space(rule, beam.length, families, line, turning, mass, stiffness, sensitivity, loose=loose)
+    return Space(rule, beam.length, families, line, rotary, mass, stiffness, sensitivity, loose=loose)
 
 
 def adapted_shapes(beam: Beam, rule: Quadrature, counts: Counts) -> Families:

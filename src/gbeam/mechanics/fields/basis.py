@@ -27,11 +27,11 @@ FAMILIES = ("axial", "y", "z", "twist", "shear_y", "shear_z")  # of shapes, as t
 Families = tuple[Family, Family, Family, Family, Family, Family]
 
 
-def joined_family(family: Family, more: Family) -> Family:
+def joined_family(family: Family, added: Family) -> Family:
     """Return the family of the shapes of two."""
 
     def both(x: Floats) -> Shapes:
-        return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), more(x), strict=True)))
+        return Shapes(*(np.concatenate(pair, axis=1) for pair in zip(family(x), added(x), strict=True)))
 
     return both
 
@@ -118,15 +118,15 @@ def between_corners(x: Floats, edges: Sequence[float], count: int) -> Floats:
 
     Each is zero outside its piece.
     """
-    pieces, out = len(edges) - 1, np.zeros((len(x), count))
+    pieces, values = len(edges) - 1, np.zeros((len(x), count))
     piece_of_point = np.searchsorted(edges[1:-1], x)
     for k in range(count):
         degree, piece = divmod(k, pieces)
         low, high = edges[piece : piece + 2]
-        out[piece_of_point == piece, k] = legendre.Legendre.basis(degree, domain=[low, high])(
+        values[piece_of_point == piece, k] = legendre.Legendre.basis(degree, domain=[low, high])(
             x[piece_of_point == piece]
         )
-    return out
+    return values
 
 
 def polynomials(length: float, counts: Counts, corners: Sequence[float] = ()) -> Families:
@@ -181,11 +181,13 @@ class Quadrature(NamedTuple):
         low, high = self.edges[panel], self.edges[panel + 1]
         in_panel = legendre.legvander(2 * (x - low) / (high - low) - 1, per_panel) @ to_coefficients
         node_panel = np.arange(len(self.node)) // per_panel
-        out = np.zeros((len(x), len(self.node)))
-        out[node_panel == panel[:, None]] = (in_panel * ((high - low) / 2)[:, None] if integrate else in_panel).ravel()
+        matrix = np.zeros((len(x), len(self.node)))
+        matrix[node_panel == panel[:, None]] = (
+            in_panel * ((high - low) / 2)[:, None] if integrate else in_panel
+        ).ravel()
         if integrate:  # panels before the point's count whole
-            return np.where(node_panel < panel[:, None], self.weight, out)
-        return out
+            return np.where(node_panel < panel[:, None], self.weight, matrix)
+        return matrix
 
 
 @cache

@@ -52,7 +52,7 @@ class Frames:
     def at(self, curvatures: Vector, *, points: bool) -> tuple[Rotation, Rotation]:
         """Rotations of the sections at the nodes, (..., G), and the points, (..., p), by curvatures at the nodes.
 
-        Without `points` the second are the nodes' again. Curvature about one axis is integrated; about several it takes
+        Without `points` the second are the nodes' again. Curvature about one axis is integrated. About several it takes
         :meth:`between`.
         """
         axes = [axis for axis in range(3) if not absent(curvatures[axis])]
@@ -71,7 +71,7 @@ class Frames:
     def between(self, curvatures: Vector) -> Array:
         """Unit quaternions (4, ..., 1 + i) of the sections between the steps, beginning at the root.
 
-        Each step turns by Magnus' expansion of sixth order; the products of all steps before a section are its turn.
+        Each step turns by Magnus' expansion of sixth order. The products of all steps before a section are its turn.
         """
         shape = next(part.shape for part in curvatures if not absent(part))
         xp = namespace(*curvatures)

@@ -30,16 +30,20 @@ DIFFERENCE = 1e-4  # m or rad: step of the rows' second difference along a motio
 
 
 def null_basis(rows: Array, dependents: Sequence[int], inverse: Array | None = None) -> Array:
-    """Basis Φ (..., n, k) of coordinates that conditions with rows (..., m, n) leave: those that are independent, and
-    what the `dependents` follow to, by the `inverse` (..., m, m) of their columns, where it is known.
+    """Basis Φ (..., n, k) of the coordinates that conditions with rows (..., m, n) leave.
+
+    The independent coordinates are free, and the `dependents` follow. The `inverse` (..., m, m) of the columns of the
+    dependents is used where it is known.
     """
-    unit, held = np.eye(rows.shape[-1]), np.array(dependents, dtype=int)
-    kept = np.delete(unit, held, axis=1)
-    if not len(held):
-        return kept
+    unit, dependent = np.eye(rows.shape[-1]), np.array(dependents, dtype=int)
+    free_columns = np.delete(unit, dependent, axis=1)
+    if not len(dependent):
+        return free_columns
     if inverse is None:
-        return kept - unit[:, held] @ namespace(rows).linalg.solve(rows[..., held], rows @ kept)
-    return kept - unit[:, held] @ (inverse @ (rows @ kept))
+        return free_columns - unit[:, dependent] @ namespace(rows).linalg.solve(
+            rows[..., dependent], rows @ free_columns
+        )
+    return free_columns - unit[:, dependent] @ (inverse @ (rows @ free_columns))
 
 
 @record
@@ -62,36 +66,38 @@ class Conditions:
         """Coordinates q (..., n) of the free beam at those that are left, (..., k)."""
         if not self.dependent:
             return p
-        xp, held, unit = namespace(p), np.array(self.dependent, dtype=int), np.eye(self.size)
-        spread, onto = unit[self.independent], unit[held]
+        xp, dependent, unit = namespace(p), np.array(self.dependent, dtype=int), np.eye(self.size)
+        spread, dependent_columns = unit[self.independent], unit[dependent]
         if is_jax(p):
             import jax
 
             q = jax.lax.stop_gradient(p) @ spread
             for _ in range(TRACED):
                 values, rows = self.measures.values_and_rows(q)
-                q = q - xp.linalg.solve(rows[..., held], values[..., None])[..., 0] @ onto
-            slope = jax.lax.stop_gradient(self.measures.rows(q)[..., held])
-            q = p @ spread + jax.lax.stop_gradient(q)[..., held] @ onto
-            return q - xp.linalg.solve(slope, self.measures.values(q)[..., None])[..., 0] @ onto
-        q = _alike(np.real(p)) @ spread
+                q = q - xp.linalg.solve(rows[..., dependent], values[..., None])[..., 0] @ dependent_columns
+            slope = jax.lax.stop_gradient(self.measures.rows(q)[..., dependent])
+            q = p @ spread + jax.lax.stop_gradient(q)[..., dependent] @ dependent_columns
+            return q - xp.linalg.solve(slope, self.measures.values(q)[..., None])[..., 0] @ dependent_columns
+        q = _first_if_equal(np.real(p)) @ spread
         for k in range(CORRECTIONS):
             state = self.measures.state(q)
             if k % AS_LONG == 0:
-                inverse = np.linalg.inv(self.measures.rows_at(state, q)[..., held])
+                inverse = np.linalg.inv(self.measures.rows_at(state, q)[..., dependent])
             correction = (inverse @ self.measures.values_at(state, q)[..., None])[..., 0]
-            q = q - correction @ onto
+            q = q - correction @ dependent_columns
             if not np.abs(correction).max(initial=0.0) > CLOSE * (1 + np.abs(q).max(initial=0.0)):
                 break
         else:
-            lost = np.abs(correction).max(axis=-1, keepdims=True) > NEAR * (1 + np.abs(q).max(axis=-1, keepdims=True))
-            q = np.where(lost, np.nan, q)  # no motion near by meets the conditions
+            is_lost = np.abs(correction).max(axis=-1, keepdims=True) > NEAR * (
+                1 + np.abs(q).max(axis=-1, keepdims=True)
+            )
+            q = np.where(is_lost, np.nan, q)  # no motion near by meets the conditions
         if not np.iscomplexobj(p):
             return np.broadcast_to(q, (*p.shape[:-1], self.size))
         # One more correction carries the complex step.
         rows, step = self.measures.rows(q), np.imag(p) @ spread
-        follow = np.linalg.solve(rows[..., held], rows @ step[..., None])[..., 0]
-        return q + 1j * (step - follow @ onto)
+        follow = np.linalg.solve(rows[..., dependent], rows @ step[..., None])[..., 0]
+        return q + 1j * (step - follow @ dependent_columns)
 
     def basis(self, q: Array) -> Array:
         """Φ (..., n, k), by which small motions of the coordinates follow those of the independent ones."""
@@ -114,31 +120,34 @@ class Conditions:
             stepped = self._stepped(p, pd, pdd)
             if stepped is not None:
                 return stepped
-        q, held = self.lifted(p), np.array(self.dependent, dtype=int)
+        q, dependent = self.lifted(p), np.array(self.dependent, dtype=int)
         state = self.measures.state(q)
         rows = self.measures.rows_at(state, q)
-        inverse = namespace(rows).linalg.inv(rows[..., held])
+        inverse = namespace(rows).linalg.inv(rows[..., dependent])
         phi = null_basis(rows, self.dependent, inverse)
         qd, qdd = ((phi @ rates[..., None])[..., 0] for rates in (pd, pdd))
         fallen = (inverse @ self.measures.drift_at(state, q, qd)[..., None])[..., 0]
-        return q, qd, qdd - fallen @ np.eye(self.size)[held], phi
+        return q, qd, qdd - fallen @ np.eye(self.size)[dependent], phi
 
     def _stepped(self, p: Array, pd: Array, pdd: Array) -> tuple[Array, Array, Array, Array] | None:
         """Motion as :meth:`moving` returns it, for complex steps of one real motion; else None."""
         axes = max(values.ndim for values in (p, pd, pdd))
         motion = [values if values.ndim == axes else values[None] for values in (p, pd, pdd)]
-        real = [_alike(np.real(values)) for values in motion]
+        real = [_first_if_equal(np.real(values)) for values in motion]
         if axes < 2 or any(len(values) > 1 for values in real):
             return None
         q, qd, qdd, phi = self.moving(*real)
         step_p, step_pd, step_pdd = (np.imag(values) for values in motion)
-        held, onto = np.array(self.dependent, dtype=int), np.eye(self.size)[np.array(self.dependent, dtype=int)]
+        dependent, dependent_columns = (
+            np.array(self.dependent, dtype=int),
+            np.eye(self.size)[np.array(self.dependent, dtype=int)],
+        )
         rows, bent = self.measures.rows(q), self.measures.bent_rows(q)
-        inverse = np.linalg.inv(rows[..., held])
+        inverse = np.linalg.inv(rows[..., dependent])
 
         def follow(measures: Array) -> Array:
             """Coordinates (..., n) of which the dependent ones take back changes of measures (..., m)."""
-            return -(inverse @ measures[..., None])[..., 0] @ onto
+            return -(inverse @ measures[..., None])[..., 0] @ dependent_columns
 
         def free(steps: Array) -> Array:
             """Motion (..., n) of the free beam by steps (..., k) of the independent coordinates."""
@@ -159,7 +168,7 @@ class Conditions:
             drift = drift + (((ahead - 2 * rows + behind) / h**2) @ dq[..., None])[..., 0]
         dqdd = free(step_pdd) + follow(drift)
         turned_phi = np.einsum("...mji,...j->...mi", bent, dq) @ phi
-        dphi = -np.swapaxes(onto, 0, 1) @ (inverse @ turned_phi)
+        dphi = -np.swapaxes(dependent_columns, 0, 1) @ (inverse @ turned_phi)
         return q + 1j * dq, qd + 1j * dqd, qdd + 1j * dqdd, phi + 1j * dphi
 
     def projected(self, q: Array, forces: Array) -> Array:
@@ -224,29 +233,29 @@ class HeldField:
 
     def generalised_forces(self, q: Array, push: Vector, *turn: Vector) -> Array:
         """Generalised forces (..., n) of forces, and moments, on the points, base axes, by components (..., p)."""
-        whole = self.conditions.lifted(q)
-        return self.conditions.projected(whole, self.free.generalised_forces(whole, push, *turn))
+        coordinates = self.conditions.lifted(q)
+        return self.conditions.projected(coordinates, self.free.generalised_forces(coordinates, push, *turn))
 
     def slopes(self, q: Array) -> Array:
         """∂r/∂q of the points at coordinates (..., n), (..., p, 3, n)."""
-        whole = self.conditions.lifted(q)
-        return self.free.slopes(whole) @ self.conditions.basis(whole)[..., None, :, :]
+        coordinates = self.conditions.lifted(q)
+        return self.free.slopes(coordinates) @ self.conditions.basis(coordinates)[..., None, :, :]
 
     def jacobians(self, q: Array) -> tuple[Array, Array]:
         """Derivatives ∂r/∂q of the points and of their sections' angles by the coordinates, (..., p, 3, n) each."""
-        whole = self.conditions.lifted(q)
-        phi = self.conditions.basis(whole)[..., None, :, :]
-        slopes, angles = self.free.jacobians(whole)
+        coordinates = self.conditions.lifted(q)
+        phi = self.conditions.basis(coordinates)[..., None, :, :]
+        slopes, angles = self.free.jacobians(coordinates)
         return slopes @ phi, angles @ phi
 
     def curved(self, q: Array) -> tuple[Places, Array, Turns]:
         """Positions near coordinates (n,) to second order, the sections' rotations (p, 3, 3) and their derivatives."""
-        whole, held = self.conditions.lifted(q), np.array(self.conditions.dependent, dtype=int)
-        places, rotation, turns = self.free.curved(whole)
-        phi = self.conditions.basis(whole)
-        curved = self.conditions.curvature(whole, phi)
-        second = phi.T @ places.second @ phi + np.einsum("pad,dij->paij", places.first[..., held], curved)
-        bent = phi.T @ turns.second @ phi + np.einsum("pabd,dij->pabij", turns.first[..., held], curved)
+        coordinates, dependent = self.conditions.lifted(q), np.array(self.conditions.dependent, dtype=int)
+        places, rotation, turns = self.free.curved(coordinates)
+        phi = self.conditions.basis(coordinates)
+        curved = self.conditions.curvature(coordinates, phi)
+        second = phi.T @ places.second @ phi + np.einsum("pad,dij->paij", places.first[..., dependent], curved)
+        bent = phi.T @ turns.second @ phi + np.einsum("pabd,dij->pabij", turns.first[..., dependent], curved)
         return Places(places.r0, places.first @ phi, second), rotation, Turns(turns.first @ phi, bent)
 
 
@@ -255,6 +264,6 @@ def projection(basis: Array, forces: Array) -> Array:
     return (namespace(basis, forces).swapaxes(basis, -1, -2) @ forces[..., None])[..., 0]
 
 
-def _alike(real: Array) -> Array:
+def _first_if_equal(real: Array) -> Array:
     """Values (..., n), one along the first axis where they are alike there, as those of complex steps are."""
     return real[:1] if real.ndim > 1 and len(real) > 1 and (real == real[:1]).all() else real

@@ -17,12 +17,12 @@ from gbeam.mechanics.fields.vectors import NONE, Vector, absent, add, cross, joi
 SMALL = 1e-2  # rad²: squares of smaller angles have series
 
 
-def components(which: Sequence[tuple[int, int]], moved: Array, turned: Array) -> Array:
-    """Components (..., m, n) of vectors (..., k, 3, n): each `which` of one place's displacement or rotation."""
+def components(conditions: Sequence[tuple[int, int]], moved: Array, turned: Array) -> Array:
+    """Components (..., m, n) of vectors (..., k, 3, n): each `conditions` of one place's displacement or rotation."""
     xp, shape = namespace(moved, turned), moved.shape
-    if not which:
+    if not conditions:
         return xp.zeros((*shape[:-3], 0, shape[-1]))
-    return xp.stack([moved[..., k, d, :] if d < 3 else turned[..., k, d - 3, :] for k, d in which], axis=-2)
+    return xp.stack([moved[..., k, d, :] if d < 3 else turned[..., k, d - 3, :] for k, d in conditions], axis=-2)
 
 
 class Measures:
@@ -65,15 +65,15 @@ class PolynomialMeasures(Measures):
     second: Array
 
     @classmethod
-    def from_stations(cls, field: Expanded, first: int, which: Sequence[tuple[int, int]]) -> PolynomialMeasures:
+    def from_stations(cls, field: Expanded, first: int, conditions: Sequence[tuple[int, int]]) -> PolynomialMeasures:
         """Measures of a field's stations, by their numbers behind its point `first`, each in a direction."""
-        stations = [station for station, _ in which]
+        stations = [station for station, _ in conditions]
         sections = field.sections(first + np.array(stations, dtype=int))
         places, angles = sections.places, sections.rotation_vectors[0]
-        numbered = [(k, direction) for k, (_, direction) in enumerate(which)]
-        size, moved = places.first.shape[-1], places.second.reshape(len(which), 3, -1)
+        numbered = [(k, direction) for k, (_, direction) in enumerate(conditions)]
+        size, moved = places.first.shape[-1], places.second.reshape(len(conditions), 3, -1)
         bent = components(numbered, moved, 0 * moved)
-        return cls(components(numbered, places.first, angles), bent.reshape(len(which), size, size))
+        return cls(components(numbered, places.first, angles), bent.reshape(len(conditions), size, size))
 
     def state(self, q: Array) -> Array:
         """Products H q (..., m, n)."""
@@ -110,14 +110,14 @@ class SectionMeasures(Measures):
     which: tuple[tuple[int, int], ...] = static()
 
     @classmethod
-    def from_stations(cls, field: StrainField, first: int, which: Sequence[tuple[int, int]]) -> SectionMeasures:
+    def from_stations(cls, field: StrainField, first: int, conditions: Sequence[tuple[int, int]]) -> SectionMeasures:
         """Measures of a field's stations, by their numbers behind its point `first`, each in a direction."""
-        stations = sorted({station for station, _ in which})
+        stations = sorted({station for station, _ in conditions})
         sections = field.sections(first + np.array(stations, dtype=int))
-        numbered = tuple((stations.index(station), direction) for station, direction in which)
-        still = np.zeros(field.size)
-        tangents = joined(namespace(sections.strains), sections.tangents(still).t, sections.cumulative.shape[1:])
-        return cls(sections, tangents.T, sections.rotation(still), numbered)
+        numbered = tuple((stations.index(station), direction) for station, direction in conditions)
+        zeros = np.zeros(field.size)
+        tangents = joined(namespace(sections.strains), sections.tangents(zeros).t, sections.cumulative.shape[1:])
+        return cls(sections, tangents.T, sections.rotation(zeros), numbered)
 
     def state(self, q: Array) -> Tangents:
         """Tangents at the sections."""
@@ -136,22 +136,22 @@ class SectionMeasures(Measures):
         """Derivatives (..., m, n) of the measures by the coordinates (..., n): what unit loads on them do."""
         xp, count = namespace(q), len(self.axes)
         force = np.zeros((3, len(self.which), count))
-        turning = [(k, section, direction - 3) for k, (section, direction) in enumerate(self.which) if direction > 2]
+        turns = [(k, section, direction - 3) for k, (section, direction) in enumerate(self.which) if direction > 2]
         for k, (section, direction) in enumerate(self.which):
             if direction < 3:
                 force[direction, k, section] = 1.0
         push: Any = tuple(force)
         turn: Any = NONE
-        if turning:
+        if turns:
             vector_rate, _ = _vector_rates(rotation_vectors(self._rotation(state, q)))
             moment = xp.zeros((*q.shape[:-1], 3, len(self.which), count))
-            for k, section, axis in turning:
+            for k, section, axis in turns:
                 unit = np.zeros((len(self.which), count))
                 unit[k, section] = 1.0
                 moment = moment + vector_rate[..., section, axis, :, None, None] * unit
             turn = tuple(moment[..., axis, :, :] for axis in range(3))
-        alike = _for_each_row(state)
-        return self.sections.pulled(alike, *self.sections.nodal_forces(alike, push, turn))
+        repeated = _for_each_row(state)
+        return self.sections.pulled(repeated, *self.sections.nodal_forces(repeated, push, turn))
 
     def bent_rows(self, q: Array) -> Array:
         """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
@@ -173,13 +173,15 @@ class SectionMeasures(Measures):
                 moment = add(cross(carried, angle), mapped(cross(place, push), outboard))
                 bent.append(field.inward(tangents, cross(push, angle), moment))
                 continue
-            at = self._rotation(tangents, q[..., None, :])[..., 0, section, :, :]
-            vector_rate, by_vector = _vector_rates(rotation_vectors(at))
-            unit, along = (
+            section_axes = self._rotation(tangents, q[..., None, :])[..., 0, section, :, :]
+            vector_rate, by_vector = _vector_rates(rotation_vectors(section_axes))
+            unit, projected = (
                 vector_rate[..., direction - 3, :],
                 turned_points[..., section, :] @ np.swapaxes(vector_rate, -1, -2),
             )
-            change = sum(along[..., k, None] * by_vector(np.eye(3)[k])[..., None, direction - 3, :] for k in range(3))
+            change = sum(
+                projected[..., k, None] * by_vector(np.eye(3)[k])[..., None, direction - 3, :] for k in range(3)
+            )
             spin: Any = tuple(unit[..., k, None, None] * reach for k in range(3))
             grown: Any = tuple(change[..., k, None] * reach for k in range(3))
             bent.append(field.inward(tangents, NONE, add(cross(spin, angle), grown)))
@@ -189,10 +191,10 @@ class SectionMeasures(Measures):
     def drift_at(self, state: Tangents, q: Array, qd: Array) -> Array:
         """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
         xp = namespace(q, qd)
-        moving = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=state)
+        motion = self.sections.moving(q, qd, 0 * qd, points=True, at_rest=state)
         shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.axes))
-        vectors = moving.tdd, moving.turn, moving.turnd
-        change, w, alpha = (joined(xp, mapped(each, self.sections.cumulative), shape) for each in vectors)
+        vectors = motion.tdd, motion.turn, motion.turnd
+        change, w, alpha = (joined(xp, mapped(vector, self.sections.cumulative), shape) for vector in vectors)
         vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(state, q)))
         phi_rate = (vector_rate @ w[..., None])[..., 0]
         turned = vector_rate @ alpha[..., None] + by_vector(phi_rate) @ w[..., None]
@@ -256,8 +258,8 @@ def _vector_rates(phi: Array) -> tuple[Array, Any]:
     return np.eye(3) - cross / 2 + c * (cross @ cross), change
 
 
-def measures_of(field: StrainField | Expanded, first: int, which: Sequence[tuple[int, int]]) -> Measures:
+def measures_of(field: StrainField | Expanded, first: int, conditions: Sequence[tuple[int, int]]) -> Measures:
     """Measures of a field's stations, by their numbers behind its point `first`, each in a direction from 0 to 5."""
     kind: Any = PolynomialMeasures if isinstance(field, Expanded) else SectionMeasures
-    measures: Measures = kind.from_stations(field, first, which)
+    measures: Measures = kind.from_stations(field, first, conditions)
     return measures

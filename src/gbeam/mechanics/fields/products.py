@@ -28,8 +28,8 @@ def turned_back(R: Array, v: Array) -> Array:
 
 def times(tensor: Array, q: Array) -> Array:
     """T_{...ij} q_j of a constant tensor, (..., its first axes, i)."""
-    flat = q @ tensor.reshape(math.prod(tensor.shape[:-1]), tensor.shape[-1]).T  # -1 would fail without coordinates
-    return flat.reshape(*q.shape[:-1], *tensor.shape[:-1])
+    products = q @ tensor.reshape(math.prod(tensor.shape[:-1]), tensor.shape[-1]).T  # -1 would fail without coordinates
+    return products.reshape(*q.shape[:-1], *tensor.shape[:-1])
 
 
 def quadratic(tensor: Array, q: Array) -> Array:

@@ -100,9 +100,9 @@ def projected_field(
 
 def block(shapes: np.ndarray, start: int, total: int) -> np.ndarray:
     """Place (points, k) shape values in columns start … start + k of (points, total)."""
-    out = np.zeros((shapes.shape[0], total))
-    out[:, start : start + shapes.shape[1]] = shapes
-    return out
+    padded = np.zeros((shapes.shape[0], total))
+    padded[:, start : start + shapes.shape[1]] = shapes
+    return padded
 
 
 def at_nodes(stacked: Array, q: Array) -> Array:

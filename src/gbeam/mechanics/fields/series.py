@@ -44,8 +44,10 @@ STILL: Strains = (NONE, NONE)
 
 @record
 class SeriesField:
-    """Points (p,) of a strain field whose places end at an `order`: `axes` (G, 3, 3) of the nodes' sections at rest,
-    None where they are the base's, and `arm` (p, 3) m from the axis at rest, base axes, or None.
+    """Points (p,) of a strain field whose places end at an `order`.
+
+    `axes` (G, 3, 3) are those of the nodes' sections at rest, None where they are the base's. `arm` (p, 3) m is the
+    distance from the axis at rest, base axes, or None.
     """
 
     exact: StrainField
@@ -135,7 +137,7 @@ class SeriesField:
 
     def paths(self, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
         """Places, velocities and accelerations of the points relative to the base axes, (..., p, 3) each."""
-        r, rd, rdd = (self._joined(each, q) for each in self.components(q, qd, qdd))
+        r, rd, rdd = (self._joined(component, q) for component in self.components(q, qd, qdd))
         return r, rd, rdd
 
     def poses(self, q: Array, qd: Array, qdd: Array, at: slice) -> tuple[tuple[Array, Array, Array], Array]:
@@ -172,7 +174,7 @@ class SeriesField:
         force = mapped(push, self.exact.cumulative.T)
         on_strain = add(*(scaled(component, row) for component, row in zip(force, lower[-1], strict=True)))
         # Forces on the rows of an order, and what the points' own arms and d add to those of the highest but one.
-        pulls, strained = ([scaled(component, by) for component in force] for by in (t, d))
+        pulls, strained = ([scaled(component, rate) for component in force] for rate in (t, d))
         on_arms = [mapped(scaled(component, arm), self.exact.cumulative.T) for component in push]
         on_turn, outboard = NONE, self.exact.node_cumulative.T
         for rows in reversed(lower):
@@ -180,8 +182,8 @@ class SeriesField:
             on_turn = add(on_turn, *(cross(*pair) for pair in zip(inward, rows, strict=True)))
             pulls = [add(cross(k, pull), moment) for pull, moment in zip(inward, strained, strict=True)]
             on_arms = strained = [NONE] * 3
-        out = self.exact.inward(Tangents(axes, NONE), on_strain, on_turn)
-        return out if all(map(absent, turn)) else out + self.exact.generalised_forces(q, NONE, turn)
+        forces = self.exact.inward(Tangents(axes, NONE), on_strain, on_turn)
+        return forces if all(map(absent, turn)) else forces + self.exact.generalised_forces(q, NONE, turn)
 
     # --- how it changes
 

@@ -73,8 +73,10 @@ class Columns(NamedTuple):
 
 @record
 class StrainField:
-    """Points (p,) of a beam by strains (6, G, n) at the nodes, and their values `rest` (6, G) at rest; `offset` (p, 3)
-    m from the axis, section axes, or None; `shaped` tells which strains have shapes, `present` which are there at all.
+    """Points (p,) of a beam by strains (6, G, n) at the nodes, and their values `rest` (6, G) at rest.
+
+    `offset` (p, 3) m is the distance from the axis, section axes, or None. `shaped` tells which strains have shapes,
+    `present` which there are at all.
     """
 
     cumulative: Array
@@ -139,8 +141,8 @@ class StrainField:
         """Strains without those at rest at the nodes, six of (..., G), by coordinates (..., n); 0 of a rigid strain."""
         chosen = [k for k in range(6) if self.shaped[k]]
         xp, nodes = namespace(self.strains, self.offset, q), self.strains.shape[1]
-        flat = xp.reshape(self.strains[np.array(chosen, dtype=int)], (-1, self.size))
-        values = xp.reshape(q @ flat.T, (*q.shape[:-1], len(chosen), nodes))
+        rows = xp.reshape(self.strains[np.array(chosen, dtype=int)], (-1, self.size))
+        values = xp.reshape(q @ rows.T, (*q.shape[:-1], len(chosen), nodes))
         return tuple(values[..., chosen.index(k), :] if k in chosen else 0 for k in range(6))
 
     def tangents(self, q: Array, *, points: bool = False) -> Tangents:
@@ -183,7 +185,7 @@ class StrainField:
 
     def carried(self, tangents: Tangents) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations of the points, by components (..., p), as the tangents carry them."""
-        r, rd, rdd = (mapped(each, self.cumulative) for each in (tangents.t, tangents.td, tangents.tdd))
+        r, rd, rdd = (mapped(vector, self.cumulative) for vector in (tangents.t, tangents.td, tangents.tdd))
         if self.offset is None:
             return r, rd, rdd
         arm, arm_rate, arm_change = self._arms(tangents)
@@ -202,7 +204,7 @@ class StrainField:
     def _paths(self, tangents: Tangents, q: Array) -> tuple[Array, Array, Array]:
         """Paths of the points as arrays, (..., p, 3) each, from the tangents at coordinates q."""
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
-        r, rd, rdd = (joined(xp, each, shape) for each in self.carried(tangents))
+        r, rd, rdd = (joined(xp, component, shape) for component in self.carried(tangents))
         return r, rd, rdd
 
     def poses(self, q: Array, qd: Array, qdd: Array, at: slice) -> tuple[tuple[Array, Array, Array], Array]:
@@ -233,7 +235,7 @@ class StrainField:
         """Rotations (..., p, 3, 3) of the points' sections, their angular velocities and accelerations, base axes."""
         xp, shape = namespace(self.strains, self.offset, q), (*q.shape[:-1], len(self.cumulative))
         tangents = self.moving(q, qd, qdd, points=True)
-        w, alpha = (joined(xp, mapped(each, self.cumulative), shape) for each in (tangents.turn, tangents.turnd))
+        w, alpha = (joined(xp, mapped(vector, self.cumulative), shape) for vector in (tangents.turn, tangents.turnd))
         return self._matrices(tangents.at_points, q, len(self.cumulative)), w, alpha
 
     # --- forces come back
@@ -280,7 +282,7 @@ class StrainField:
         return x, y, z
 
     def columns(self, tangents: Tangents) -> Columns:
-        """Derivatives of tangents and section angles, a column a coordinate; tangents' components are (..., 1, G)."""
+        """Derivatives of tangents and section angles, a column a coordinate. Tangents' components are (..., 1, G)."""
         shapes: Any = tuple(part.T if shaped else 0 for part, shaped in zip(self.strains, self.shaped, strict=True))
         fixed = (turned(tangents.rotation, part) for part in (shapes[:3], shapes[3:]))
         strain, turn = (_carried(vector, tangents.w, tangents.alpha) for vector in fixed)
@@ -290,7 +292,7 @@ class StrainField:
 
     def columns_of_points(self, tangents: Tangents, columns: Columns) -> Columns:
         """Columns of the points and their sections, by those of the nodes."""
-        place, angle = (mapped_rates(each, self.cumulative) for each in (columns.place, columns.turn))
+        place, angle = (mapped_rates(rates, self.cumulative) for rates in (columns.place, columns.turn))
         if self.offset is None:
             return Columns(place, angle, columns.turn)
         swung = cross_rates(angle, self._arms(tangents))
@@ -330,11 +332,11 @@ class StrainField:
         levers = [part if absent(part) else at_nodes * part for part in tangents.t]
         moved = [part if absent(part) else part @ self.node_cumulative for part in levers]
         arm_sums = xp.stack([plus(part, arm_sums[:, axis]) for axis, part in enumerate(moved)], axis=1)
-        out = [xp.zeros((len(weight), n, n)) for _ in range(3)]
+        blocks = [xp.zeros((len(weight), n, n)) for _ in range(3)]
 
         def add_to(axis: int, weights: Array, left: Array, right: Array) -> None:
             if not (absent(left) or absent(right)):
-                out[axis] = out[axis] + (left.T[None] * weights[:, None]) @ right
+                blocks[axis] = blocks[axis] + (left.T[None] * weights[:, None]) @ right
 
         for a, b, c in np.argwhere(EPSILON):  # R' ε = θ × ε
             add_to(a, EPSILON[a, b, c] * at_nodes, angle[b], strain[c])
@@ -342,8 +344,8 @@ class StrainField:
             for b in range(3):
                 add_to(a, arm_sums[:, b], angle[b], turn[a])
                 add_to(a, -arm_sums[:, a], angle[b], turn[b])
-        whole = xp.stack(out, axis=1)
-        return whole + xp.swapaxes(whole, -1, -2)
+        summed = xp.stack(blocks, axis=1)
+        return summed + xp.swapaxes(summed, -1, -2)
 
     def expand(self, q: Array, mass: Array) -> tuple[Places, Array]:
         """Places about coordinates (n,), to first order, and Σ m ∂²r/∂q² and Σ m r_b ∂²r/∂q², (4, 3, n, n)."""
@@ -379,7 +381,7 @@ def cross_rates(angle: Any, arm: Any) -> tuple[Vector, Vector, Vector]:
 
 
 def mapped_rates(vectors: Any, matrix: Array) -> tuple[Vector, Vector, Vector]:
-    value, rate, change = (mapped(each, matrix) for each in vectors)
+    value, rate, change = (mapped(vector, matrix) for vector in vectors)
     return value, rate, change
 
 

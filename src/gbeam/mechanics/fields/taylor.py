@@ -65,7 +65,7 @@ class Places:
 
     def components(self, q: Any, qd: Any, qdd: Any) -> tuple[Vector, Vector, Vector]:
         """Places, velocities and accelerations by components (..., p)."""
-        r, rd, rdd = (split(each) for each in self.paths(q, qd, qdd))
+        r, rd, rdd = (split(component) for component in self.paths(q, qd, qdd))
         return r, rd, rdd
 
     def generalised_forces(self, q: Any, push: Vector) -> Any:
@@ -74,18 +74,18 @@ class Places:
         """
         xp, (points, axes, n) = namespace(self.first, q), self.first.shape
         force = xp.stack(xp.broadcast_arrays(*push), axis=-1)
-        flat = xp.reshape(force, (*force.shape[:-2], points * axes))
-        straight = flat @ xp.reshape(self.first, (-1, n))
+        rows = xp.reshape(force, (*force.shape[:-2], points * axes))
+        straight = rows @ xp.reshape(self.first, (-1, n))
         if self.second is None:
             return straight
-        curved = xp.reshape(flat @ xp.reshape(self.second, (points * axes, n * n)), (*flat.shape[:-1], n, n))
+        curved = xp.reshape(rows @ xp.reshape(self.second, (points * axes, n * n)), (*rows.shape[:-1], n, n))
         return straight + xp.sum(curved * q[..., None, :], axis=-1)
 
     def _linear(self, q: Any) -> Any:
         """J·q of (..., n)."""
         points, axes, n = self.first.shape
-        flat = namespace(self.first, q).reshape(self.first, (-1, n))
-        return (q @ flat.T).reshape(*q.shape[:-1], points, axes)
+        rows = namespace(self.first, q).reshape(self.first, (-1, n))
+        return (q @ rows.T).reshape(*q.shape[:-1], points, axes)
 
     def _sum(self, linear: Any, quadratic: Any) -> Any:
         """J·linear + H:quadratic, of (..., n) and (..., n, n): one matrix product over all times."""
@@ -102,8 +102,9 @@ def _outer(left: Any, right: Any) -> Any:
 
 @record
 class Turns:
-    """Rotation matrices R = R0 + R1 q + ½ q R2 q of sections, base axes: `first` R1 (p, 3, 3, n), `second` R2 (p, 3, 3,
-    n, n), and `rest` R0 (p, 3, 3), None where it is 1.
+    """Rotation matrices R = R0 + R1 q + ½ q R2 q of sections, base axes.
+
+    `first` is R1 (p, 3, 3, n), `second` R2 (p, 3, 3, n, n), and `rest` R0 (p, 3, 3), None where it is 1.
     """
 
     first: Any

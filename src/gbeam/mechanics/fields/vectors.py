@@ -121,18 +121,18 @@ def joined(xp: Any, parts: tuple[Scalar, ...], shape: tuple[int, ...]) -> Any:
     shape = np.broadcast_shapes(*sizes) if len(sizes) > 1 else shape
     if xp is not np:
         return xp.stack([xp.broadcast_to(float(p) if isinstance(p, int) else p, shape) for p in parts], axis=-1)
-    out = np.empty((*shape, len(parts)), dtype=np.result_type(float, *parts))
+    stacked = np.empty((*shape, len(parts)), dtype=np.result_type(float, *parts))
     for k, part in enumerate(parts):
-        out[..., k] = part
-    return out
+        stacked[..., k] = part
+    return stacked
 
 
 def rotation_matrix(angle: Array) -> Array:
     """Rotation matrices (..., 3, 3) of rotation vectors (..., 3)."""
     xp = namespace(angle)
     sinc, versine, _ = exponential_of(xp.sum(angle**2, axis=-1))
-    across = skew(xp, angle)
-    return xp.eye(3) + sinc[..., None, None] * across + versine[..., None, None] * (across @ across)
+    skew_matrix = skew(xp, angle)
+    return xp.eye(3) + sinc[..., None, None] * skew_matrix + versine[..., None, None] * (skew_matrix @ skew_matrix)
 
 
 def skew(xp: Any, w: Array) -> Array:
@@ -162,8 +162,8 @@ def _compiled() -> Any:
         sine, cosine = _polynomials(angle)
         if not angle.ndim:
             return sine, cosine
-        both = np.eye(2) @ jax.numpy.stack([sine, cosine], axis=-2)
-        return both[..., 0, :], both[..., 1, :]
+        pair = np.eye(2) @ jax.numpy.stack([sine, cosine], axis=-2)
+        return pair[..., 0, :], pair[..., 1, :]
 
     @compiled.defjvp
     def _(primals: Any, tangents: Any) -> Any:

@@ -156,7 +156,9 @@ class StrainedPoints:
 
     def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
-        at_root = [(turned(by.R, wrench.force), turned(by.R, wrench.moment)) for _, by, wrench in wrenches]
+        at_root = [
+            (turned(relative.R, wrench.force), turned(relative.R, wrench.moment)) for _, relative, wrench in wrenches
+        ]
         stacks = (xp.stack(xp.broadcast_arrays(*vectors), axis=-2) for vectors in zip(*at_root, strict=True))
         forces, moments = map(split, stacks)
         return self.field[np.array([acting.point for acting in wrenches])].generalised_forces(q, forces, moments)
@@ -187,13 +189,14 @@ class PolynomialPoints:
         """Generalised forces (..., n) of wrenches that act at the points."""
         xp = namespace(q, *(acting.wrench.force for acting in wrenches))
         points = np.array([acting.point for acting in wrenches])
-        vectors = [(turned(by.R, wrench.force), wrench.moment) for _, by, wrench in wrenches]  # root's, point's axes
+        # Forces in the root's axes, moments in the point's.
+        vectors = [(turned(relative.R, wrench.force), wrench.moment) for _, relative, wrench in wrenches]
         force, moment = (xp.stack(xp.broadcast_arrays(*parts), axis=-2) for parts in zip(*vectors, strict=True))
         slope = self.first[points] + xp.einsum("paij,...j->...pai", self.second[points], q)
-        turning = self.turn[points] + xp.einsum("paij,...j->...pai", self.bend[points], q)
-        phi = xp.einsum("...pai,...i->...pa", (self.turn[points] + turning) / 2, q)
+        rotation_slopes = self.turn[points] + xp.einsum("paij,...j->...pai", self.bend[points], q)
+        phi = xp.einsum("...pai,...i->...pa", (self.turn[points] + rotation_slopes) / 2, q)
         on_vector = component_moments(phi, moment)
-        return (slope * force[..., None] + turning * on_vector[..., None]).sum(axis=(-3, -2))
+        return (slope * force[..., None] + rotation_slopes * on_vector[..., None]).sum(axis=(-3, -2))
 
 
 def _point(k: int, path: tuple[Array, Array, Array], R: Array, w: Array, alpha: Array) -> Relative:
@@ -219,8 +222,8 @@ class HeldPoints:
 
     def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         """Generalised forces (..., n) of wrenches that act at the points."""
-        whole = self.conditions.lifted(q)
-        return self.conditions.projected(whole, self.free.generalised_forces(whole, wrenches))
+        coordinates = self.conditions.lifted(q)
+        return self.conditions.projected(coordinates, self.free.generalised_forces(coordinates, wrenches))
 
 
 Points = StrainedPoints | PolynomialPoints | HeldPoints
@@ -244,8 +247,8 @@ class DeformingBody:
         return self.points.places_of(q)
 
     def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
-        along, *wrench = self.equations.demanded(q, qd, qdd, root.a, root.w, root.alpha, loads)
-        return along, Wrench(*wrench)
+        generalised, *wrench = self.equations.demanded(q, qd, qdd, root.a, root.w, root.alpha, loads)
+        return generalised, Wrench(*wrench)
 
     def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         return self.points.generalised_forces(q, wrenches)
@@ -279,14 +282,14 @@ class LinearBody(DeformingBody):
         if self.contraction is None:
             return super().demanded(q, qd, qdd, root, loads)
         constants, c = self.contraction, self.coefficients
-        along, rows = constants.demanded(q, qd, qdd, root.a, root.w, root.alpha)
+        generalised, rows = constants.demanded(q, qd, qdd, root.a, root.w, root.alpha)
         if c.bending is not None:
-            along = along + c.bending.forces(q)
+            generalised = generalised + c.bending.forces(q)
         if loads is not None and c.loads is not None:
             forces = c.loads.generalised(q, loads)
-            along, rows = along - forces[..., 6:], rows - forces[..., :6] @ constants.loads
+            generalised, rows = generalised - forces[..., 6:], rows - forces[..., :6] @ constants.loads
         wrench = rows @ constants.places
-        return along, Wrench(wrench[..., :3], wrench[..., 3:])
+        return generalised, Wrench(wrench[..., :3], wrench[..., 3:])
 
     def contracted(self, carrier: Roots, root: Roots) -> LinearBody:
         """Contract the body by the motion of its `carrier`, which determines that of its root.
@@ -303,8 +306,8 @@ def momentum(body: Body, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrenc
 
     The forces that accelerations demand of a body at rest become its momenta when rates take the accelerations' place.
     """
-    still = 0 * root.w
-    generalised, wrench = body.demanded(q, 0 * qd, qd, Frame(None, None, None, still, root.v, root.w), None)
+    zero = 0 * root.w
+    generalised, wrench = body.demanded(q, 0 * qd, qd, Frame(None, None, None, zero, root.v, root.w), None)
     energy = (wrench.force * root.v + wrench.moment * root.w).sum(axis=-1)
     return (energy + ((generalised - body.elastic(q)) * qd).sum(axis=-1)) / 2, wrench
 

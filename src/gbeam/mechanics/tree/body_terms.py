@@ -31,7 +31,7 @@ def stations_of(structure: Structure) -> dict[str, int]:
         names = structure.points or ("tip",)
         return {name: len(structure.stations) - len(names) + k for k, name in enumerate(names)}
     named = structure.source.beam.named_points
-    return {name: int(np.argmin(np.abs(structure.stations - at))) for name, at in named.items()}
+    return {name: int(np.argmin(np.abs(structure.stations - position))) for name, position in named.items()}
 
 
 def refuse_turnless(where: str, body: Structure, on: int) -> None:

@@ -69,7 +69,9 @@ class Roots:
         return cls(np.concatenate([squares, alpha, a], axis=-1), w, np.concatenate(twists, axis=-1))
 
     def reach(self, root: Roots) -> Reach | None:
-        """Find components that determine this motion, and that of a `root` by these; None where they are in doubt."""
+        """Find components that determine this motion, and that of a `root` by these,
+        or None where they are in doubt.
+        """
         features = _span(self.features, root.features)
         spin = _span(self.spin, root.spin)
         twists = _span(self.twists, root.twists)
@@ -146,8 +148,9 @@ def rigid_rows(mass: Any, S: Floats, J: Floats, reach: Reach) -> RigidRows:
 
 
 def _factors(twists: Floats) -> tuple[Floats, Floats, Floats]:
-    """Factors of mass (t, 12), first moment (t, 12, 3) and moments of inertia (t, 12, 3, 3) in the work along `twists`
-    (t, 6) of the wrench that each of twelve features demands of a rigid body.
+    """Factors of mass (t, 12), first moment (t, 12, 3) and moments of inertia (t, 12, 3, 3) in a work.
+
+    Each of twelve features demands a wrench of a rigid body. The work is that of this wrench along `twists` (t, 6).
     """
     by_mass, by_S, by_J = (np.tensordot(twists, factors, 1) for factors in _unit_factors())
     return by_mass, by_S, by_J
@@ -176,7 +179,7 @@ class Contraction:
     """Constants of a linear body's equations on a root whose motion is told by few components.
 
     These are the f − 1 `features` of (ω ωᵀ, α, a), the s − 1 components `spin` of ω and the t `twists` of (velocity,
-    angular velocity). `of_q` and `of_qd` (n, k n) hold k matrices (n, n) side by side, by which q and q̇ are multiplied;
+    angular velocity). `of_q` and `of_qd` (n, k n) hold k matrices (n, n) side by side, by which q and q̇ are multiplied.
     `constant` (k n,) is what q = 0 has in place of q `of_q`. `rigid` (f, t) are factors of 1 and the features.
     """
 
@@ -207,13 +210,13 @@ class Contraction:
         feature_blocks = by_q[..., :end].reshape(*by_q.shape[:-1], f, (1 + t) * n)
         spin_blocks = by_qd[..., : s * n].reshape(*by_qd.shape[:-1], s, n)
         by_features = xp.einsum("...f,...fk->...k", features, feature_blocks)
-        along = qdd @ self.mass + by_features[..., :n] + xp.einsum("...k,...kn->...n", spin, spin_blocks)
+        generalised = qdd @ self.mass + by_features[..., :n] + xp.einsum("...k,...kn->...n", spin, spin_blocks)
         if not t:
-            return along, by_features[..., :0]
+            return generalised, by_features[..., :0]
         gyro_blocks = by_q[..., end + t * n :].reshape(*by_q.shape[:-1], s - 1, t * n)
         by_rates = by_qd[..., s * n :] + xp.einsum("...k,...kn->...n", spin[..., 1:], gyro_blocks)
         products = (by_features[..., n:], q), (by_q[..., end : end + t * n], qdd), (by_rates, qd)
-        return along, features @ self.rigid + sum(_dots(slopes, rates, t) for slopes, rates in products)
+        return generalised, features @ self.rigid + sum(_dots(slopes, rates, t) for slopes, rates in products)
 
 
 def _dots(left: Array, right: Array, rows: int) -> Array:
@@ -223,7 +226,7 @@ def _dots(left: Array, right: Array, rows: int) -> Array:
 
 
 def contraction(c: Coefficients, reach: Reach, *, felt: bool) -> Contraction | None:
-    """Contract coefficients with what a body's root can do; None where that is so much that it would not be faster.
+    """Contract coefficients with what a body's root can do, or None where that is so much that it would not be faster.
 
     Unless deforming is `felt`, the root feels no rates of the coordinates.
     """

@@ -46,14 +46,14 @@ def _kinds(key: str, kind: Callable[[str], str], arguments: Mapping[str, Any]) -
 class Feedback(Value):
     """A controller in the loop of a system: it samples measurements, and holds its efforts until the next sample.
 
-    Its law is a function ``law(t, y)`` of time, s, and measurements (k,), which gives the efforts (m,), or ``law(t, y,
-    state)``, which gives efforts and the state at the next sample, a new value; a sample is taken more than once, so
-    that a function must keep nothing itself. Else it is a linear law with states of its own: (A, B, C, D), a
-    :class:`StateSpace`, or a StateSpace or TransferFunction of python-control. One in continuous time (matrices are) is
-    sampled by Tustin's rule, one in discrete time has the step `sample`.
+    Its law is a function ``law(t, y)`` of time, s, and measurements (k,), which gives the efforts (m,). With a state of
+    its own it is ``law(t, y, state)``, which gives efforts and the state at the next sample, a new value. A sample is
+    taken more than once, so that a function must keep nothing itself. Else it is a linear law with states of its own:
+    (A, B, C, D), a :class:`StateSpace`, or a StateSpace or TransferFunction of python-control. One in continuous time
+    (matrices are) is sampled by Tustin's rule, one in discrete time has the step `sample`.
 
     Accelerations, and forces and moments of sections, are those just before the sample. The attitude is the rotation
-    vector from the ground's axes to the point's, with the same components in both; at half a turn it jumps to that of
+    vector from the ground's axes to the point's, with the same components in both. At half a turn it jumps to that of
     the shorter way.
 
     Raises
@@ -116,12 +116,12 @@ class Feedback(Value):
                 raise InputError("state", "is given of a linear law, which starts at zero", "leave it out")
             object.__setattr__(self, "law", self._sampled())
         else:
-            taken = signature(self.law)
-            object.__setattr__(self, "stateful", len(taken.parameters) > 2)
+            parameters = signature(self.law)
+            object.__setattr__(self, "stateful", len(parameters.parameters) > 2)
             try:
-                taken.bind(*range(3 if self.stateful else 2))
+                parameters.bind(*range(3 if self.stateful else 2))
             except TypeError as error:
-                raise InputError("law", f"takes {taken}", "write law(t, y), or law(t, y, state)") from error
+                raise InputError("law", f"takes {parameters}", "write law(t, y), or law(t, y, state)") from error
 
     def _sampled(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Return A, B, C and D of the linear law, in steps of `sample`; InputError unless they fit the signals.
@@ -227,10 +227,10 @@ class Feedback(Value):
             raise self._failed(f"gives {efforts!r}", t)
         return self._finite(t, command.astype(float)), next_state
 
-    def _failed(self, problem: str, t: float, more: str = "") -> ComputationError:
-        """Error of a function that gives something else than finite efforts, and `more`."""
+    def _failed(self, problem: str, t: float, detail: str = "") -> ComputationError:
+        """Error of a function that gives something else than finite efforts, and `detail`."""
         count = f"{len(self.drive)} finite effort{'s' * (len(self.drive) > 1)}"
-        words = f"{_law_of(self)} {shortened(on_one_line(problem))} at {t:.6g} s: give {count}{more}"
+        words = f"{_law_of(self)} {shortened(on_one_line(problem))} at {t:.6g} s: give {count}{detail}"
         return ComputationError(LAW_FAILED, words)
 
     def _finite(self, t: float, efforts: Floats) -> Floats:
@@ -259,8 +259,8 @@ def answer_of(controller: Feedback, t: Any, measured: Any, state: Any) -> Any:
     except Exception as error:
         if looks_at_traced(error):
             raise
-        when = "where JAX traces it" if is_traced(t) else f"at {t:.6g} s"
-        raise ComputationError(LAW_FAILED, f"{_law_of(controller)} raises {_in_words(error)}, {when}") from error
+        time_words = "where JAX traces it" if is_traced(t) else f"at {t:.6g} s"
+        raise ComputationError(LAW_FAILED, f"{_law_of(controller)} raises {_in_words(error)}, {time_words}") from error
 
 
 def refuse_memory(controller: Feedback, t: float, measured: Floats, state: Any, answer: tuple[Floats, Any]) -> None:
@@ -268,7 +268,7 @@ def refuse_memory(controller: Feedback, t: float, measured: Floats, state: Any, 
     if not callable(controller.law):
         return
     repeated = controller.effort(t, measured, state)
-    if _alike(repeated, answer):
+    if _are_equal(repeated, answer):
         return
     texts = [str(efforts) for efforts, _ in (answer, repeated)]
     if texts[0] == texts[1]:  # they differ in later digits, or in the state
@@ -301,12 +301,12 @@ def _in_words(error: Exception) -> str:
     return f"{type(error).__name__}{f': {message}' if message else ''}{shortened(on_one_line(place))}"
 
 
-def _alike(one: Any, other: Any) -> bool:
-    """True if two values are equal to the last digit, of numbers, sequences and mappings; others are not compared."""
+def _are_equal(one: Any, other: Any) -> bool:
+    """True if two values are equal to the last digit, of numbers, sequences and mappings. Others are not compared."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
-        return one.keys() == other.keys() and all(_alike(one[key], other[key]) for key in one)
+        return one.keys() == other.keys() and all(_are_equal(one[key], other[key]) for key in one)
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
-        return len(one) == len(other) and all(map(_alike, one, other))
+        return len(one) == len(other) and all(map(_are_equal, one, other))
     values = np.asarray(one), np.asarray(other)
     numbers = all(value.dtype.kind in "biufc" for value in values)
     return not numbers or np.array_equal(*values, equal_nan=True)
@@ -378,12 +378,12 @@ def lead_lag(
     pole: Annotated[Corner, "pole: above the zero a lead, below it a lag"],
 ) -> Law:
     """Lead or lag: gain (1 + s/zero)/(1 + s/pole) of one error."""
-    through = gain * pole / zero
+    feedthrough = gain * pole / zero
     return (
         np.full((1, 1), -pole),
         np.full((1, 1), pole),
-        np.full((1, 1), gain - through),
-        np.full((1, 1), through),
+        np.full((1, 1), gain - feedthrough),
+        np.full((1, 1), feedthrough),
     )
 
 

@@ -43,13 +43,18 @@ class Course:
             turns = self._turned(times[:-1], times[1:])
         xp, zero = namespace(turns, start), int(np.searchsorted(times, 0.0))
         # Turn of every knot since the first one.
-        since = xp.concatenate([np.array([[1.0, 0.0, 0.0, 0.0]]), turns])
+        turn_since_start = xp.concatenate([np.array([[1.0, 0.0, 0.0, 0.0]]), turns])
         reach = 1
-        while reach < len(since):  # products of 2, 4, 8, ... pieces at once
-            since = xp.concatenate([since[:reach], composed_parameters(since[:-reach], since[reach:])])
+        while reach < len(turn_since_start):  # products of 2, 4, 8, ... pieces at once
+            turn_since_start = xp.concatenate(
+                [turn_since_start[:reach], composed_parameters(turn_since_start[:-reach], turn_since_start[reach:])]
+            )
             reach *= 2
-        inverse = since[zero] * np.array([1.0, -1.0, -1.0, -1.0])
-        self.times, self.attitudes = times, composed_parameters(composed_parameters(as_array(start), inverse), since)
+        inverse = turn_since_start[zero] * np.array([1.0, -1.0, -1.0, -1.0])
+        self.times, self.attitudes = (
+            times,
+            composed_parameters(composed_parameters(as_array(start), inverse), turn_since_start),
+        )
 
     def __call__(self, t: Any) -> tuple[Array, Array, Array]:
         """Euler parameters (..., 4), and their first and second derivatives by time, at times `t` (...), s."""

@@ -29,8 +29,8 @@ STUCK = 3 * SLIP  # rate below which friction has less than 0.995 of its size
 class Holder:
     """Springs and stops on the values (h,) of a joint (:meth:`Step.held_values`), dampers and friction on their rates.
 
-    The springs have no force at the values `ease`; the stops begin at `low` and `high` and have the
-    stiffness `stop`; `coupling` (h, h) is the stiffness between values, or None; friction is smooth below rates of the
+    The springs have no force at the values `ease`. The stops begin at `low` and `high` and have the
+    stiffness `stop`. `coupling` (h, h) is the stiffness between values, or None. Friction is smooth below rates of the
     size `slip`.
     """
 
@@ -123,9 +123,11 @@ class Link:
 
 @record
 class Inputs:
-    """Drives of a tree at one time or many: motion of the ground, prescribed coordinates with their rates (..., 3, k),
-    efforts (..., n) on all coordinates, load components (..., l, 6) of each body, and wrenches (..., p, 6) on points;
-    None where there is nothing of a kind.
+    """Drives of a tree at one time or many.
+
+    They are the motion of the ground, prescribed coordinates with their rates (..., 3, k), efforts (..., n) on all
+    coordinates, load components (..., l, 6) of each body, and wrenches (..., p, 6) on points. Each is None where there
+    is nothing of the kind.
     """
 
     ground: Frame
@@ -206,7 +208,7 @@ class State:
         """Motions of a body's points, its root the last."""
         if body not in self._points:
             _, root = self.step_motions(body)
-            self._points[body] = [*(root.carried(by) for by in self.relative(body)), root]
+            self._points[body] = [*(root.carried(relative) for relative in self.relative(body)), root]
         return self._points[body]
 
     @property
@@ -228,7 +230,7 @@ class State:
 
 @record
 class Tree:
-    """A tree of links, each after its parent; `fixed` are the indices of prescribed coordinates among all. With `rests`
+    """A tree of links, each after its parent. `fixed` are the indices of prescribed coordinates among all. With `rests`
     the ground does not move, and no equation depends on where a frame is.
     """
 
@@ -323,7 +325,7 @@ class Tree:
         return State(self, y, yd, ydd, ground)
 
     def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
-        """Residual (..., n) of the equations of the unknown coordinates; zero where they hold."""
+        """Residual (..., n) of the equations of the unknown coordinates, or zero where they hold."""
         ground = inputs.ground
         if self.rests:
             ground = Frame(None, None, None, None, None, None)
@@ -404,23 +406,25 @@ class Tree:
         for k in reversed(range(len(self.links))):
             link, (steps, root) = self.links[k], state.step_motions(k)
             *joint, body = zip(state.q[k], state.qd[k], state.qdd[k], strict=True)
-            along, wrench = link.body.demanded(*body, root, inputs.loads[k])
+            generalised, wrench = link.body.demanded(*body, root, inputs.loads[k])
             if on_points[k]:
-                along = along + link.body.generalised_forces(body[0], on_points[k])
+                generalised = generalised + link.body.generalised_forces(body[0], on_points[k])
             wrench = sum((acting.wrench.brought(acting.by) for acting in on_points[k]), start=wrench)
             wrench = sum(on_roots[k], start=wrench)
             on_steps: list[Array] = []
             # No row is asked of what lies between the ground and the first step with coordinates.
             idle = 0 if ground or link.parent >= 0 else link.idle + 1
-            for i, (step, by, coordinates) in reversed(list(enumerate(zip(link.steps, steps, joint, strict=True)))):
+            for i, (step, relative, coordinates) in reversed(
+                list(enumerate(zip(link.steps, steps, joint, strict=True)))
+            ):
                 on_steps.insert(0, step.rows(*coordinates, wrench))
-                wrench = wrench if i < idle else wrench.brought(by)
+                wrench = wrench if i < idle else wrench.brought(relative)
             if on_steps:
                 if not link.loose:
                     holding = link.holding([q for q, _, _ in joint], [qd for _, qd, _ in joint])
                     on_steps = [demand + force for demand, force in zip(on_steps, holding, strict=True)]
-                along = concatenated([*on_steps, along])
-            rows.insert(0, along)
+                generalised = concatenated([*on_steps, generalised])
+            rows.insert(0, generalised)
             if link.parent < 0:
                 on_ground = on_ground + wrench if ground else on_ground
             else:
@@ -456,17 +460,17 @@ class Tree:
         new_numbers: dict[int, int] = {}  # among the fewer coordinates, by those among all
         links, states, count = [], [], 0  # number of all coordinates so far
         for link, *parts in zip(self.links, *self.parted(y, yd, ydd), strict=True):
-            steps, kept = [], []  # flags of coordinates: a ball loses its first one
+            steps, is_local = [], []  # flags of coordinates: a ball loses its first one
             for step, *rates in zip(link.steps, *parts, strict=False):
                 reduced, *state = step.minimal_form(*rates)
                 steps.append(reduced)
                 states.append(state)
-                kept += [step.size - reduced.size <= k for k in range(step.size)]
+                is_local += [step.size - reduced.size <= k for k in range(step.size)]
             states.append([coordinates[-1] for coordinates in parts])  # those of the body
-            kept += [True] * link.body.size
-            for k in np.flatnonzero(kept).tolist():
+            is_local += [True] * link.body.size
+            for k in np.flatnonzero(is_local).tolist():
                 new_numbers[count + k] = len(new_numbers)
-            count += len(kept)
+            count += len(is_local)
             links.append(replace(link, steps=tuple(steps)))
         joined = (np.concatenate(arrays) for arrays in zip(*states, strict=True))
         fixed = tuple(new_numbers[k] for k in self.fixed if k in new_numbers)

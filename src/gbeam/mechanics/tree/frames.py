@@ -39,8 +39,10 @@ class Relative:
 
 @record
 class Frame:
-    """Motion of a frame: R_WF (..., 3, 3), its origin in the world (..., 3) m, world axes; velocity, angular velocity,
-    acceleration (specific force where gravity acts) and angular acceleration (..., 3), its own axes. R, p and v are
+    """Motion of a frame.
+
+    R_WF (..., 3, 3) and the origin in the world (..., 3) m are in world axes. Velocity, angular velocity, acceleration
+    (specific force where gravity acts) and angular acceleration (..., 3) are in the frame's own axes. R, p and v are
     None where only forces are computed, and `a`, or `w` and `alpha` together, where they are zero for all states.
     """
 

@@ -249,7 +249,7 @@ class Joint(Value):
             names = values = tuple(direction for direction in DIRECTIONS if direction in self._sprung)
         assign(self, coordinates=names, values=values, rate_names=kind.rates or names)
         assign(self, holder=self._holder(), steps=self._chained(), start=self._started())
-        assign(self, start_rate=self._moving(), rates=self._prescribed())
+        assign(self, start_rate=self._start_rates(), rates=self._prescribed())
         assign(self, efforts=self._driven())
 
     @property
@@ -347,7 +347,7 @@ class Joint(Value):
         return Holder(low=low, high=high, stop=values.pop("stop_stiffness"), coupling=coupling, **values)
 
     def _coupling(self, stiffness: Floats) -> Floats | None:
-        """Stiffness (h, h) that couples pairs of values; None without any.
+        """Stiffness (h, h) that couples pairs of values, or None without any.
 
         InputError unless it names pairs of values, and is positive semidefinite together with the springs' `stiffness`.
         """
@@ -392,7 +392,7 @@ class Joint(Value):
             return values
         return concatenated([values[:-3], parameters_of_vector(values[-3:])])
 
-    def _moving(self) -> Array:
+    def _start_rates(self) -> Array:
         """Rates of the coordinates at the start."""
         values = self._numbers("initial_rate", self.initial_rate)
         if not JOINT_KINDS[self.kind].turns:

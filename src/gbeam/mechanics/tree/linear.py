@@ -55,14 +55,16 @@ def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
     loads = tuple(None if values is None else 0 * values for values in inputs.loads)
     idle = Inputs(inputs.ground, prescribed, efforts, loads, wrenches)
     # The modes are the same if the mass matrix is, at any three positions of the joints.
-    y, still = np.outer([0.2, 0.9, -1.7], of_joint), np.zeros((3, len(of_joint)))
+    y, zeros = np.outer([0.2, 0.9, -1.7], of_joint), np.zeros((3, len(of_joint)))
     three = each_leaf(lambda leaf: np.repeat(leaf, 3, axis=0), idle)
     if prescribed is not None:
         three.prescribed[:, 0] += np.array([0.0, -0.7, 1.3])[:, None]
-    mass = masses(tree, y, still, three)
+    mass = masses(tree, y, zeros, three)
     size = np.abs(mass).max()
-    same = np.isfinite(mass).all() and (np.abs(mass - mass[0].T) <= SAME * size).all() and positive_definite(mass[0])
-    return idle if same else None
+    is_constant = (
+        np.isfinite(mass).all() and (np.abs(mass - mass[0].T) <= SAME * size).all() and positive_definite(mass[0])
+    )
+    return idle if is_constant else None
 
 
 def _constant(body: Body) -> bool:
@@ -72,8 +74,8 @@ def _constant(body: Body) -> bool:
 
 def _rests(body: Body, on: int) -> bool:
     """True if the coordinates of a body do not move its point `on`, as its root."""
-    still = np.zeros(body.size)
-    return not body.size or on == len(body.relative(still, still, still))
+    zeros = np.zeros(body.size)
+    return not body.size or on == len(body.relative(zeros, zeros, zeros))
 
 
 def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
@@ -126,8 +128,8 @@ def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, A
 def _features(c: Coefficients, count: int, root: Frame, loads: Array | None) -> Array:
     """Features (t, count) of a body's terms at a motion of its root; of loads that do not act they are zero."""
     features = c.features(root.a, root.w, root.alpha, loads)
-    missing = count - features.shape[-1]
-    return namespace(features).pad(features, ((0, 0), (0, missing))) if missing else features
+    padding = count - features.shape[-1]
+    return namespace(features).pad(features, ((0, 0), (0, padding))) if padding else features
 
 
 def _blocks(parts: list[Any]) -> Array:
@@ -137,8 +139,8 @@ def _blocks(parts: list[Any]) -> Array:
     xp, size, columns = namespace(*parts), sum(part.shape[1] for part in parts), 0
     padded = []
     for part in parts:
-        before, n = columns, part.shape[1]
-        padded.append(xp.pad(part, ((0, 0), *[(before, size - before - n)] * (part.ndim - 1))))
+        start, n = columns, part.shape[1]
+        padded.append(xp.pad(part, ((0, 0), *[(start, size - start - n)] * (part.ndim - 1))))
         columns += n
     return xp.concatenate(padded)
 

@@ -106,7 +106,7 @@ def signals_of(system: Measured) -> dict[str, str]:
 
 
 def units_of(system: Measured) -> tuple[str, ...]:
-    """SI units of the coordinates; "" for Euler parameters and for those that deform a body."""
+    """SI units of the coordinates, or "" for Euler parameters and for those that deform a body."""
     signals = signals_of(system)
     return tuple(signals.get(name, "") for name in system.coordinates)
 

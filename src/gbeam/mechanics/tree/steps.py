@@ -121,7 +121,7 @@ class Rotation(Minimal):
 class Ball:
     """Any rotation by Euler parameters (e0, e1, e2, e3), of which the size does not matter.
 
-    The first of their four equations keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0; the others are those
+    The first of their four equations keeps the size at one, e·ë + ė·ė + 2 e·ė + (e·e − 1)/2 = 0. The others are those
     of moments about the turned axes. Springs and stops act on the rotation vector, of half a turn at most, dampers and
     friction on the angular velocity.
     """
@@ -345,19 +345,19 @@ def rotation_by_vector(phi: Array, rate: Array, change: Array, *, plane: bool) -
     if plane:
         return R, rate, change
     c, db, dc = spatial
-    across, twice_across = cross(phi, rate), cross(phi, cross(phi, rate))
+    cross_rate, twice_crossed = cross(phi, rate), cross(phi, cross(phi, rate))
     growth = 2 * (phi * rate).sum(axis=-1, keepdims=True)  # of s
-    w = rate - b * across + c * twice_across
-    turning = -growth * db * across + growth * dc * twice_across + c * cross(rate, across)
-    alpha = change - b * cross(phi, change) + c * cross(phi, cross(phi, change)) + turning
+    w = rate - b * cross_rate + c * twice_crossed
+    angular_rate_change = -growth * db * cross_rate + growth * dc * twice_crossed + c * cross(rate, cross_rate)
+    alpha = change - b * cross(phi, change) + c * cross(phi, cross(phi, change)) + angular_rate_change
     return R, w, alpha
 
 
 def component_moments(phi: Array, moment: Array) -> Array:
     """Tᵀ M, the moments on a rotation vector's components φ that do the work of a moment M (..., 3), turned axes."""
     _, b, c, *_ = (function[..., None] for function in functions_of_angle((phi * phi).sum(axis=-1)))
-    across = cross(phi, moment)
-    return moment + b * across + c * cross(phi, across)
+    crossed = cross(phi, moment)
+    return moment + b * crossed + c * cross(phi, crossed)
 
 
 def body_moment(phi: Array, forces: Array) -> Array:

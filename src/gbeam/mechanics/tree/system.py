@@ -237,11 +237,11 @@ class System(Value):
 
     def _parent(self, joint: str) -> str:
         """Name of the body that a joint hangs on."""
-        on = self.joints[joint].on
-        if on == GROUND:
+        parent_point = self.joints[joint].on
+        if parent_point == GROUND:
             return GROUND
-        self.point(f"joints.{joint}.on", on)
-        return on.partition(".")[0]
+        self.point(f"joints.{joint}.on", parent_point)
+        return parent_point.partition(".")[0]
 
     def points_of(self, body: str) -> tuple[str, ...]:
         """Return the names of a body's points, its root last.
@@ -358,13 +358,13 @@ class System(Value):
         for body in self.order:
             name = self.holding[body]
             joint = self.joints[name]
-            parent, on = -1, 0
+            parent, parent_point = -1, 0
             if joint.on != GROUND:
-                holding, on = self.point(f"joints.{name}.on", joint.on)
+                holding, parent_point = self.point(f"joints.{name}.on", joint.on)
                 parent = index[holding]
-                deforms = holding in self.flexible and self.points_of(holding)[on] != ROOT
+                deforms = holding in self.flexible and self.points_of(holding)[parent_point] != ROOT
                 if deforms:
-                    refuse_turnless(f"joints.{name}.on", self.flexible[holding], on)
+                    refuse_turnless(f"joints.{name}.on", self.flexible[holding], parent_point)
                 if holding in free or deforms:
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
@@ -372,18 +372,18 @@ class System(Value):
             first = self.joints[self.holding[self.order[0]]]
             hinged = parent == 0 and joint.kind == "fixed" and first.kind == "revolute"
             terms = body_of(f"bodies.{body}", self.bodies[body], free=body in free, hinged=hinged)
-            links.append(Link(joint.steps, joint.holder, terms, parent, on, joint.loose))
+            links.append(Link(joint.steps, joint.holder, terms, parent, parent_point, joint.loose))
         forces = []
         for name, force in self.forces.items():
-            body, on = self.point(f"forces.{name}.on", force.on)
-            forces.append(Force(index[body], on, force.follower))
+            body, parent_point = self.point(f"forces.{name}.on", force.on)
+            forces.append(Force(index[body], parent_point, force.follower))
         fixed = [self._first_coordinate(name) + k for name, numbers, _ in self.prescribed for k in numbers]
         return Tree(tuple(links), tuple(forces), tuple(fixed))
 
     def _first_coordinate(self, joint: str) -> int:
         """Index of a joint's first coordinate among all, or where it would be if the joint has none."""
-        before = self.order[: self.order.index(self.joints[joint].body)]
-        sizes = (len(self.joints[self.holding[body]].coordinates) + self._size(body) for body in before)
+        earlier_bodies = self.order[: self.order.index(self.joints[joint].body)]
+        sizes = (len(self.joints[self.holding[body]].coordinates) + self._size(body) for body in earlier_bodies)
         return sum(sizes)
 
     def _size(self, body: str) -> int:
@@ -417,17 +417,17 @@ class System(Value):
         """All coordinates and their rates at the start, with flexible bodies undeformed."""
         q, qd = [], []
         for body in self.order:
-            joint, still = self.joints[self.holding[body]], np.zeros(self._size(body))
-            q += [joint.start, still]
-            qd += [joint.start_rate, still]
+            joint, zeros = self.joints[self.holding[body]], np.zeros(self._size(body))
+            q += [joint.start, zeros]
+            qd += [joint.start_rate, zeros]
         xp = namespace(*q, *qd)
         return xp.concatenate(q), xp.concatenate(qd)
 
     @property
     def start_state(self) -> State:
         """Frames of the bodies on a ground at rest, with the joints at the start and bodies undeformed."""
-        q, zero, still = self.start[0], np.zeros(3), np.zeros(self.tree.size)
-        return State(self.tree, q, still, still, Frame(np.eye(3), zero, zero, zero, zero, zero))
+        q, zero, zeros = self.start[0], np.zeros(3), np.zeros(self.tree.size)
+        return State(self.tree, q, zeros, zeros, Frame(np.eye(3), zero, zero, zero, zero, zero))
 
     @property
     def undeformed(self) -> Floats:
@@ -483,8 +483,8 @@ class System(Value):
             for rate_name, profile in joint.efforts.items():
                 columns[self.row(f"{name}.{rate_name}")] = profile(t)
         if columns:
-            none = xp.zeros(shape)
-            rows = [columns.get(k, none) for k in range(self.tree.size)]
+            zeros = xp.zeros(shape)
+            rows = [columns.get(k, zeros) for k in range(self.tree.size)]
             efforts = namespace(*columns.values()).stack(rows, axis=-1)
         wrenches = [concatenated([profile(t) for profile in force.history]) for force in self.forces.values()]
         loads = tuple(
