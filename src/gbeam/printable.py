@@ -45,7 +45,7 @@ def on_one_line(text: str) -> str:
 
 
 def unprintable(text: str) -> str:
-    """Return the escape of the first character that :func:`printable` would escape; empty if there is none."""
+    """Return the escape of the first character that :func:`printable` would escape, or empty if there is none."""
     match = _UNPRINTABLE.search(text)
     return "" if match is None else _escaped(match)
 
@@ -67,21 +67,21 @@ def _escaped(match: re.Match[str]) -> str:
 
 
 def closest(word: str, choices: Iterable[str]) -> str | None:
-    """Return the choice that `word` was probably meant to be, or None; case does not count."""
+    """Return the choice that `word` was probably meant to be, or None. Case does not count."""
     from difflib import get_close_matches  # needed only where something is wrong
 
     lowered: dict[str, str] = {}
     for choice in choices:
         lowered.setdefault(choice.lower(), choice)
-    near = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
-    return lowered[near[0]] if near else None
+    matches = get_close_matches(word.lower(), lowered, n=1, cutoff=0.6)
+    return lowered[matches[0]] if matches else None
 
 
 def advise(word: str, choices: Iterable[str], *, listed: str = "choose one of") -> str:
     """Return ``did you mean 'thickness'?``, or the list of choices when none is near."""
     possible = list(choices)
-    near = closest(word, possible)
-    return f"did you mean {near!r}?" if near else f"{listed} {', '.join(possible)}"
+    match = closest(word, possible)
+    return f"did you mean {match!r}?" if match else f"{listed} {', '.join(possible)}"
 
 
 def level_words(name: str, scale: float | None) -> str:

@@ -32,9 +32,9 @@ Progress: TypeAlias = Callable[[str, float], None] | bool | None
 class Bar:
     """Progress of a computation: a bar on a terminal or in a notebook, else a plain line every few seconds.
 
-    Use it as a context, and call it with what is being done (`first` until then) and the fraction done; or, of a sweep,
-    with the numbers of cases that are done, of those that failed among them, and of all. So many seconds of `patience`
-    without a sign of life need no explanation. A bar within another is a step of that one, which shows it.
+    Use it as a context, and call it with what is being done (`first` until then) and the fraction done. A sweep calls
+    it with the numbers of cases that are done, of those that failed among them, and of all. So many seconds of
+    `patience` without a sign of life need no explanation. A bar within another is a step of that one, which shows it.
     """
 
     def __init__(self, first: str = "computing", *, patience: float = 0.0) -> None:
@@ -52,18 +52,18 @@ class Bar:
         if self._outer is not None:
             self._outer(*news)
             return
-        what, share = news if len(news) == 2 else _of_cases(*news)
+        stage, share = news if len(news) == 2 else _of_cases(*news)
         previous, done = self._now
-        if what != previous or share < done:
+        if stage != previous or share < done:
             self._since = monotonic()
-        self._now = what, share
+        self._now = stage, share
 
     def line(self) -> str:
         """Step under way, its share and the time left, as far as they are known."""
-        what, share = self._now
+        stage, share = self._now
         if not share:
-            return on_one_line(what)
-        return f"{on_one_line(what)}: {share:.0%}{_time_left(monotonic() - self._since, share)}"
+            return on_one_line(stage)
+        return f"{on_one_line(stage)}: {share:.0%}{_time_left(monotonic() - self._since, share)}"
 
     def _show(self) -> None:
         """Draw a bar after some patience, or write lines if there is no terminal, until the computation is over."""
@@ -149,7 +149,7 @@ def _in_notebook() -> bool:
 
 
 def _interval() -> float | None:
-    """Seconds between lines by the environment; None if it has no such number."""
+    """Seconds between lines by the environment, or None if it has no such number."""
     try:
         return max(float(os.environ.get(INTERVAL, "")), 0.1)
     except ValueError:
@@ -157,7 +157,7 @@ def _interval() -> float | None:
 
 
 def _time_left(passed: float, share: float) -> str:
-    """Time left in words; empty before 2 % and a second are done."""
+    """Time left in words. Empty before 2 % and a second are done."""
     if share < 0.02 or passed < 1:
         return ""
     remaining = passed * (1 - share) / share

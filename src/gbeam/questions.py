@@ -2,7 +2,7 @@
 
 Sweeps, sensitivities and optimisation take their figures from these answers, by the names in this list; so do the
 command line, the app and the schema of scenarios. To add one, decorate its function, and name it in
-:data:`gbeam.constants.Verb`, its options in :data:`Options`; nothing heavy is imported here.
+:data:`gbeam.constants.Verb`, its options in :data:`Options`. Nothing heavy is imported here.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Option:
     def read(self, value: Any, options: Mapping[str, Any]) -> Any:
         """Return the value for the function, of a quantity in SI; InputError if it is no choice or not of the kind."""
         types = (self.type, *get_args(self.type))
-        choices = next((get_args(each) for each in types if get_origin(each) is Literal), ())
+        choices = next((get_args(kind) for kind in types if get_origin(kind) is Literal), ())
         if choices and value not in choices:
             raise InputError(self.flag, f"is {value!r}", advise(str(value), choices))
         if not (self.kind and isinstance(value, str)):
@@ -168,7 +168,7 @@ def question_of(verb: str) -> Question:
 
 def differentiable() -> tuple[str, ...]:
     """Names of the questions whose figures have derivatives."""
-    return tuple(name for name, each in QUESTIONS.items() if each.differentiable)
+    return tuple(name for name, question in QUESTIONS.items() if question.differentiable)
 
 
 def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> str:
@@ -177,18 +177,18 @@ def motion_of(motions: Mapping[str, Any], name: str | None, kind: str = "") -> s
         if name not in motions:
             raise InputError("--motion", f"is {name!r}", f"the scenario has {', '.join(motions)}")
         return name
-    alike = [each for each, motion in motions.items() if motion is not None and motion.kind == kind]
-    choice = alike or list(motions)
+    fitting = [candidate for candidate, motion in motions.items() if motion is not None and motion.kind == kind]
+    choice = fitting or list(motions)
     if not choice:
-        which = f' with kind = "{kind}"' if kind else ""
-        raise InputError("motion", "is missing", f"add [motion.NAME]{which}; `gbeam new` shows how")
-    if len(choice) > 1 and (alike or not kind):
+        kind_words = f' with kind = "{kind}"' if kind else ""
+        raise InputError("motion", "is missing", f"add [motion.NAME]{kind_words}; `gbeam new` shows how")
+    if len(choice) > 1 and (fitting or not kind):
         raise InputError("--motion", "is missing", f"name one of {', '.join(choice)}")
     return choice[0]  # if it is of another kind, the question refuses it with a reason
 
 
 def prepared(case: Case, name: str) -> Any:
-    """Return a motion prepared for the response's times; None for ground at rest."""
+    """Return a motion prepared for the response's times, or None for ground at rest."""
     motion = case.environments[name]
     if motion is None or case.response is None:
         return motion

@@ -66,7 +66,9 @@ class Door:
         await self._app(scope, _limited(receive), protected)
 
     def _refusal(self, scope: Any, headers: dict[str, str]) -> tuple[int, str, list[tuple[bytes, bytes]]] | None:
-        """Status, text and headers of the answer that refuses a request, or lets a browser in; None if it may pass."""
+        """Status, text and headers of the answer that refuses a request, or lets a browser in,
+        or None if it may pass.
+        """
         if headers.get("host") not in self._hosts:
             return 403, "foreign host", []
         origins = {f"http://{host}" for host in self._hosts}

@@ -146,10 +146,10 @@ def _leaves(scenario: dict[str, Any]) -> Iterator[tuple[Place, Any]]:
     return walk(scenario, lambda node: isinstance(node, list) and not any(isinstance(x, (dict, list)) for x in node))
 
 
-def changes(before: str, after: str) -> str:
-    """Return the changes from one scenario to another in a line; empty if one of them cannot be parsed."""
+def changes(old_text: str, new_text: str) -> str:
+    """Return the changes from one scenario to another in a line, or empty if one of them cannot be parsed."""
     try:
-        values_before, values_now = _values(before), _values(after)
+        values_before, values_now = _values(old_text), _values(new_text)
     except GbeamError:
         return ""
     lines = [f"{path} = {_shorten(value)}" for path, value in values_now.items() if values_before.get(path) != value]
@@ -231,8 +231,9 @@ def _is_model(file: Path) -> bool:
 
 
 def _columns(file: Path) -> tuple[list[tuple[str, str]], set[float]]:
-    """Names and units of the columns of a record, and the sample rates, Hz, that it states; one of text is read in a
-    process of its own, too, as it is sent.
+    """Names and units of the columns of a record, and the sample rates, Hz, that it states.
+
+    A record of text is read in a process of its own, too, as it is sent.
     """
 
     def refuse(problem: str) -> InputError:
@@ -298,7 +299,7 @@ _LONGEST = 3  # words of a unit in a name, m_s_2
 
 
 def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """Return record keys that the (name, unit) of exactly one column each suggests; signs are left to the user."""
+    """Return record keys that the (name, unit) of exactly one column each suggests. Signs are left to the user."""
     candidates: dict[str, list[tuple[str, str]]] = defaultdict(list)  # (column, unit) by key
     for name, unit in columns:
         for key, stated in _meanings(name, unit):
@@ -312,7 +313,7 @@ def suggested(columns: Iterable[tuple[str, str]]) -> dict[str, str]:
 
 
 def _matching_columns(columns: Mapping[str, list[tuple[str, str]]], keys: Iterable[str], unit: str) -> dict[str, str]:
-    """Column of each key, and their common unit at the key `unit`; empty if a key has several, or units differ."""
+    """Column of each key, and their common unit at the key `unit`, or empty if a key has several, or units differ."""
     candidates = {key: columns[key] for key in keys if key in columns}
     if any(len(matches) > 1 for matches in candidates.values()):
         return {}
@@ -324,7 +325,9 @@ def _matching_columns(columns: Mapping[str, list[tuple[str, str]]], keys: Iterab
 
 
 def _meanings(name: str, unit: str) -> Iterable[tuple[str, str]]:
-    """Key of a record that a column may be, and its unit as a scenario spells it; empty if name or unit do not fit."""
+    """Key of a record that a column may be, and its unit as a scenario spells it,
+    or empty if name or unit do not fit.
+    """
     stem, _ = bracketed(name) or (name, "")
     for words, unit_text in (*_readings(stem, unit), *_readings(re.split(r"[./]", stem)[-1], unit)):
         for quantity, pattern in (("time", _TIME), ("acceleration", _LOAD), ("rate", _RATE)):

@@ -107,7 +107,7 @@ def tidy(folder: Path) -> None:
 
 
 def names(folder: Path) -> list[str]:
-    """Return the names of the regular files of a folder; empty if it does not exist."""
+    """Return the names of the regular files of a folder, or empty if it does not exist."""
     try:
         return sorted(entry.name for entry in folder.iterdir() if _NAME.fullmatch(entry.name) and _is_regular(entry))
     except (FileNotFoundError, NotADirectoryError):

@@ -35,8 +35,8 @@ def known_at(path: Path, data: Any) -> bool:
     """True if the schema has a key at a path whose value may be something else than tables."""
     schema = _schema_at(path, data)
     tables = _tables(schema)
-    others = [alternative for alternative in _alternatives(schema) if alternative not in tables]
-    return bool(schema) and not all(map(_names_tables, others))
+    plain_alternatives = [alternative for alternative in _alternatives(schema) if alternative not in tables]
+    return bool(schema) and not all(map(_names_tables, plain_alternatives))
 
 
 def value_at(path: Path, data: Any, text: str) -> Any:
@@ -167,7 +167,7 @@ def _quantities(schema: Node) -> Iterator[Node]:
 
 
 def _words(schema: Node) -> list[str]:
-    """Words of the kinds of table that a schema allows; "" for tables that only their keys tell apart."""
+    """Words of the kinds of table that a schema allows, or "" for tables that only their keys tell apart."""
     return [*dict.fromkeys(tag_of(table)[1] for table in _tables(schema))]
 
 
@@ -176,7 +176,7 @@ def _tables(schema: Node) -> list[Node]:
 
 
 def _table_of(tables: list[Node], raw: Any) -> Node | None:
-    """Schema of the table that is written, by the word of its kind and its keys; None if no kind has that word."""
+    """Schema of the table that is written, by the word of its kind and its keys, or None if no kind has that word."""
     keys = raw if isinstance(raw, dict) else {}
     fitting = []
     for table in tables:
@@ -205,7 +205,7 @@ def _alternatives(schema: Node) -> Iterator[Node]:
 
 
 def _schema_at(path: Path, data: Any) -> Node:
-    """Schema at a path, of the tables that are written in `data`; empty if they have no such key."""
+    """Schema at a path, of the tables that are written in `data`, or empty if they have no such key."""
     schema, raw = _schema(), data
     for step in path:
         tables = _tables(schema)

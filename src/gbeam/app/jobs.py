@@ -95,10 +95,10 @@ class Jobs:
     ) -> str:
         """Queue a verb on a scenario, with copies of its records; return its id.
 
-        A `case` of a sweep that has a run already gets the id of that; `changes` are from the last run of its title.
+        A `case` of a sweep that has a run already gets the id of that. `changes` are from the last run of its title.
         """
-        now = datetime.now()  # first in the id, as runs are computed in the order of their ids
-        number = f"{now:%Y%m%d-%H%M%S}-{now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
+        time_now = datetime.now()  # first in the id, as runs are computed in the order of their ids
+        number = f"{time_now:%Y%m%d-%H%M%S}-{time_now.microsecond:05x}{secrets.randbelow(0x1000):03x}"
         facts = {"title": title, "verb": verb, "case": case, "changes": changes, "arguments": list(arguments)}
         hidden = ensure_folder(self.folder / f".new-{number}")
         try:
@@ -125,7 +125,7 @@ class Jobs:
         return number
 
     def last_text(self, title: str) -> str:
-        """Return the text of the scenario of the last run of a title; empty without one."""
+        """Return the text of the scenario of the last run of a title, or empty without one."""
         numbers = (job["id"] for job in self.list() if job["title"] == title and _SCENARIO in job["files"])
         number = next(numbers, None)
         return "" if number is None else self.file(number, _SCENARIO).read_text(encoding="utf-8", errors="replace")
@@ -340,7 +340,7 @@ def _state(place: Path, default: str) -> str:
 
 
 def _files(place: Path) -> dict[str, Path]:
-    """Files of a run by the names under which they are downloaded; every verb's report is report.html."""
+    """Files of a run by the names under which they are downloaded. Every verb's report is report.html."""
     files = {}
     for name, path in DOWNLOADS:
         file = place / path

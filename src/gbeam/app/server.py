@@ -254,7 +254,7 @@ def _exception_handler(complain: Callable[[str], None]) -> Callable[[asyncio.Abs
 
 
 def serve(folder: Path, port: int, announce: Callable[[str], None]) -> None:
-    """Serve the app on 127.0.0.1 until it is interrupted; call `announce` with the address before it begins."""
+    """Serve the app on 127.0.0.1 until it is interrupted. Call `announce` with the address before it begins."""
     import uvicorn
 
     class Server(uvicorn.Server):

@@ -30,8 +30,8 @@ _REPEATED = re.compile("any number of times|given twice")
 class Option:
     """An option of a verb, as the command line has it.
 
-    `many` is how often it may be given; `of` says that it names a ``motion``, a ``record``, or before "=" one of the
-    scenario's ``values``; `ticked` is the argument of an option without a value where that is chosen.
+    `many` is how often it may be given. `of` says that it names a ``motion``, a ``record``, or before "=" one of the
+    scenario's ``values``. `ticked` is the argument of an option without a value where that is chosen.
     """
 
     name: str
@@ -69,7 +69,7 @@ def _options(arguments: ArgumentCollection) -> tuple[Option, ...]:
 
 
 def _option(name: str, argument: Argument) -> Option:
-    """Option of a verb; the words of its help give the example, and say if it may be repeated."""
+    """Option of a verb. The words of its help give the example, and say if it may be repeated."""
     words, default = str(argument.parameter.help), argument.field_info.default
     if argument.hint is bool:
         if default:  # the page offers its opposite
@@ -100,8 +100,10 @@ def verb_facts() -> dict[str, Any]:
 
 
 def arguments(verb: str, options: Sequence[str], data: Mapping[str, Any]) -> list[str]:
-    """Return a verb's arguments from texts ``NAME=VALUE``, or NAME for an option that is ticked; InputError if one is
-    wrong, or if a sweep varies the name of a file, which could lead out of the folder.
+    """Return a verb's arguments from texts ``NAME=VALUE``, or NAME for an option that is ticked.
+
+    An InputError says which is wrong. It refuses a sweep that varies the name of a file, which could lead out of the
+    folder.
     """
     offered_verb = verbs().get(verb)
     if offered_verb is None:

@@ -38,10 +38,10 @@ def _register(cls: type) -> None:
 
     def unflatten(aux: tuple[Any, ...], children: Any) -> Any:
         # Not by __init__, which may check or compute: what JAX passes here need not be arrays.
-        new: Any = object.__new__(cls)
+        instance: Any = object.__new__(cls)
         for name, value in (*zip(leaves, children, strict=True), *zip(fixed, aux, strict=True)):
-            object.__setattr__(new, name, value)
-        return new
+            object.__setattr__(instance, name, value)
+        return instance
 
     jax.tree_util.register_pytree_node(cls, flatten, unflatten)
 
@@ -56,11 +56,11 @@ def with_slope(function: Callable[[Any], Any]) -> Callable[[Any], tuple[Any, Any
         values = function(x)
         return values, values
 
-    def both(x: Any) -> tuple[Any, Any]:
+    def value_and_slope(x: Any) -> tuple[Any, Any]:
         slope, values = jax.jacfwd(twice, has_aux=True)(x)
         return values, slope
 
-    return both
+    return value_and_slope
 
 
 def linear_root(function: Callable[[Any], Any], right: Any) -> Any:

@@ -45,7 +45,7 @@ class Value:
         return one_line(self)
 
     def __eq__(self, other: object) -> bool:
-        return _alike(self, other) if type(other) is type(self) else NotImplemented
+        return _are_alike(self, other) if type(other) is type(self) else NotImplemented
 
     def __hash__(self) -> int:
         # Words alone: 1 equals 1.0 and an array of it, whose hashes differ.
@@ -69,7 +69,7 @@ def __hash__(self: Any) -> int:
     return hash((type(self), *(getattr(self, name) for name in leaves_and_statics(type(self))[1])))  # type: ignore[arg-type]
 
 
-def _alike(one: Any, other: Any) -> bool:
+def _are_alike(one: Any, other: Any) -> bool:
     """True if two values are alike.
 
     NaN is like NaN. A list, a tuple and an array of the same numbers are alike. What JAX traces is only like itself.
@@ -78,14 +78,16 @@ def _alike(one: Any, other: Any) -> bool:
         return True
     if isinstance(one, (tuple, list)) or isinstance(other, (tuple, list)):
         both_ordered = all(isinstance(value, (tuple, list)) or np.ndim(value) for value in (one, other))
-        return both_ordered and len(one) == len(other) and all(map(_alike, one, other))
+        return both_ordered and len(one) == len(other) and all(map(_are_alike, one, other))
     if isinstance(one, dict):
         if type(one) is not type(other) or one.keys() != other.keys():
             return False
-        return all(_alike(one[key], other[key]) for key in one)
+        return all(_are_alike(one[key], other[key]) for key in one)
     if dataclasses.is_dataclass(one):
         compared = [field.name for field in dataclasses.fields(one) if field.compare]
-        return type(one) is type(other) and all(_alike(getattr(one, name), getattr(other, name)) for name in compared)
+        return type(one) is type(other) and all(
+            _are_alike(getattr(one, name), getattr(other, name)) for name in compared
+        )
     if is_traced(one, other):
         return False
     if hasattr(one, "tocsr") and hasattr(other, "tocsr"):
@@ -102,7 +104,9 @@ def assign(instance: Any, **fields: Any) -> None:
 
 
 def arguments_of(value: Any) -> dict[str, Any] | None:
-    """Return the arguments by which an object is made again, or its fields or attributes; None where it is unknown."""
+    """Return the arguments by which an object is made again, or its fields or attributes,
+    or None where it is unknown.
+    """
     if hasattr(value, "arguments"):
         return dict(value.arguments)
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
@@ -134,7 +138,7 @@ def one_line(value: Any) -> str:
     words = [
         f"{name}={_shorten(argument)}"
         for name, argument in arguments.items()
-        if not _alike(argument, defaults.get(name, unequal))
+        if not _are_alike(argument, defaults.get(name, unequal))
     ]
     return f"{type(value).__name__}({', '.join(words)})"
 
@@ -160,7 +164,7 @@ def _shorten(value: Any) -> str:
 
 
 def each_leaf(function: Callable[[Any], Any], tree: Any) -> Any:
-    """Apply a function to every array of records, tuples, lists and None; JAX's `tree.map` without JAX."""
+    """Apply a function to every array of records, tuples, lists and None. JAX's `tree.map` without JAX."""
     if tree is None:
         return None
     if dataclasses.is_dataclass(tree):

@@ -175,7 +175,7 @@ def _lasting(stream: io.TextIOWrapper) -> io.TextIOWrapper:
 
 
 def error_of_stdout() -> OSError | None:
-    """Error after which nothing more was printed on standard output; None if all was."""
+    """Error after which nothing more was printed on standard output, or None if all was."""
     return getattr(getattr(getattr(sys.stdout, "buffer", None), "raw", None), "error", None)
 
 

@@ -1,4 +1,4 @@
-"""Verbs of questions, with their options; ``campbell``, ``critical-speed`` and ``linearize`` have more."""
+"""Verbs of questions, with their options. ``campbell``, ``critical-speed`` and ``linearize`` have more."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def critical_speed(
     """The rate, load or acceleration at which the equilibrium of a beam or a system is lost.
 
     Where there is none up to the end of the search, the value is null and the reason says so; that is an answer, with
-    exit status 0. 1: a solid bends too far for a stiffness of first order, and it is not known; 2: the input is wrong,
+    exit status 0. 1: a solid bends too far for a stiffness of first order, and it is not known. 2: the input is wrong,
     such as a motion without a hub. With --out writes critical_speed.json and a plot of the lowest frequencies on the
     way there, a map also as CSV; with --report also critical_speed.html.
     """
@@ -236,13 +236,13 @@ def linearize(
     name, chosen = loaded.motion(motion, kind="" if rate is None else "hub")
     time = loaded.time(at, name)
     steady = None if rate is None else number("--rate", rate, "angular rate")
-    for flag, other, both in (
+    for flag, other_flag, excluded in (
         ("--loop", "--balanced or --modes", loop != "open" and (modes is not None or balanced is not None)),
         ("--balanced", "--modes", modes is not None and balanced is not None),
         ("--rate", "--at", rate is not None and at is not None),
     ):
-        if both:
-            raise InputError(flag, f"stands beside {other}", "give one of them")
+        if excluded:
+            raise InputError(flag, f"stands beside {other_flag}", "give one of them")
 
     from gbeam.analysis.control.linearization import linearize
 

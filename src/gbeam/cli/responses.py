@@ -215,7 +215,7 @@ _ROWS = {"A": "states", "B": "states", "C": "outputs", "D": "outputs"}  # of a s
 
 
 def _unit_of_row(facts: dict[str, Any], name: str) -> str:
-    """Unit of a row of a state-space model's matrix, over those of its columns; empty of all else."""
+    """Unit of a row of a state-space model's matrix, over those of its columns, or empty of all else."""
     matrix, _, row = name.partition(".")
     try:
         return f"{facts[_ROWS[matrix]][int(row)]['unit']} of {matrix}"

@@ -87,8 +87,8 @@ def load_panels_along(loads: Loads, outline: Outline | None = None) -> tuple[Pan
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
     panels = _load_panels(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
-    held, x = support_lines(outline, scale), f"position from the root, {unit}"
-    return tuple(replace(panel, x=x, lines=(*panel.lines, *held)) for panel in panels)
+    support_marks, x = support_lines(outline, scale), f"position from the root, {unit}"
+    return tuple(replace(panel, x=x, lines=(*panel.lines, *support_marks)) for panel in panels)
 
 
 def carried_at_root(time: Floats, carried: Loads, names: Names = SECTION) -> Iterator[Panel]:

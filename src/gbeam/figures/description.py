@@ -31,7 +31,7 @@ Span = tuple[float, float, str]  # start, end s, reason
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Values over a quantity, (n,) each; broad is flight, below what imitates it: where they agree both are seen."""
+    """Values over a quantity, (n,) each. Broad is flight, below what imitates it: where they agree both are seen."""
 
     x: Floats
     y: Floats
@@ -193,9 +193,11 @@ def support_lines(outline: Outline | None, scale: float, direction: str = "") ->
     """Symbols, along a beam's axis in a unit of `scale` a metre, of its supports: of all, or of those that hold a
     direction.
     """
-    held = () if outline is None else outline.holding(direction)
-    at = scale * np.array([place for place, _ in held])
-    return (Line(at, np.zeros(len(at)), "supports", colour=REFERENCE, marks="supports"),) if len(at) else ()
+    supports = () if outline is None else outline.holding(direction)
+    positions = scale * np.array([place for place, _ in supports])
+    if not len(positions):
+        return ()
+    return (Line(positions, np.zeros(len(positions)), "supports", colour=REFERENCE, marks="supports"),)
 
 
 def support_note(outline: Outline | None, name: str = "") -> tuple[str, ...]:
@@ -203,7 +205,7 @@ def support_note(outline: Outline | None, name: str = "") -> tuple[str, ...]:
     if outline is None or outline.supports is None:
         return ()
     scale, unit = scale_of("m", outline.points)
-    words = [f"at {scale * at:.4g} {unit} {held}" for at, held in outline.holding()]
+    words = [f"at {scale * place:.4g} {unit} {directions}" for place, directions in outline.holding()]
     return (f"supports{f' of {name}' if name else ''}: {'; '.join(words)}",)
 
 
@@ -269,7 +271,7 @@ def scale_of(si: str, *values: Floats | float) -> tuple[float, str]:
 
 
 def largest_size(values: Floats) -> float:
-    """Return the largest finite size; zero where there is none."""
+    """Return the largest finite size, or zero where there is none."""
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 

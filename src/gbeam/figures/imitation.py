@@ -41,8 +41,8 @@ def parts(comparison: Comparison, axis: int, title: str = "") -> Figure:
 
 def _panel(c: Comparison, title: str, si: str, quantity: str, lines: dict[str, Floats]) -> Panel:
     """Panel of lines by name, the flight's broad, scaled to the times at which the target is the flight's load."""
-    covered = c.covered if c.covered.any() else ~c.covered
-    scale, unit = scale_of(si, *(history[covered] for history in lines.values()))
+    is_shown = c.covered if c.covered.any() else ~c.covered
+    scale, unit = scale_of(si, *(history[is_shown] for history in lines.values()))
     other_names = [name for name in lines if name != c.flight]
     looks = {name: imitation_look(min(k, 1)) for k, name in enumerate(other_names)} | {c.flight: FLIGHT}
     values = {name: scale * history for name, history in lines.items()}

@@ -71,19 +71,19 @@ def _rows(parts: Mapping[str, tuple[float, float]], width: float) -> dict[str, t
     return rows
 
 
-def _panels(channels: Channels, what: str, span: tuple[float, float]) -> list[Panel]:
+def _panels(channels: Channels, state: str, span: tuple[float, float]) -> list[Panel]:
     """Panels of the channels within a span, one for each unit, with samples in the order of their times."""
     order = np.argsort(channels.time, kind="stable")
     time = channels.time[order]
     order = order[(time >= span[0]) & (time <= span[1])]
     panels = []
     for unit, group in groupby(range(len(channels.names)), key=lambda k: channels.units[k]):
-        size, unit_name = _SHOWN.get(unit, (1.0, unit)) if what == "flown" else (1.0, unit)
+        size, unit_name = _SHOWN.get(unit, (1.0, unit)) if state == "flown" else (1.0, unit)
         lines = tuple(
             Line(channels.time[order], size * channels.values[order, k], channels.names[k], colour=i % 3)
             for i, k in enumerate(group)
         )
-        panels.append(Panel(f"{what}, {raised(unit_name)}", lines))
+        panels.append(Panel(f"{state}, {raised(unit_name)}", lines))
     return panels
 
 

@@ -208,9 +208,9 @@ def _figure_name(kind: str, body: str, names: Collection[str]) -> str:
 
 def _of_comparison(result: Comparison, title: str, main: str, side: str, end: str = "") -> dict[str, Describe]:
     """Figures of a comparison, `main` along the axis in which the tip moves most, `side` along others; and shock."""
-    first, *others = imitation.moved_axes(result)
+    first, *further_axes = imitation.moved_axes(result)
     described: dict[str, Describe] = {f"{main}{end}": partial(imitation.parts, result, first, title)}
-    described |= {f"{side}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in others}
+    described |= {f"{side}{'xyz'[i]}{end}": partial(imitation.parts, result, i, title) for i in further_axes}
     if result.shock is not None:
         described[f"shock{end}"] = partial(imitation.shock, result, result.shock, title)
     return described

@@ -52,9 +52,9 @@ DASHES: tuple[Dash, ...] = ("solid", "dashed", "dotted")
 def looks(study: Study) -> dict[str, dict[str, Any]]:
     """Styles of the lines of every environment: broad of a flight that another imitates."""
     flights = {comparison.flight for comparison in study.comparisons}
-    others = [name for name in study.responses if name not in flights]
-    coloured: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(others)}
-    compared = {name: imitation_look(k) for k, name in enumerate(others)} if flights else coloured
+    other_names = [name for name in study.responses if name not in flights]
+    coloured: dict[str, dict[str, Any]] = {name: {"colour": k % 6} for k, name in enumerate(other_names)}
+    compared = {name: imitation_look(k) for k, name in enumerate(other_names)} if flights else coloured
     return {name: compared.get(name, FLIGHT) for name in study.responses}
 
 
@@ -134,13 +134,13 @@ def _displacement(study: Study, motions: Mapping[str, BodyResponse], axis: int, 
 
 def _difference(study: Study, compared: Comparison, axis: int, spans: tuple[Span, ...]) -> Panel:
     """Panel of the difference from the flight along an axis, scaled to the times at which the target is its load."""
-    difference, covered = compared.difference[:, axis], compared.covered
-    counted = difference[covered] if covered.any() else difference
+    difference, is_counted = compared.difference[:, axis], compared.covered
+    counted = difference[is_counted] if is_counted.any() else difference
     scale, unit = scale_of("m", counted)
     # A difference from flight while the target is another load must not set the scale.
-    limits = ends_of(covered, scale * difference)
-    beyond = limits is not None and largest_size(difference) > 1.05 * largest_size(counted)
-    title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if beyond else "")
+    limits = ends_of(is_counted, scale * difference)
+    exceeds = limits is not None and largest_size(difference) > 1.05 * largest_size(counted)
+    title = f"{compared.centrifuge} − {compared.flight}" + (", scaled to the times compared" if exceeds else "")
     line = Line(compared.time, scale * difference, title, **looks(study).get(compared.centrifuge, imitation_look(0)))
     label = f"difference in {'xyz'[axis]}, {unit}"
     return Panel(label, (line,), title, spans=spans, limits=limits, zero=limits is None, named=False, height=0.9)
@@ -175,9 +175,9 @@ def sizes(study: Study, body: str) -> Figure:
         if lines:
             panels.append(Panel(f"{words}, {unit}", lines, zero=True, named=not panels))
     stress = " and largest stress anywhere" if len(panels) == len(kinds) else ""
-    held = " and the supports" if any(words.startswith("support") for words, *_ in kinds) else ""
+    support_words = " and the supports" if any(words.startswith("support") for words, *_ in kinds) else ""
     of_body = f" of {body}" if len(bodies(study)) > 1 else ""
-    return Figure(study.title, f"sizes of the loads at the root{held}{of_body}{stress}", tuple(panels))
+    return Figure(study.title, f"sizes of the loads at the root{support_words}{of_body}{stress}", tuple(panels))
 
 
 def _on_supports(loads: Sequence[Any]) -> list[Size]:
@@ -186,10 +186,10 @@ def _on_supports(loads: Sequence[Any]) -> list[Size]:
         return []
     scale, unit = scale_of("m", loads[0].stations)
     sizes = list[Size]()
-    for k, at in enumerate(loads[0].supports):
+    for k, place in enumerate(loads[0].supports):
         for kind, si in (("force", "N"), ("moment", "N m")):
             if any(getattr(carried, f"support_{kind}")[:, k].any() for carried in loads):
-                sizes.append((f"support {kind} at {scale * at:.4g} {unit}", si, partial(_on_support, k, kind)))
+                sizes.append((f"support {kind} at {scale * place:.4g} {unit}", si, partial(_on_support, k, kind)))
     return sizes
 
 
@@ -225,7 +225,7 @@ def _moving_points(moved: np.ndarray) -> list[int]:
     size = np.abs(moved).max(initial=0.0)
     chosen: list[int] = []
     for k in range(moved.shape[1]):
-        distances = [np.abs(moved[:, k] - moved[:, other]).max(initial=0.0) for other in chosen]
+        distances = [np.abs(moved[:, k] - moved[:, chosen_point]).max(initial=0.0) for chosen_point in chosen]
         if np.abs(moved[:, k]).max(initial=0.0) > ROUNDING * size and min(distances, default=np.inf) > ROUNDING * size:
             chosen.append(k)
     return chosen
@@ -267,12 +267,12 @@ def base(response: Response, motion: Base, title: str = "") -> Figure:
     """Describe the motion of the base."""
     panels = []
     spans = stretches(response.axes, response.time)
-    turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
-    for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if turning else ("a_WO_B",):
+    is_turning = bool(np.any(motion.w_WB_B) or np.any(motion.alpha_WB_B))
+    for name in ("a_WO_B", "w_WB_B", "alpha_WB_B") if is_turning else ("a_WO_B",):
         values = getattr(motion, name)
         words, si = words_and_unit(Base, name)
         scale, unit = scale_of(si, values) if name == "a_WO_B" else (1.0, raised(si))
-        panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if turning else 1.6)
+        panel = Panel(f"{words}, {unit}", spans=spans, height=1.0 if is_turning else 1.6)
         panels.append(components(response.time, scale * values, "xyz", panel))
     subject = of_motion(response.name, "motion of the base, base axes")
     return Figure(title, subject, tuple(panels), outcomes=(response.outcome,))

@@ -190,8 +190,8 @@ def campbell(diagram: Campbell, title: str = "", unit: tuple[float, str] = (1.0,
         f"{words}, {unit_name}", tuple(lines), x=x_label, marks=marks, texts=tuple(texts), limits=(0.0, top),
         height=2.4, spans=spans,
     )  # fmt: skip
-    turning = ", in the turning frame" if diagram.frame == "turning" else ""
-    subject = of_motion(diagram.motion, f"frequencies about the equilibrium{turning}, {diagram.model}")
+    frame_words = ", in the turning frame" if diagram.frame == "turning" else ""
+    subject = of_motion(diagram.motion, f"frequencies about the equilibrium{frame_words}, {diagram.model}")
     subject += f"; {omitted} higher mode{'s' if omitted > 1 else ''} not drawn" if omitted else ""
     errors = {"": math.nan if diagram.errors is None else diagram.errors.largest}
     return Figure(title, subject, (panel,), error_note(errors))
@@ -266,9 +266,9 @@ def critical_map(critical: CriticalMap, title: str = "") -> Figure:
     )
     panel = Panel("hub rate, rad/s", lines, x=f"position of the mass from the root, {x_unit}", zero=True, height=2.0)
     if np.isnan(critical.speed).all():
-        none = f"no loss of equilibrium up to {critical.searched_to:.4g} rad/s"
+        remark = f"no loss of equilibrium up to {critical.searched_to:.4g} rad/s"
         middle = x_scale * float(np.mean(critical.position)), critical.searched_to / 2
-        panel = replace(panel, texts=((*middle, none),), limits=(0.0, critical.searched_to))
+        panel = replace(panel, texts=((*middle, remark),), limits=(0.0, critical.searched_to))
     subject = of_motion(critical.motion, f"critical hub rate with one more mass, {critical.model}")
     return Figure(title, subject, (panel,))
 

@@ -46,7 +46,7 @@ def refuse_units(where: str, value: Any) -> None:
 
 
 def _in_si(value: Any) -> str:
-    """Expression, for a message, by which a quantity of pint becomes a number in SI; empty for another library's."""
+    """Expression, for a message, by which a quantity of pint becomes a number in SI, or empty for another library's."""
     try:
         unit = f"{value.to_base_units().units:~}" or "dimensionless"
     except (AttributeError, ValueError):
@@ -76,9 +76,9 @@ _MAKERS = {
 def typed(function: F) -> F:
     """Decorate a function or class, so that it refuses arguments that do not fit its annotations.
 
-    The error is an InputError with the argument's name; missing and unknown arguments stay Python's TypeError. Texts
+    The error is an InputError with the argument's name. Missing and unknown arguments stay Python's TypeError. Texts
     with a unit and pint's quantities become SI where the argument has a kind of quantity
-    (:func:`gbeam.guards.parameters.kind_of_argument`); elsewhere numbers with a unit are refused. Other texts for
+    (:func:`gbeam.guards.parameters.kind_of_argument`). Elsewhere numbers with a unit are refused. Other texts for
     numbers, and fractions for whole numbers, are refused only if the call fails: its own checks of values say more
     about them. ``progress=True`` becomes a Bar.
 
@@ -193,7 +193,7 @@ def _tests(function: Callable[..., Any], texts: bool, method: bool) -> dict[str,
 
 @functools.cache
 def _hints(function: Callable[..., Any], method: bool) -> dict[str, Any]:
-    """Types of the arguments by name; names imported for type checkers only are Any, and so are numbers of a function.
+    """Types of the arguments by name. Names imported for type checkers only are Any, and so are numbers of a function.
 
     Numbers of a method are those of NumPy's arrays.
     """
@@ -251,7 +251,7 @@ def _single(kind: Any, texts: bool) -> Test:
 
 
 def _kind(value: Any) -> str:
-    """NumPy's letter for the kind of an array's elements; empty for no array."""
+    """NumPy's letter for the kind of an array's elements, or empty for no array."""
     return str(getattr(getattr(value, "dtype", None), "kind", ""))
 
 

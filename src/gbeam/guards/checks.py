@@ -138,7 +138,7 @@ RANGES = {
 
 
 def implausible(where: str, kind: str, value: Any) -> tuple[str, ...]:
-    """Return a tuple with a warning of a value outside the plausible range; empty if it is plausible."""
+    """Return a tuple with a warning of a value outside the plausible range, or empty if it is plausible."""
     limits = RANGES[kind]
     if is_jax(value) or limits.low <= abs(value) <= limits.high:
         return ()
@@ -159,7 +159,7 @@ def possible(where: str, kind: str, value: Any) -> None:
 
 
 def _slip(limits: Range, value: float) -> str:
-    """Value as text in the first other unit in which it would be plausible; empty if there is none."""
+    """Value as text in the first other unit in which it would be plausible, or empty if there is none."""
     for unit, size in limits.slips:
         if unit != limits.unit and limits.low < abs(value) * size <= limits.high:
             return f"{value:g} {unit}"

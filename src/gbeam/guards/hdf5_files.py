@@ -17,14 +17,14 @@ def open_hdf5(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
     import h5py  # 0.2 s to import
 
     def refuse_elsewhere(name: str, node: Any) -> None:
-        others = list[tuple[str, str]]()
+        references = list[tuple[str, str]]()
         if isinstance(node, h5py.Group):
             links = [(f"{name}/{key}".lstrip("/"), node.get(key, getlink=True)) for key in node]
-            others = [(key, link.filename) for key, link in links if isinstance(link, h5py.ExternalLink)]
+            references = [(key, link.filename) for key, link in links if isinstance(link, h5py.ExternalLink)]
         elif isinstance(node, h5py.Dataset):
-            others = [(name, part[0]) for part in node.external or ()]
-            others += [(name, part.file_name) for part in (node.virtual_sources() if node.is_virtual else ())]
-        for key, file_name in others:
+            references = [(name, part[0]) for part in node.external or ()]
+            references += [(name, part.file_name) for part in (node.virtual_sources() if node.is_virtual else ())]
+        for key, file_name in references:
             if file_name != ".":  # this one
                 raise ValueError(f"{key} lies in another file, {file_name}: copy it into this one")
 

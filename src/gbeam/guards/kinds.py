@@ -108,7 +108,7 @@ def element_kinds(kinds: Kinds, key: Any) -> Kinds:
 
 
 def common_kind(kinds: Kinds) -> str:
-    """Return the kind that all elements have; empty if they differ."""
+    """Return the kind that all elements have, or empty if they differ."""
     if isinstance(kinds, str):
         return kinds
     elements = kinds.values() if isinstance(kinds, Mapping) else kinds

@@ -59,7 +59,7 @@ MESHER_BYTES, MESHER_SECONDS = 2**33, 600  # of Gmsh, which meshes what it reads
 
 
 def refuse_more(where: str, what: str, count: float, most: int, size: float, fix: str) -> None:
-    """Raise InputError if `count` is above `most`; its message has the memory, at `size` bytes, that it would take."""
+    """Raise InputError if `count` is above `most`. Its message has the memory, at `size` bytes, that it would take."""
     if not count <= most:
         raise InputError(where, f"makes {count:.4g} {what}, which would take {in_bytes(count * size)}", fix)
 

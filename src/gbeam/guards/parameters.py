@@ -77,7 +77,7 @@ def _is_annotated(hint: Any) -> bool:
 
 
 def kind_of_argument(declaring: Callable[..., Any], name: str, arguments: Mapping[str, Any]) -> Kinds:
-    """Return the kinds of quantity of an argument of a class or function; empty if it has none.
+    """Return the kinds of quantity of an argument of a class or function, or empty if it has none.
 
     They are those of its annotation, or of :func:`gbeam.guards.kinds.kinds`, which may follow from the other
     `arguments`.
@@ -100,12 +100,12 @@ def _annotated_kinds(declaring: Callable[..., Any]) -> dict[str, str]:
 
 
 def kinds_of_entries(typed_dict: type) -> dict[str, str]:
-    """Return the kinds of the entries of a TypedDict by name; empty where there is none."""
+    """Return the kinds of the entries of a TypedDict by name, or empty where there is none."""
     return {name: _kind(hint) for name, hint in get_type_hints(typed_dict, include_extras=True).items()}
 
 
 def _kind(hint: Any) -> str:
-    """Kind of quantity that a type says; empty if it says none."""
+    """Kind of quantity that a type says, or empty if it says none."""
     return next((mark.kind for mark in _annotations(hint) if isinstance(mark, (Quantity, OfKind))), "")
 
 

@@ -136,7 +136,7 @@ def _read_cached(
     limits: tuple[tuple[str, int], ...],
     tight: bool,
 ) -> Any:
-    """Return the answer of a reader, or the error that the file cannot be read by; `content` tells files apart."""
+    """Return the answer of a reader, or the error that the file cannot be read by. `content` tells files apart."""
 
     def refuse(problem: str) -> InputError:
         return InputError(_ELSEWHERE, problem, "")
@@ -148,7 +148,7 @@ def _read_cached(
 
 
 def file_digest(path: str | os.PathLike[str]) -> str | None:
-    """Return the SHA-256 of a file in hexadecimal digits; None if it is no file, is too large, or cannot be read."""
+    """Return the SHA-256 of a file in hexadecimal digits, or None if it is no file, is too large, or cannot be read."""
     try:
         if not os.path.isfile(path) or os.path.getsize(path) > BINARY_BYTES:
             return None

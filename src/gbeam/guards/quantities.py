@@ -83,7 +83,7 @@ class Quantity:
 
     @property
     def unit(self) -> str:
-        """SI unit as it is printed, such as kg/m³; empty of a plain number."""
+        """SI unit as it is printed, such as kg/m³, or empty of a plain number."""
         unit = KINDS[self.kind].unit
         return unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
 

@@ -1,7 +1,7 @@
 """Quantities as text: "300 mm", "15 g/s", "60 rpm". One small registry, in which angle is a dimension.
 
 pint's default registry takes 1 Hz for 1 rad/s and `g` for a gram everywhere, and lets an angle pass for
-a number; the parser is pint's, the registry is gbeam's.
+a number. The parser is pint's, the registry is gbeam's.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def quantity(value: object, kind: str) -> float:
 def in_si(where: str, value: Any, kinds: Kinds) -> Any:
     """Return a value, list or mapping in which texts that begin with a number, and pint's quantities, are in SI.
 
-    Raises InputError if one is of another kind; all else stays as it is.
+    Raises InputError if one is of another kind. All else stays as it is.
     """
     if isinstance(value, dict):
         return {key: in_si(f"{where}.{key}", element, element_kinds(kinds, key)) for key, element in value.items()}
@@ -242,7 +242,7 @@ def parsed_factor(unit: str, kind: str) -> float:
 
 
 def _meant(name: str, unit: str, kind: str) -> str | None:
-    """Usual spelling that an unknown unit `name` in `unit` was probably meant to be; None if none gives the kind."""
+    """Usual spelling that an unknown unit `name` in `unit` was probably meant to be, or None if none gives the kind."""
     registry = _registry()
 
     def makes_the_kind(spelling: str) -> bool:
@@ -269,7 +269,9 @@ def _converted(amount: Any, kind: str, expected: Kind) -> float:
     if kind == "frequency" and amount.dimensionality == registry.parse_units("rad/s").dimensionality:
         return float(amount.to("hertz").magnitude)
     if amount.dimensionality != registry.parse_units(expected.unit).dimensionality:
-        raise UnitError(_what(amount.dimensionality), f'expected {expected.phrase}, such as "{expected.example}"')
+        raise UnitError(
+            _dimension_words(amount.dimensionality), f'expected {expected.phrase}, such as "{expected.example}"'
+        )
     return float(amount.to(expected.unit or "dimensionless").magnitude)
 
 
@@ -280,7 +282,7 @@ def _registry() -> UnitRegistry[Any]:
     return UnitRegistry(_DEFINITIONS.strip().splitlines())
 
 
-def _what(dimensionality: Any) -> str:
+def _dimension_words(dimensionality: Any) -> str:
     """Return words for a dimension, such as ``is a mass``, for a message."""
     registry = _registry()
     for kind in KINDS.values():

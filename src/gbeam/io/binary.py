@@ -31,7 +31,7 @@ def read_hdf5(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """Read an HDF5 or netCDF file.
 
     A vector is a column by its path, ``group/az``, or the path's last word, as is a field of a compound, ``imu/az``; a
-    matrix is one column per vector, ``acc[:,0]``. The attribute `units` is the unit; `scale_factor`, `add_offset` and
+    matrix is one column per vector, ``acc[:,0]``. The attribute `units` is the unit. `scale_factor`, `add_offset` and
     `_FillValue` are applied.
     """
     with _naming_problem(path, "cannot be read", "give an HDF5 or netCDF file"):
@@ -52,7 +52,7 @@ def _naming_problem(path: str | os.PathLike[str], problem: str, fix: str) -> Ite
 
 
 def hdf5_table(path: str | os.PathLike[str], *, matlab: bool = False) -> Table:
-    """Columns of an HDF5 file, and the sample rates that it states; MATLAB's hold every matrix transposed."""
+    """Columns of an HDF5 file, and the sample rates that it states. MATLAB's hold every matrix transposed."""
     import h5py  # 0.2 s to import
 
     columns, stated = list[Column](), list[Stated]()
@@ -222,9 +222,9 @@ def _any_version(path: str | os.PathLike[str], words: Sequence[str]) -> Table:
     read_structures = {name: _loaded(path, name) for name in named_structures}
     columns += [column for name, value in read_structures.items() for column in _columns(name, value)]
     if not words or unfound - {column.name for column in columns}:  # a part's last word, or a mistake
-        others = {name: _loaded(path, name) for name in structures if name not in named_structures}
-        columns += [column for name, value in others.items() for column in _columns(name, value)]
-        read_structures |= others
+        unnamed = {name: _loaded(path, name) for name in structures if name not in named_structures}
+        columns += [column for name, value in unnamed.items() for column in _columns(name, value)]
+        read_structures |= unnamed
     return Table(tuple(columns), stated=tuple(_numbers_stated(numbers | read_structures)))
 
 
@@ -274,7 +274,7 @@ _A_LINE = 6  # values at most
 def read_uff(path: str | os.PathLike[str], words: Sequence[str] = ()) -> Table:
     """Read the time responses (data set 58, text or binary) of a universal file.
 
-    A column goes by the first line of the data set's identification, and by its node and direction, ``12+Z``; the
+    A column goes by the first line of the data set's identification, and by its node and direction, ``12+Z``. The
     abscissa is the column ``time``.
     """
     import pyuff  # 0.2 s to import
@@ -335,7 +335,7 @@ READERS: dict[str, Callable[[str, Sequence[str]], Table]] = {
 
 
 def is_binary(path: str | os.PathLike[str]) -> bool:
-    """True if a library reads the file, by the end of its name; everything else is text."""
+    """True if a library reads the file, by the end of its name. Everything else is text."""
     return Path(path).suffix.lower() in READERS
 
 

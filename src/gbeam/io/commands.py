@@ -131,8 +131,8 @@ def _state(commands: Commands, sample: int) -> str:
     """State of the axes at the first sample (0) or the last (-1): a controller brings them there, or takes over."""
     rate, acceleration = commands.rate[sample], commands.acceleration[sample]
     angles = ", ".join(f"axis {i + 1} at {commands.angle[sample, i]:.9g} rad" for i in (1, 2))
-    moving = np.abs(np.concatenate([rate, acceleration])).max() > _STILL
-    if not moving:
+    is_moving = np.abs(np.concatenate([rate, acceleration])).max() > _STILL
+    if not is_moving:
         return f"{commands.time[sample]:.6g} s: STANDSTILL; {angles}"
     rates = ", ".join(
         f"axis {i + 1} at {w:.9g} rad/s and {a:.9g} rad/s^2"

@@ -1,4 +1,4 @@
-"""Groups written to a netCDF-4 file, its provenance, and what it holds; xarray takes longer to import than a run."""
+"""Groups written to a netCDF-4 file, its provenance, and what it holds. Xarray takes longer to import than a run."""
 
 from __future__ import annotations
 

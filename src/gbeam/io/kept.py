@@ -54,7 +54,7 @@ def write_whole(path: str | os.PathLike[str], *data: bytes | memoryview, private
 
 
 def kept(what: str, kind: type[T], source: Callable[[], Any], make: Callable[[], T]) -> T:
-    """Return ``make()``, of a `kind`, or its earlier value for an equal source; `what` is shown if it takes long.
+    """Return ``make()``, of a `kind`, or its earlier value for an equal source. `what` is shown if it takes long.
 
     `source` returns all that the value is made from. If that changes meanwhile, such as a file, nothing is kept.
     """
@@ -107,7 +107,7 @@ def _status(path: Path) -> os.stat_result | None:
 
 
 def _private(status: os.stat_result) -> bool:
-    """True if a file or a folder is this user's, and no other user's to write; Windows does not say."""
+    """True if a file or a folder is this user's, and no other user's to write. Windows does not say."""
     return sys.platform == "win32" or (status.st_uid == os.geteuid() and not status.st_mode & 0o022)
 
 
@@ -142,9 +142,9 @@ def _write(file: Path, key: str, value: Any) -> None:
     write_packed(data, [key, value])
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     write_whole(file, hashlib.sha256(data.getbuffer()).digest(), data.getbuffer(), private=True)
-    others = [(old_file.stat(), old_file) for old_file in file.parent.glob(f"*{_ENDING}") if old_file != file]
+    other_files = [(old_file.stat(), old_file) for old_file in file.parent.glob(f"*{_ENDING}") if old_file != file]
     room = MOST - file.stat().st_size
-    for status, old_file in sorted(others, key=lambda pair: -pair[0].st_mtime):
+    for status, old_file in sorted(other_files, key=lambda pair: -pair[0].st_mtime):
         room -= status.st_size
         if room < 0:
             old_file.unlink(missing_ok=True)

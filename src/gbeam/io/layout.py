@@ -32,7 +32,7 @@ class Group:
 
 
 def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, **attrs: Any) -> Variable:
-    """Return a variable; one along the dimension ``axis`` holds components in base axes, and says so."""
+    """Return a variable. One along the dimension ``axis`` holds components in base axes, and says so."""
     frame = {"frame": BASE_AXES} if "axis" in dims else {}
     return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | frame | attrs)
 
@@ -43,7 +43,7 @@ def words(dims: tuple[str, ...], values: Any, long_name: str) -> Variable:
 
 
 def flags(dims: tuple[str, ...], values: Any, long_name: str, no: str, yes: str) -> Variable:
-    """Return a variable of truth values; netCDF has none, so they are numbers with meanings."""
+    """Return a variable of truth values. NetCDF has none, so they are numbers with meanings."""
     meanings = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": f"{no} {yes}"}
     return variable(dims, np.asarray(values).astype(np.int8), "1", long_name, **meanings)
 

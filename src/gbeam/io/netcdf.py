@@ -1,6 +1,6 @@
 """Results as netCDF files, which xarray, MATLAB and h5py open, read back, and as xarray's own objects.
 
-A study is one file: the root says what was computed, from what, and the verdict; ``motions/NAME`` holds the response
+A study is one file: the root says what was computed, from what, and the verdict. ``motions/NAME`` holds the response
 in one environment and ``comparisons/NAME`` what a centrifuge's response is compared with. Any other result is a file
 without groups. Variables are SI and carry ``units``, ``long_name`` and, for vectors, the ``frame`` of their components.
 ``xarray.open_datatree`` opens all of it, ``xarray.open_dataset`` one group.
@@ -287,7 +287,7 @@ _OF_MACHINES = {
 
 
 def csv_of(stored: Stored) -> str:
-    """Return one line for each time of each motion, SI, base axes; what a motion does not have is empty.
+    """Return one line for each time of each motion, SI, base axes. What a motion does not have is empty.
 
     Columns of a body begin with its name where there are several. Of the sections' forces, moments and stress a body
     has those of the root, in the axes of its section: those of the beam on its base, and so of another sign than

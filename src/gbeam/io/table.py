@@ -42,9 +42,11 @@ class Clock:
     first: str  # that time, as the file has it
 
     def seconds(self, text: str) -> float | None:
-        """Return the seconds from the first time to a text, within a day if a date is missing; None if it is none."""
-        first, now = _reading(self.first), _reading(text)
-        return None if first is None or now is None else _nanoseconds(first, now) / _SECOND
+        """Return the seconds from the first time to a text, within a day if a date is missing,
+        or None if it is none.
+        """
+        first, reading = _reading(self.first), _reading(text)
+        return None if first is None or reading is None else _nanoseconds(first, reading) / _SECOND
 
 
 def is_clock(text: str) -> bool:
@@ -53,7 +55,10 @@ def is_clock(text: str) -> bool:
 
 
 def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None:
-    """Clock of a column, and its times, s, from the first; NaN where a cell has none. None if the first has none."""
+    """Clock of a column, and its times, s, from the first, or None if the first cell has none.
+
+    A time is NaN where a cell has none.
+    """
     first = _reading(cells[0]) if len(cells) else None
     if first is None:
         return None
@@ -65,14 +70,14 @@ def read_clock(cells: Sequence[str]) -> tuple[Clock, NDArray[np.float64]] | None
     return Clock(cells[0]), seconds
 
 
-def _nanoseconds(first: _Reading, now: _Reading) -> int:
+def _nanoseconds(first: _Reading, reading: _Reading) -> int:
     """Nanoseconds from one reading to another, within a day where the day of either is not known."""
-    passed = now[1] - first[1]
-    return passed % _DAY if first[0] is None or now[0] is None else (now[0] - first[0]) * _DAY + passed
+    passed = reading[1] - first[1]
+    return passed % _DAY if first[0] is None or reading[0] is None else (reading[0] - first[0]) * _DAY + passed
 
 
 def _reading(text: str) -> _Reading | None:
-    """Day, if known, and time from its midnight, ns, in UTC if the text has a zone; None if it is no time of day."""
+    """Day, if known, and time from its midnight, ns, in UTC if the text has a zone, or None if it is no time of day."""
     match = _CLOCK.fullmatch(text)
     if match is None:
         return _logged(text)
@@ -88,7 +93,7 @@ def _reading(text: str) -> _Reading | None:
 
 
 def _logged(text: str) -> _Reading | None:
-    """Day, if known, and time from its midnight, ns, of texts as loggers write them; None if a text is no such time.
+    """Day, if known, and time from its midnight, ns, of texts as loggers write them, or None if a text is no such time.
 
     Of 3/4/2024 nobody knows which is the month: it counts as the time of day alone.
     """
@@ -203,8 +208,8 @@ class Table:
     def cells(self, axis: str, name: str) -> NDArray[np.str_]:
         """Return a column as words (t,), numbers in their shortest form, so that 3, "3" and "3.0" are alike."""
         samples = self._samples(axis, name)
-        values, alike = np.unique(np.asarray(samples), return_inverse=True)
-        return np.array([as_word(str(value)) for value in values], dtype=np.str_)[alike.reshape(-1)]
+        values, cell_of_sample = np.unique(np.asarray(samples), return_inverse=True)
+        return np.array([as_word(str(value)) for value in values], dtype=np.str_)[cell_of_sample.reshape(-1)]
 
     def times(self, name: str) -> tuple[Floats, Clock | None, str]:
         """Return the column of times (t,), all finite, the clock of times of day, and the first as the file has it.
@@ -260,7 +265,7 @@ class Table:
     def vector(self, names: dict[str, str], count: int, part: slice = slice(None)) -> Floats:
         """Stack components by axis, columns with their signs, (count, 3), whose `part` must be finite.
 
-        A leading ``-`` changes the sign, unless the column's own name begins with one; ``0`` is a component of zeros.
+        A leading ``-`` changes the sign, unless the column's own name begins with one. ``0`` is a component of zeros.
         """
         parts = []
         for axis, name in names.items():
@@ -330,7 +335,7 @@ _FORTRAN = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?|\.\d++))(?:[dD]([+-]?\d++)|([+-
 
 
 def _number(cell: str) -> float:
-    """Number in a cell; NaN if there is none."""
+    """Number in a cell, or NaN if there is none."""
     match = _FORTRAN.fullmatch(cell)
     try:
         return float(f"{match[1]}e{match[2] or match[3]}" if match else cell)

@@ -95,10 +95,10 @@ def direction(where: str, value: Any) -> Floats:
         if value not in get_args(Along):
             raise InputError(where, f"is {value!r}", f"give one of {', '.join(get_args(Along))}, or a vector")
         return float(f"{value[0]}1") * np.eye(3)["xyz".index(value[1])]
-    along = np.asarray(vector(where, value), dtype=float)
-    if not np.any(along):
+    components = np.asarray(vector(where, value), dtype=float)
+    if not np.any(components):
         raise InputError(where, "is zero", "give a direction, such as [0, 0, 1]")
-    return np.asarray(along / np.linalg.norm(along))
+    return np.asarray(components / np.linalg.norm(components))
 
 
 def has_part_across(load: Floats, up: Floats) -> bool:
@@ -121,7 +121,7 @@ def mounted(load: Any, up: Any) -> tuple[float, float, float]:
 
 
 def extent_of(motion: Any) -> tuple[float, float] | None:
-    """First and last time of a plain arm's motion, s; None of other motions, and of hubs without a control point."""
+    """First and last time of a plain arm's motion, s, or None of other motions, and of hubs without a control point."""
     if motion is None or motion.kind != "hub" or motion.name != "arm":
         return None
     extent: tuple[float, float] | None = motion.rate.extent

@@ -105,7 +105,7 @@ class Flight:
 
     @property
     def level_factor(self) -> float | None:
-        """Level factor, as results state it; None of a flight at its own level, or where JAX traces it."""
+        """Level factor, as results state it, or None of a flight at its own level, or where JAX traces it."""
         return None if holds_jax(self.scale) or self.scale == 1 else float(self.scale)
 
     @property
@@ -115,7 +115,7 @@ class Flight:
 
     @property
     def record(self) -> RecordSummary | None:
-        """The record that is flown; None of a flight that is prescribed."""
+        """The record that is flown, or None of a flight that is prescribed."""
         record, level = self.unscaled.record, self.level_factor
         return record if record is None or level is None else record.scaled(level)
 

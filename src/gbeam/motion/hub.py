@@ -80,8 +80,8 @@ class Mount:
         `angle`, rad, `rate` and `acceleration` are the hub's.
         """
         xp = namespace(angle, rate, acceleration, self.place, self.gravity)
-        along, across = self.place[0], self.place[1]
-        x, y = -along * rate**2 - across * acceleration, along * acceleration - across * rate**2
+        radial, lateral = self.place[0], self.place[1]
+        x, y = -radial * rate**2 - lateral * acceleration, radial * acceleration - lateral * rate**2
         z = xp.zeros_like(rate)
         if self.gravity is None:
             return x, y, z
@@ -192,11 +192,11 @@ class Hub:
         for name, value in (("stiffness", stiffness), ("damping", damping)):
             if not free and (is_traced(value) or value != 0):
                 fix = f"leave out {name}, or give inertia and no rate"
-                beside = " beside rate" if rate is not None else ""
-                raise InputError(name, f"is given{beside}, and the hub is not free to turn", fix)
+                rate_words = " beside rate" if rate is not None else ""
+                raise InputError(name, f"is given{rate_words}, and the hub is not free to turn", fix)
         if turn is not None and (setting_angle is not None or pointing != "outward"):
-            beside = "setting_angle" if setting_angle is not None else "pointing"
-            raise InputError("turn", f"is given beside {beside}", "keep one: turn says all of the mounting")
+            rate_words = "setting_angle" if setting_angle is not None else "pointing"
+            raise InputError("turn", f"is given beside {rate_words}", "keep one: turn says all of the mounting")
         turned = None if turn is None else turn_of(turn)
         controlled = None if control_point is None else vector("control_point", control_point)
         mount = Mount(radius, pointing, 0.0 if setting_angle is None else setting_angle, gravity, turned, controlled)
@@ -235,7 +235,7 @@ class Hub:
 
     @property
     def gravity(self) -> Any | None:
-        """Acceleration of free fall, (3,) m/s², in hub axes at hub angle zero; None without."""
+        """Acceleration of free fall, (3,) m/s², in hub axes at hub angle zero, or None without."""
         return self.mount.gravity
 
     def base(self, t: Times) -> Base:
@@ -246,17 +246,17 @@ class Hub:
     def angle(self, t: Times) -> Any:
         """Angle of a hub with a prescribed rate at times `t` (s, any shape), rad.
 
-        It is the closed integral of the rate where the profile has one; otherwise Gauss's rule goes on from the last
+        It is the closed integral of the rate where the profile has one. Otherwise Gauss's rule goes on from the last
         stored angle.
         """
         integral = self._prescribed().integral(t)
         if integral is not None:
             return integral - self._prescribed().integral(0.0)
         times, angles = (self.times, self.angles) if self.mount.gravity is not None else self._angles()
-        now = as_array(t)
-        xp = namespace(now, times, angles)
-        last = xp.maximum(xp.searchsorted(xp.asarray(times), now, side="right") - 1, 0)
-        return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], now)
+        time = as_array(t)
+        xp = namespace(time, times, angles)
+        last = xp.maximum(xp.searchsorted(xp.asarray(times), time, side="right") - 1, 0)
+        return xp.asarray(angles)[last] + self._turned(xp.asarray(times)[last], time)
 
     def corners(self, step: Seconds) -> Floats:
         """Times that steps of length `step` (s) should not pass unseen, s, ascending."""

@@ -21,7 +21,7 @@ class Motion(Protocol):
     """A flight, a centrifuge or a hub.
 
     ``kind`` names which. Where ``free`` is true the motion is a result: a hub whose rate is not given. NumPy in, NumPy
-    out; JAX arrays and tracers, in the times or in the motion's own values, pass through.
+    out. JAX arrays and tracers, in the times or in the motion's own values, pass through.
     """
 
     kind: ClassVar[str]
@@ -49,7 +49,7 @@ class Motion(Protocol):
 
 
 def level_factor(motion: Any) -> float | None:
-    """Level factor of a flight, or of that which a centrifuge tracks; None of 1, and of other motions."""
+    """Level factor of a flight, or of that which a centrifuge tracks, or None of 1, and of other motions."""
     flown = motion.flight if motion is not None and motion.kind == "centrifuge" else motion
     return flown.level_factor if isinstance(flown, Flight) else None
 
@@ -126,9 +126,9 @@ def _flight_warnings(flight: Flight, where: str, span: tuple[float, float]) -> I
             f"{where}.scale: accelerations are flown × {flight.level_factor:.4g}, the body's rates as they are given: "
             "what turning adds off the root is not scaled; leave the rates out if only the load at the root counts"
         )
-    whole = flight.part_of(*span) if span[1] > span[0] else None
-    if whole is not None:
-        yield f"{where}: {part_words(span, whole)} are flown, and the rest is left out"
+    part_flown = flight.part_of(*span) if span[1] > span[0] else None
+    if part_flown is not None:
+        yield f"{where}: {part_words(span, part_flown)} are flown, and the rest is left out"
 
 
 def _missing_gravity(machine: Any, where: str) -> Iterator[str]:

@@ -17,8 +17,8 @@ def shift_base(base: Base, offset: Any) -> Base:
     """Return the motion at another point (3,) m of the same rigid base: a + α × r + ω × (ω × r)."""
     xp = namespace(base.a_WO_B, base.w_WB_B, offset)
     r = xp.broadcast_to(xp.asarray(offset, dtype=float), base.w_WB_B.shape)
-    turning = xp.cross(base.alpha_WB_B, r) + xp.cross(base.w_WB_B, xp.cross(base.w_WB_B, r))
-    return Base(base.a_WO_B + turning, base.w_WB_B, base.alpha_WB_B)
+    by_rotation = xp.cross(base.alpha_WB_B, r) + xp.cross(base.w_WB_B, xp.cross(base.w_WB_B, r))
+    return Base(base.a_WO_B + by_rotation, base.w_WB_B, base.alpha_WB_B)
 
 
 def rotation_of(turn: Any) -> Floats:

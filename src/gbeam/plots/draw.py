@@ -167,7 +167,7 @@ class Shown(matplotlib_figure.Figure):
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Set gbeam's style, and leave matplotlib's settings as they were; within itself it does nothing, in no time."""
+    """Set gbeam's style, and leave matplotlib's settings as they were. Within itself it does nothing, in no time."""
     if all(rcParams[name] == value for name, value in STYLE.items()):
         yield
         return
@@ -196,7 +196,7 @@ def draw(described: Figure) -> Shown:
 
 
 def _fill(axes: Axes, panel: Panel, *, first: bool) -> None:
-    """Draw all parts of a panel; the `first` panel of a figure names what is shaded in its legend."""
+    """Draw all parts of a panel. The `first` panel of a figure names what is shaded in its legend."""
     if panel.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")

@@ -72,14 +72,14 @@ def save(figure: Figure, folder: Path, name: str, source: str = "") -> list[Path
 
 
 def signature(file: Path) -> str:
-    """Return the `source` that :func:`save` signed a file with; empty where there is none, or for another name."""
+    """Return the `source` that :func:`save` signed a file with, or empty where there is none, or for another name."""
     with file.open("rb") as opened:
         source, _, name = (_in_png if file.suffix == ".png" else _in_svg)(opened).rpartition(": ")
     return source if name == file.name else ""
 
 
 def _in_png(opened: BinaryIO) -> str:
-    """Source that the text before the pixels of a PNG file states; empty where there is none."""
+    """Source that the text before the pixels of a PNG file states, or empty where there is none."""
     try:
         with PngImageFile(opened) as image:
             return str(image.info.get("Source", ""))
@@ -88,7 +88,7 @@ def _in_png(opened: BinaryIO) -> str:
 
 
 def _in_svg(opened: BinaryIO) -> str:
-    """Source that the metadata of an SVG file state; empty where there are none."""
+    """Source that the metadata of an SVG file state, or empty where there are none."""
     try:
         elements = (element for _, element in iterparse(BytesIO(opened.read(_BEGINNING))))
         return next((element.text or "" for element in elements if element.tag == _SOURCE), "")

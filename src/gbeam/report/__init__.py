@@ -1,4 +1,4 @@
-"""Every result in words for people, as `text` says them; `facts` is the JSON, with the sentences of these words."""
+"""Every result in words for people, as `text` says them. `facts` is the JSON, with the sentences of these words."""
 
 import lazy_loader
 

@@ -114,7 +114,7 @@ def table(
     scale: float = 0.0,
     **options: Any,
 ) -> Table:
-    """Return a table of rows of JSON. `cells` are its columns by their heads; `optional` ones are left out where empty.
+    """Return a table of rows of JSON. `cells` are its columns by their heads. `optional` ones are left out where empty.
 
     Numbers at paths are in SI: a head such as "stress, MPa" converts them. A number that is only a rounding error
     beside the largest one of the same unit, or beside a larger `scale`, is shown as zero.
@@ -175,7 +175,7 @@ def quantities(
 ) -> Iterator[Block]:
     """Yield any JSON as blocks: a table of its plain values, and a section for each list of rows and each object.
 
-    `units` and `words` are by path; `place` is the path of `facts`.
+    `units` and `words` are by path. `place` is the path of `facts`.
     """
 
     units = facts.get("units", {}) if units is None else units
@@ -250,7 +250,7 @@ def six(value: float | str | None) -> Cell:
 
 
 def in_words(blocks: Iterable[Block], *, verbose: bool = True) -> list[tuple[str, str]]:
-    """Return blocks as lines of text, each with its tone; sections and captioned tables stand between empty lines."""
+    """Return blocks as lines of text, each with its tone. Sections and captioned tables stand between empty lines."""
     lines: list[tuple[str, str]] = []
     for line, tone in _lines(blocks, verbose):
         if line or (lines and lines[-1][0]):

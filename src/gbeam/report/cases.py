@@ -179,9 +179,9 @@ def _over_grid(facts: Facts, estimates: Facts, title: str) -> Block:
 
     def row(place: tuple[int, ...]) -> list[Cell]:
         point = [six(parameter["values"][k]) for parameter, k in zip(grid, place, strict=True)]
-        first, *others = [Cell(number(array[place])) for array in values]
+        first, *further_cells = [Cell(number(array[place])) for array in values]
         interval = _interval_words({bound: array[place] for bound, array in bounds.items()})
-        return [*point, first, Cell(interval), *others]
+        return [*point, first, Cell(interval), *further_cells]
 
     point_heads = [_with_unit(parameter["path"], parameter["unit"]) for parameter in grid]
     heads = [*point_heads, names[0], "95 % confidence", *names[1:]]

@@ -84,7 +84,7 @@ def _facts(body: BodyDescription) -> Iterator[str]:
     coordinates = f"{body.coordinates} coordinate{'' if body.coordinates == 1 else 's'}{shape_words}; "
     yield f"{coordinates if body.coordinates else ''}points {', '.join(body.points)}"
     if body.supports:
-        yield f"supports {'; '.join(f'at {place} {held}' for place, held in body.supports.items())}"
+        yield f"supports {'; '.join(f'at {place} {directions}' for place, directions in body.supports.items())}"
     yield from (f"clamp {name} holds {nodes}" for name, nodes in body.clamps.items())
 
 
@@ -104,8 +104,8 @@ def _interactions(case: Description) -> list[str]:
     joints = []
     for name, joint in case.joints.items():
         ways = {"free": joint.free, "driven": joint.driven, "prescribed": joint.prescribed}
-        moving = "; ".join(f"{way} {', '.join(names)}" for way, names in ways.items() if names) or "nothing moves"
-        joints.append(f"{name}: {joint.kind}, {joint.body} on {joint.on}; {moving}")
+        motion_words = "; ".join(f"{way} {', '.join(names)}" for way, names in ways.items() if names) or "nothing moves"
+        joints.append(f"{name}: {joint.kind}, {joint.body} on {joint.on}; {motion_words}")
     forces = [
         f"{name}: on {force.on}{', following it' if force.follower else ''}" for name, force in case.forces.items()
     ]

@@ -127,9 +127,9 @@ def resting_supports(loads: Facts, row_of: str = "motion") -> Block:
     for of_body in name_rows(loads):
         places = of_body.get("supports", ())
         names = of_body.get("support_names", [None] * len(places))
-        for k, at in enumerate(places):
+        for k, place in enumerate(places):
             row: dict[str, Cell | str] = {"name": of_body["name"]}
-            row["at"] = _support_words({"at": at, "name": names[k]})
+            row["at"] = _support_words({"at": place, "name": names[k]})
             for key in ("force", "moment"):
                 vectors = [[*vector.values()] for vector in _by_place(of_body[f"support_{key}"], len(places))]
                 size = max((abs(component) for vector in vectors for component in vector), default=0.0)
@@ -145,7 +145,7 @@ def _by_place(vectors: Facts, count: int) -> list[Facts]:
 
 
 def _root_moment(loads: Facts) -> float | None:
-    """Largest moment of the root; zero where it is rounding beside the force's on the length."""
+    """Largest moment of the root, or zero where it is rounding beside the force's on the length."""
     force, moment = (float_of(loads[key]["size"]["max_abs"]) for key in ("root_force", "root_moment"))
     size = max(moment, force * float_of(loads["sections"][-1]["at"]))
     return tidy((moment,), size)[0] if math.isfinite(moment) else None

@@ -100,8 +100,10 @@ def judged_lines(judged: Judged) -> Iterator[str]:
 
 
 def accounting_lines(accounting: Accounting) -> Iterator[str]:
-    """Yield lines on up to :data:`SHOWN` load peaks, first chosen those not reproduced, then the largest, in order of
-    time; on the load over the specimen; and on as many of the longest stretches that are not followed.
+    """Yield lines on load peaks, on the load over the specimen, and on the longest stretches that are not followed.
+
+    There are up to :data:`SHOWN` peaks, in order of time. Those not reproduced are chosen first, then the largest.
+    There are as many stretches at most.
     """
     yield f"followed means within {tolerance_words(accounting)}"
     listed = sorted(accounting.peaks, key=lambda peak: (not peak.reason, -peak.load))[:SHOWN]
@@ -137,11 +139,11 @@ def accounting_lines(accounting: Accounting) -> Iterator[str]:
     if len(stretches) > SHOWN:
         yield f"not followed {len(stretches) - SHOWN} times more: see --json"
     if accounting.overloads:
-        worst = max(accounting.overloads, key=lambda overload: overload.load - max(overload.flight, accounting.idle))
+        largest = max(accounting.overloads, key=lambda overload: overload.load - max(overload.flight, accounting.idle))
         idle = f", idle {in_g(accounting.idle)}" if accounting.idle else ""
         yield (
-            f"the machine loads the specimen more than the flight: {in_g(worst.load)} at {worst.time:.2f} s "
-            f"(flight {in_g(worst.flight)}{idle})"
+            f"the machine loads the specimen more than the flight: {in_g(largest.load)} at {largest.time:.2f} s "
+            f"(flight {in_g(largest.flight)}{idle})"
         )
 
 
@@ -220,7 +222,7 @@ def comparison(facts: Facts) -> Blocks:
 
 
 def verdict(judged: Facts, names: tuple[str, str], title: str = "Verdict") -> Blocks:
-    """Section for a page, of the verdict on an imitation and its tables; `names` are those of flight and machine."""
+    """Section for a page, of the verdict on an imitation and its tables. `names` are those of flight and machine."""
     tables = _criteria(judged), _peaks(judged, names), _load_peaks(judged), _missed_stretches(judged)
     yield Section(
         title, (Sentence(judged["verdict"], "verdict"), Items(tuple(judged["findings"])), *tables), detail=True
@@ -266,7 +268,7 @@ def _criteria(judged: Facts) -> Block:
 
 
 def _peaks(judged: Facts, names: tuple[str, str]) -> Block:
-    """Table of the largest sizes in flight and on the machine, over the flight; loads are over the
+    """Table of the largest sizes in flight and on the machine, over the flight. Loads are over the
     machine's whole run.
     """
 

@@ -193,11 +193,11 @@ def placement(facts: Facts) -> Blocks:
 
 def _placement_rows(facts: Facts) -> Iterator[tuple[str, Value]]:
     """Rows of the best placement (control point, largest load, mounting, smoothing), beside the present one."""
-    length_share, present, best = facts["fraction_of_length"], facts["before"], facts["options"][0]
+    length_share, present, first_option = facts["fraction_of_length"], facts["before"], facts["options"][0]
     present_point = _point(present) if present else f"{number(1e3 * facts['current_control_point'])} mm"
     length = f", {length_share:.4f} of the length" if length_share else ""
     yield "control point", f"{_point(facts)} from the root{length} (now {present_point})"
-    yield "largest load", _largest_load(best["largest_load"], present and present["largest_load"])
+    yield "largest load", _largest_load(first_option["largest_load"], present and present["largest_load"])
     yield "mounting", facts["mounting"] + _turn_words(facts)
     yield "smoothing", f"{number(1e3 * facts['smoothing'])} ms{_range(facts)}"
 
@@ -206,8 +206,8 @@ def _largest_load(load: Facts, present: Facts | None) -> str:
     """Largest load anywhere on the specimen as placed, in flight, and as it is mounted now."""
     if load["machine"] is None:
         return "not known"
-    now = f"; now {_load(present)}" if present else ""
-    return f"anywhere on the specimen {_load(load)}, {in_g(load['flight'])} in flight{now}"
+    present_words = f"; now {_load(present)}" if present else ""
+    return f"anywhere on the specimen {_load(load)}, {in_g(load['flight'])} in flight{present_words}"
 
 
 def _load(load: Facts) -> str:
@@ -216,7 +216,9 @@ def _load(load: Facts) -> str:
 
 
 def _range(facts: Facts) -> str:
-    """Range of smoothing that was searched, and a remark if the best lies at its end; empty if only one was tried."""
+    """Range of smoothing that was searched, and a remark if the best lies at its end,
+    or empty if only one was tried.
+    """
     low, high = facts["smoothing_range"]
     if low == high:
         return ""
@@ -303,6 +305,6 @@ def _point(facts: Facts) -> str:
 
 
 def _turn_words(facts: Facts) -> str:
-    """A rotation vector, rad; empty where there is none."""
+    """A rotation vector, rad, or empty where there is none."""
     turn = [*facts["turn"].values()]
     return f", turned by {degrees(turn)}" if any(turn) else ""

@@ -103,9 +103,9 @@ def modes(facts: Facts) -> Blocks:
 
     rates = [np.linalg.norm([*body["base"]["angular_velocity"].values()]) for body in bodies.values()]
     rate = float(max(rates, default=0.0))
-    turning = [f"turning at {number(rate)} rad/s"] if rate > RESTING else []
+    turning_words = [f"turning at {number(rate)} rad/s"] if rate > RESTING else []
     coupling = [] if facts["gyroscopic"] else ["Coriolis coupling left out"]
-    yield subject_sentence(facts, f"at {number(facts['time'])} s", *turning, *coupling)
+    yield subject_sentence(facts, f"at {number(facts['time'])} s", *turning_words, *coupling)
     yield from acceleration_sentence(facts)
     yield instability_items(facts, lambda mode: f" {direction_words(mode['direction'])}")
     yield modes_table(facts, {"along": "direction"} | ERROR | {"kinetic energy": shares})
@@ -281,7 +281,7 @@ def equilibrium_path(facts: Facts) -> Blocks:
 
 
 def _error_clause(errors: Facts) -> str:
-    """Clause on the estimated error of a critical value; empty where there is none."""
+    """Clause on the estimated error of a critical value, or empty where there is none."""
     if errors.get("total") is not None:
         return f"; estimated error {errors_in_words(errors)}"
     shapes = errors.get("shapes")
@@ -364,11 +364,11 @@ def _accuracy(facts: Facts) -> Blocks:
     accurate = int(np.append(np.flatnonzero(~(totals <= ACCURATE)), len(totals))[0])  # poles before the first other
     words = []
     if accurate:
-        worst, end = percent(float(totals[:accurate].max())), facts["accurate_to"]
-        words.append(f"frequencies accurate to {worst} up to {number(end)} Hz ({accurate} of {len(totals)})")
+        largest, end = percent(float(totals[:accurate].max())), facts["accurate_to"]
+        words.append(f"frequencies accurate to {largest} up to {number(end)} Hz ({accurate} of {len(totals)})")
     if accurate < len(totals):
-        others = totals[accurate:][np.isfinite(totals[accurate:])]
-        error = f"up to {percent(float(others.max()))} off" if len(others) else "not judged"
+        known_totals = totals[accurate:][np.isfinite(totals[accurate:])]
+        error = f"up to {percent(float(known_totals.max()))} off" if len(known_totals) else "not judged"
         words.append(f"{'higher ones' if accurate else 'frequencies'} {error}")
     reference = "the model with more modes"
     if any(pole_errors.get("beam_theory") is not None for pole_errors in errors):
@@ -430,9 +430,11 @@ def _left_out(facts: Facts, left_out: Facts) -> Blocks:
     shares, states = np.array(left_out["share"], dtype=float), left_out["states_left_out"]
     words = f"{left_out['method']} truncation leaves out {states} of {states + len(facts['states'])} states"
     if shares.size:
-        worst = np.unravel_index(int(shares.argmax()), shares.shape)
-        output, input_ = facts["outputs"][worst[0]]["name"], facts["inputs"][worst[1]]["name"]
-        words += f": up to {number(left_out['to'])} Hz {percent(float(shares[worst]))} of the largest gain at most"
+        largest_place = np.unravel_index(int(shares.argmax()), shares.shape)
+        output, input_ = facts["outputs"][largest_place[0]]["name"], facts["inputs"][largest_place[1]]["name"]
+        words += (
+            f": up to {number(left_out['to'])} Hz {percent(float(shares[largest_place]))} of the largest gain at most"
+        )
         words += f" ({output} by {input_})" if shares.size > 1 else ""
     yield Sentence(words)
     if left_out["method"] == "balanced":

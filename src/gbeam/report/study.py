@@ -99,10 +99,10 @@ def response_lines(response: Response) -> Iterator[str]:
         first, last = map(number, tidy(energy[[0, -1]].sum(axis=1).tolist(), float(np.abs(energy).max())))
         yield f"energy {first} J at the start, {last} J at the end"
     if response.kept_every > 1:
-        kept = response.time[:: response.kept_every]
+        recorded_times = response.time[:: response.kept_every]
         yield (
-            f"a result file keeps {len(kept)} of {len(response.time)} samples of its histories, "
-            f"{seconds(float(kept[1] - kept[0]))} apart; histories of [response] says otherwise"
+            f"a result file keeps {len(recorded_times)} of {len(response.time)} samples of its histories, "
+            f"{seconds(float(recorded_times[1] - recorded_times[0]))} apart; histories of [response] says otherwise"
         )
     yield from _machine_lines(response)
 
@@ -155,11 +155,11 @@ def _accuracy(response: Response) -> str:
     return f"{', '.join([*models, response.integrator, response.steps_in_words])}; {error}"
 
 
-def _of_largest(error: ErrorEstimate, what: str) -> str:
+def _of_largest(error: ErrorEstimate, quantity: str) -> str:
     """Error of the largest load or stress and, apart, that of an instant, as a share of it."""
     if math.isnan(error.peak):
-        return f"{percent(error.total)} of the largest {what}"
-    return f"{percent(error.peak)} of the largest {what} ({percent(error.total)} of it at any one instant)"
+        return f"{percent(error.total)} of the largest {quantity}"
+    return f"{percent(error.peak)} of the largest {quantity} ({percent(error.total)} of it at any one instant)"
 
 
 def _damping(body: BodyResponse) -> str:
@@ -220,11 +220,11 @@ def comparison_lines(comparison: Comparison) -> Iterator[str]:
             + f"{number(fatigue.damage_ratio, 3)} times flight's damage (Wöhler exponent {fatigue.exponent:g})"
         )
     if comparison.shock is not None and comparison.shock.extremes:
-        least, most = sorted(comparison.shock.extremes, key=lambda extreme: extreme.ratio)
+        lowest, highest = sorted(comparison.shock.extremes, key=lambda extreme: extreme.ratio)
         write = RULES["srs"].write
         yield (
-            f"shock response spectra of {comparison.shock.control} on the centrifuge {write(least.ratio)} {least} to "
-            f"{write(most.ratio)} {most}, beside flight's"
+            f"shock response spectra of {comparison.shock.control} on the centrifuge {write(lowest.ratio)} {lowest} to "
+            f"{write(highest.ratio)} {highest}, beside flight's"
         )
     if comparison.stations is not None:
         environments = comparison.stations.flight, comparison.stations.centrifuge
@@ -284,8 +284,8 @@ _TOLD = ("points", "coordinates", "bodies", "errors", "limits", "name", "environ
 def _of_joints(motion: Facts, units: dict[str, str]) -> Blocks:
     """Coordinates of several bodies at the end, and all else, for a page only."""
     yield table(name_rows(motion["coordinates"]), {"coordinate": "name", "at the end, m or rad": "end"}, detail=True)
-    others = {key: value for key, value in motion.items() if key not in _TOLD}
-    yield Section("", tuple(quantities(others, units)), detail=True)
+    other_facts = {key: value for key, value in motion.items() if key not in _TOLD}
+    yield Section("", tuple(quantities(other_facts, units)), detail=True)
 
 
 def verdicts(facts: Facts) -> Blocks:

@@ -43,7 +43,7 @@ def json_value(value: Any) -> Any:
 
 
 def terminal_width() -> int:
-    """Columns of the terminal that is printed to; zero of a file, which takes any width."""
+    """Columns of the terminal that is printed to, or zero of a file, which takes any width."""
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
 
 
@@ -62,8 +62,8 @@ def columns(heads: list[str], rows: list[list[str]], flush_left: Collection[int]
     if 0 < room < sum(widths) + 2 * len(widths):
         head_width = max(map(len, heads))
         folded: list[str] = []
-        for first, *others in rows:
-            cells = zip(heads[1:], others, strict=True)
+        for first, *further_cells in rows:
+            cells = zip(heads[1:], further_cells, strict=True)
             folded += [first, *(f"  {head:<{head_width}}  {cell}" for head, cell in cells if cell)]
         return folded
     forms = [f"{'<' if k in flush_left else '>'}{width}" for k, width in enumerate(widths)]

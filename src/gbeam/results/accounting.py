@@ -114,7 +114,7 @@ class Accounting(Part):
 
     @property
     def main(self) -> LoadPeak | None:
-        """The largest peak of the flight's load; None where it never exceeds idle."""
+        """The largest peak of the flight's load, or None where it never exceeds idle."""
         return max(self.peaks, key=lambda peak: peak.load, default=None)
 
     @property
@@ -147,7 +147,7 @@ UNITS = {name: unit for name, (_, unit, _) in QUANTITIES.items()}
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PeakPair(Part):
-    """Largest size of a quantity in flight and on the machine, SI; NaN where it is unknown."""
+    """Largest size of a quantity in flight and on the machine, SI, or NaN where it is unknown."""
 
     flight: float = quantity(BESIDE, "largest in flight", default=math.nan)
     machine: float = quantity(BESIDE, "largest on the machine", default=math.nan)
@@ -158,7 +158,7 @@ class PeakPair(Part):
 
     @declared("", "machine over flight", name=None)
     def ratio(self) -> float:
-        """Machine over flight; NaN where there is none in flight."""
+        """Machine over flight, or NaN where there is none in flight."""
         return self.machine / self.flight if self.flight > 0 else math.nan
 
 

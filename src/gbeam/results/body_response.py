@@ -74,7 +74,9 @@ class BodyResponse(Part):
 
     @declared("", "station that moves farthest, where supports hold the tip", role="fact", name=None, optional=True)
     def farthest(self) -> str:
-        """Name of the station by which the body is judged where supports hold its tip; empty where that is the tip."""
+        """Name of the station by which the body is judged where supports hold its tip,
+        or empty where that is the tip.
+        """
         peaks = self.peaks.displacement
         if self.loads is None or self.loads.supports is None or peaks is None:
             return ""

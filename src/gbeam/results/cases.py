@@ -68,7 +68,7 @@ class Parameter(Part):
 
     @declared("", "distribution that the values are drawn from", role="fact")
     def distribution(self) -> str | None:
-        """The distribution; None for a grid."""
+        """The distribution, or None for a grid."""
         return self.drawn or None
 
     @property
@@ -303,7 +303,9 @@ class Sensitivity(Figured[str]):
 
     @declared("", "relative change of the measure over that of the parameter", "measure parameter", key=None)
     def relative(self) -> Floats:
-        """Relative change of each figure over that of each parameter, p/f ∂f/∂p, (m, p); NaN where a figure is zero."""
+        """Relative change of each figure over that of each parameter, p/f ∂f/∂p, (m, p),
+        or NaN where a figure is zero.
+        """
         size = np.where(self.figures == 0, np.nan, self.figures)
         return self.derivatives * self.values / size[:, None]
 

@@ -26,7 +26,7 @@ _ACROSS = "over the times at which the target is the flight's load"
 class Comparison(Worded, Figured[ComparisonFigure]):
     """Differences of a centrifuge's response from the flight's that it imitates.
 
-    Peaks and accounting are those of the whole flight; differences are taken where the target is the flight's load.
+    Peaks and accounting are those of the whole flight. Differences are taken where the target is the flight's load.
 
     Examples
     --------
@@ -111,7 +111,7 @@ class Comparison(Worded, Figured[ComparisonFigure]):
 
     @declared("", "largest difference over the flight's largest displacement", "axis", name=None)
     def relative(self) -> Floats:
-        """Largest difference over the flight's largest displacement, per axis, (3,); NaN without displacement."""
+        """Largest difference over the flight's largest displacement, per axis, (3,), or NaN without displacement."""
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.where(self.peak_flight > 0, self.max_difference / self.peak_flight, np.nan)
 
@@ -127,12 +127,12 @@ class Comparison(Worded, Figured[ComparisonFigure]):
 
     @declared("", "least margin on yield in flight and on the machine", role="fact", name=None, key="margin")
     def margin(self) -> dict[str, float] | None:
-        """Least margin on yield in flight and on the machine; None without a yield strength."""
+        """Least margin on yield in flight and on the machine, or None without a yield strength."""
         return None if self.margins is None else dict(zip(("flight", "machine"), self.margins, strict=True))
 
     @property
     def margins(self) -> tuple[float, float] | None:
-        """Least margin on yield over the whole flight, in it and on the machine; None without a yield strength."""
+        """Least margin on yield over the whole flight, in it and on the machine, or None without a yield strength."""
         if self.margins_of_materials is not None:
             return self.margins_of_materials
         stress = self.peaks.get("stress")

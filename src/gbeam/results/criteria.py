@@ -65,7 +65,7 @@ class Judged:
 
     @property
     def part(self) -> str:
-        """The part of the flight that was run, ``0 to 6 of 15.99 s``; empty where all of it was."""
+        """The part of the flight that was run, ``0 to 6 of 15.99 s``, or empty where all of it was."""
         from gbeam.results.result import part_words
 
         return "" if self.whole is None else part_words(self.accounting.span, self.whole)
@@ -97,13 +97,13 @@ class Judged:
 
     @declared("", "whether every limit that can be judged is kept", role="fact", name=None)
     def accepted(self) -> bool | None:
-        """True if every limit that can be judged is kept; None where there is none, or that is not decided."""
+        """True if every limit that can be judged is kept, or None where there is none, or that is not decided."""
         return {PASS: True, NOT_ACCEPTED: False}.get(self.decision)
 
     @property
     def decision(self) -> str:
-        """PASS; NOT ACCEPTED where a limit is not kept; else NOT DECIDED where a value is not known; empty where none
-        can be judged.
+        """PASS; NOT ACCEPTED where a limit is not kept; else NOT DECIDED where a value is not known, or empty where
+        none can be judged.
         """
         verdicts = [criterion.passed for criterion in self.criteria]
         if False in verdicts:
@@ -114,7 +114,7 @@ class Judged:
 
     @property
     def refusal(self) -> str:
-        """The limits that are not kept, or else those whose values are not known, in words; empty where accepted."""
+        """The limits that are not kept, or else those whose values are not known, in words, or empty where accepted."""
         verdict = {NOT_ACCEPTED: False, NOT_DECIDED: None}.get(self.decision, 0)
         return ", ".join(str(criterion) for criterion in self.criteria if criterion.passed is verdict)
 
@@ -122,9 +122,9 @@ class Judged:
 def state_of(
     outcome: str, imitations: Sequence[Judged], *, exceeded: bool = False, verdicts: Sequence[bool | None] = ()
 ) -> str:
-    """Return the verdict on an answer, or its outcome where nothing is decided; only :data:`GOOD` ones are good.
+    """Return the verdict on an answer, or its outcome where nothing is decided. Only :data:`GOOD` ones are good.
 
-    `exceeded` is True if a limit of a machine is; `verdicts` are those on other limits, None where there is none.
+    `exceeded` is True if a limit of a machine is. `verdicts` are those on other limits, None where there is none.
     """
     if outcome not in ("done", BROKEN):
         return outcome
@@ -337,13 +337,15 @@ def refuse_unknown(table: str, limits: Iterable[str]) -> None:
 
 
 def refuse_lacking(table: str, limits: Iterable[str], lacking: Mapping[str, str]) -> None:
-    """InputError for a limit on a quantity that the specimen lacks; `lacking` says by quantity why it lacks it."""
+    """InputError for a limit on a quantity that the specimen lacks. `lacking` says by quantity why it lacks it."""
     for name in limits:
         rule = RULES.get(name)
         if rule is not None and rule.needs in lacking:
-            others = ", ".join(alternative.name for alternative in RULES.values() if alternative.needs not in lacking)
+            alternatives = ", ".join(
+                alternative.name for alternative in RULES.values() if alternative.needs not in lacking
+            )
             raise InputError(
-                f"{table}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {others}"
+                f"{table}.{name}", f"is of {rule.needs}, and {lacking[rule.needs]}", f"choose from {alternatives}"
             )
 
 

@@ -228,7 +228,7 @@ def _shape(declaration: Declaration) -> str:
 
 
 def annotation(kind: type, name: str) -> Any:
-    """Return the type of a field, or of what a property returns; None where there is none."""
+    """Return the type of a field, or of what a property returns, or None where there is none."""
     for base in kind.__mro__:
         if name in vars(base).get("__annotations__", {}):
             return _type_of(vars(base)["__annotations__"][name], base.__module__)
@@ -252,7 +252,9 @@ def types_in(hint: Any) -> Iterator[Any]:
 
 
 def record_in(kind: type, name: str) -> Any:
-    """Return the record that a field's type has in it, such as Crossing of ``tuple[Crossing, ...]``; None if none."""
+    """Return the record that a field's type has in it, such as Crossing of ``tuple[Crossing, ...]``,
+    or None if none.
+    """
     return next(iter(records_in(kind, name)), None)
 
 

@@ -121,7 +121,7 @@ class RecordSummary(Part):
 
     @property
     def channels(self) -> dict[str, str]:
-        """Columns with their signs, by axis; "0" stands for none."""
+        """Columns with their signs, by axis. "0" stands for none."""
         return dict(zip("xyzpqr", (*self.columns, *(self.rate_columns or ())), strict=False))
 
     @property
@@ -132,7 +132,7 @@ class RecordSummary(Part):
 
     @property
     def words(self) -> str:
-        """Sentence on what was done to it; empty where nothing was."""
+        """Sentence on what was done to it, or empty where nothing was."""
         return "; ".join([*self.done, *([self._offset_words] if self.offsets else [])])
 
     @property
@@ -252,7 +252,7 @@ class Kind(Part):
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
 class Description(Part):
-    """Meaning of a case; where a value has a distribution, the rest is said of its centre."""
+    """Meaning of a case. Where a value has a distribution, the rest is said of its centre."""
 
     title: str = fact("title of the scenario")
     mass: float = fact("mass of all bodies", "kg")

@@ -200,7 +200,7 @@ class Critical(Decided, Figured[Literal["critical"]]):
 
     @declared("", "estimated error from too few shapes", name=None)
     def error_estimate(self) -> float:
-        """Error of the value from too few shapes, a fraction; NaN where there is no estimate."""
+        """Error of the value from too few shapes, a fraction, or NaN where there is no estimate."""
         return self.errors.shapes
 
     def __repr__(self) -> str:
@@ -270,7 +270,7 @@ class EquilibriumPath(Decided, Figured[Literal["path"]]):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class MapErrors(Part):
-    """Estimated errors of the speeds of a map, as fractions, (m, p) each; NaN where there is none.
+    """Estimated errors of the speeds of a map, as fractions, (m, p) each, or NaN where there is none.
 
     Infinite where the exact model keeps its equilibrium to three times the speed.
     """

@@ -32,7 +32,9 @@ SLENDER = "against one with shear, rotary inertia and twist, and by plate action
 
 
 class Lacking(Protocol):
-    """Errors that say whether a model has enough shapes, and the strains that matter; zero where they are not known."""
+    """Errors that say whether a model has enough shapes, and the strains that matter,
+    or zero where they are not known.
+    """
 
     @property
     def few_shapes(self) -> float:
@@ -46,13 +48,13 @@ class Lacking(Protocol):
 
 
 def largest_known(*values: float) -> float:
-    """Largest of the values that are known; zero if none is."""
+    """Largest of the values that are known, or zero if none is."""
     return max((float(value) for value in values if math.isfinite(value)), default=0.0)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ErrorEstimate(Lacking, Part):
-    """Estimated errors of a quantity, or a vector's length, as fractions of its largest; NaN where there is none.
+    """Estimated errors of a quantity, or a vector's length, as fractions of its largest, or NaN where there is none.
 
     Of several quantities each is the largest: causes, `slender` and `total` may be of different ones.
     """
@@ -80,12 +82,12 @@ class ErrorEstimate(Lacking, Part):
 
     @property
     def few_shapes(self) -> float:
-        """Error by too few shapes; zero where it is not known."""
+        """Error by too few shapes, or zero where it is not known."""
         return largest_known(self.shapes)
 
     @property
     def few_strains(self) -> float:
-        """Error of the theory of slender beams; zero where it is not known."""
+        """Error of the theory of slender beams, or zero where it is not known."""
         return largest_known(self.beam_theory)
 
     def adding(self, **parts: float) -> ErrorEstimate:
@@ -108,8 +110,8 @@ class ErrorEstimate(Lacking, Part):
     def __repr__(self) -> str:
         parts = self.causes | {"total": self.total, "of the peak": self.peak}
         # A static deflection has no steps.
-        known = [f"{k} {percent(x)}" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
-        return ", ".join(known) or "not known"
+        shown = [f"{k} {percent(x)}" for k, x in parts.items() if math.isfinite(x) and (x or k != "step")]
+        return ", ".join(shown) or "not known"
 
 
 @typed_methods
@@ -178,8 +180,8 @@ class Errors(Part):
     @property
     def causes(self) -> str:
         """Causes of the error of the beam theory and what it assumes, of one body or each behind its name."""
-        known = [(name, words) for name, words in zip(self.beams, self.theory, strict=True) if words]
-        return "; ".join(words if len(self.beams) == 1 else f"{name}: {words}" for name, words in known)
+        named = [(name, words) for name, words in zip(self.beams, self.theory, strict=True) if words]
+        return "; ".join(words if len(self.beams) == 1 else f"{name}: {words}" for name, words in named)
 
     @property
     def few_shapes(self) -> float:
@@ -205,7 +207,7 @@ class Errors(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FrequencyErrors(Part):
-    """Estimated errors of frequencies, as fractions, (k,) each; NaN where there is no estimate."""
+    """Estimated errors of frequencies, as fractions, (k,) each, or NaN where there is no estimate."""
 
     shapes: Floats = quantity("", SHAPES, note="against the same model with more")
     model: Floats = quantity("", MODEL, note="with enough shapes")
@@ -234,7 +236,7 @@ class FrequencyErrors(Part):
 
     @property
     def few_strains(self) -> float:
-        """Largest error of the theory of slender beams; infinite where frequencies are unseen."""
+        """Largest error of the theory of slender beams, or infinite where frequencies are unseen."""
         return math.inf if self.unseen else largest_known(*self.beam_theory)
 
     @property
@@ -256,13 +258,13 @@ class FrequencyErrors(Part):
 
     @property
     def largest(self) -> float:
-        """Largest of the totals that are known; NaN where none is."""
-        known = self.total[np.isfinite(self.total)]
-        return float(known.max()) if known.size else math.nan
+        """Largest of the totals that are known, or NaN where none is."""
+        finite = self.total[np.isfinite(self.total)]
+        return float(finite.max()) if finite.size else math.nan
 
 
 def totals(errors: FrequencyErrors | None, count: int) -> Floats:
-    """Return total errors of frequencies, (k,); NaN where there is no estimate."""
+    """Return total errors of frequencies, (k,), or NaN where there is no estimate."""
     return np.full(count, np.nan) if errors is None else errors.total
 
 
@@ -273,7 +275,7 @@ class Noted:
 
     @declared("", UNKNOWN, role="fact", optional=True)
     def error_note(self) -> str:
-        """Part of the errors of frequencies that is not estimated, and why; empty where all is."""
+        """Part of the errors of frequencies that is not estimated, and why, or empty where all is."""
         return "" if self.errors is None else self.errors.note
 
 
@@ -355,13 +357,13 @@ class Oscillating(Noted):
 
     @declared("", "estimated error of the frequency in all", "mode", name=None)
     def error_estimate(self) -> Floats:
-        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
+        """Estimated errors of the frequencies, (k,), fractions, or NaN where there is no estimate."""
         return totals(self.errors, len(self.eigenvalue))
 
 
 @dataclass(frozen=True)
 class StepErrors:
-    """Estimated errors of the time steps as fractions of the largest size; NaN where there is no estimate."""
+    """Estimated errors of the time steps as fractions of the largest size, or NaN where there is no estimate."""
 
     displacement: float = math.nan  # of the tip, or the largest of `moved`
     loads: float = math.nan  # of the root's force and moment, the larger of both

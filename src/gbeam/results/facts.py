@@ -142,8 +142,8 @@ def _joined(tree: dict[str, Any], *others: dict[str, Any]) -> dict[str, Any]:
     """Return a tree with the entries of any of several; where more have one, that of the first."""
     for branches in others:
         for key, branch in branches.items():
-            both = isinstance(branch, dict) and isinstance(tree.get(key), dict)
-            tree[key] = type(tree[key])(_joined(tree[key], branch)) if both else tree.get(key, branch)
+            both_tables = isinstance(branch, dict) and isinstance(tree.get(key), dict)
+            tree[key] = type(tree[key])(_joined(tree[key], branch)) if both_tables else tree.get(key, branch)
     return tree
 
 
@@ -174,7 +174,7 @@ def units_of(kind: type) -> Units:
 
 
 def paths_of(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Entry]]:
-    """Yield path and entry of every quantity that is not text; ``*`` in a path is a name, ``[i]`` a place in a list."""
+    """Yield path and entry of every quantity that is not text. ``*`` in a path is a name, ``[i]`` a place in a list."""
     for key, branch in tree.items():
         path = f"{prefix}{key}"
         if isinstance(branch, dict):
@@ -294,14 +294,14 @@ def _merge(facts: dict[str, Any], others: dict[str, Any]) -> None:
 
 
 def _row_dimension(declaration: Declaration, row_keys: Mapping[str, str]) -> str | None:
-    """Dimension along which JSON has a value in each row; None where it has none."""
+    """Dimension along which JSON has a value in each row, or None where it has none."""
     if declaration.role == "rows" or (declaration.key or "").startswith("/"):
         return None
     return next((dim for dim in declaration.dims if dim in row_keys), None)
 
 
 def _labels(record: Any, dim: str) -> tuple[str, ...] | None:
-    """Keys by which JSON has the places along a dimension; None where it lists them."""
+    """Keys by which JSON has the places along a dimension, or None where it lists them."""
     if dim in NAMES:
         return NAMES[dim]
     name = next((name for name, declaration in declarations(type(record)) if _names(declaration, dim)), None)
@@ -309,7 +309,7 @@ def _labels(record: Any, dim: str) -> tuple[str, ...] | None:
 
 
 def _label(kind: type) -> str:
-    """Name of the field that is the key of a row in JSON; empty where rows are listed."""
+    """Name of the field that is the key of a row in JSON, or empty where rows are listed."""
     labels = (name for name, field in declarations(kind) if field.role == "labels" and field.key is None)
     return next(labels, "")
 
@@ -323,7 +323,7 @@ def _names(declaration: Declaration, dim: str) -> bool:
 
 
 def _rows(facts: dict[str, Any], key: str, labels: tuple[str, ...] | None, count: int) -> list[dict[str, Any]]:
-    """Objects of the rows along a dimension under `key`: by label, or in a list of `count`; missing ones are added."""
+    """Objects of the rows along a dimension under `key`: by label, or in a list of `count`. Missing ones are added."""
     if labels is not None:
         objects = facts.setdefault(key, {}) if key else facts
         return [objects.setdefault(label, {}) for label in labels]
@@ -333,7 +333,7 @@ def _rows(facts: dict[str, Any], key: str, labels: tuple[str, ...] | None, count
 
 
 def _count(value: Any, axis: int) -> int:
-    """Number of places along an axis of an array or a tuple, or of the arrays of a record; zero for None."""
+    """Number of places along an axis of an array or a tuple, or of the arrays of a record, or zero for None."""
     if value is None:
         return 0
     if not dataclasses.is_dataclass(value):

@@ -32,7 +32,7 @@ class LimitUse:
 
     @declared("", "used over allowed")
     def share(self) -> float:
-        """Used over allowed; zero where no limit is given."""
+        """Used over allowed, or zero where no limit is given."""
         return self.used / self.allowed
 
     @declared("", "whether more is used than allowed")
@@ -158,15 +158,15 @@ class AxesResult(Part):
 
     @property
     def exceeding(self) -> str:
-        """The limits that are exceeded, by how much and when; empty where none is."""
+        """The limits that are exceeded, by how much and when, or empty where none is."""
         broken = [str(use) for use in self.limits if use.exceeded]
         return f"exceeds {'; '.join(broken)}" if broken else ""
 
     @property
     def largest_excess(self) -> str:
-        """The limit that is exceeded most, and by how much; empty where none is."""
-        worst = max((use for use in self.limits if use.exceeded), key=lambda use: use.share, default=None)
-        return f"{worst.axis} {worst.quantity} {worst.share:.0%}".replace("%", " % of its limit") if worst else ""
+        """The limit that is exceeded most, and by how much, or empty where none is."""
+        use = max((use for use in self.limits if use.exceeded), key=lambda use: use.share, default=None)
+        return "" if use is None else f"{use.axis} {use.quantity} {use.share:.0%}".replace("%", " % of its limit")
 
     @property
     def limit_shares(self) -> dict[str, Floats]:
@@ -197,8 +197,8 @@ class AxesResult(Part):
 class Imitated:
     """Motions of a flight and of the machine that imitates it, from the machine's beginning to its end, and its axes.
 
-    Their times are close enough for peaks, and the same for every question: a plan and a response, whose steps are
-    others, read the peaks of the load, its errors and the use of limits from them alike.
+    Their times are close enough for peaks, and the same for every question. A plan and a response have other steps, and
+    yet read the peaks of the load, its errors and the use of limits from them alike.
     """
 
     time: Floats  # (t,) s
@@ -238,7 +238,7 @@ class AxisPeaks:
 
 @dataclass(frozen=True)
 class Tracking:
-    """Largest error of the load while the target is the flight's; NaN where the load was followed at no time."""
+    """Largest error of the load while the target is the flight's, or NaN where the load was followed at no time."""
 
     max: float = entry("m/s^2", "largest error")
     time_of_max: float = entry("s", "its time")
@@ -304,12 +304,12 @@ class Driven:
 
     @declared("s", "time from the start to the flight", role="fact", name=None, optional=True)
     def spin_up(self) -> float:
-        """Time from the start to the flight, s; zero at idle, NaN without a machine."""
+        """Time from the start to the flight, s, or zero at idle, NaN without a machine."""
         return math.nan if self.axes is None else max(float(self.axes.span[0] - self.time[0]), 0.0)
 
     @declared("s", "time from the flight to the end", role="fact", name=None, optional=True)
     def spin_down(self) -> float:
-        """Time from the flight to the end, s; zero at idle, NaN without a machine."""
+        """Time from the flight to the end, s, or zero at idle, NaN without a machine."""
         return math.nan if self.axes is None else max(float(self.time[-1] - self.axes.span[1]), 0.0)
 
     @declared(
@@ -326,7 +326,7 @@ class Driven:
 
     @declared("", "largest error of the load against the target", role="part", name=None, optional=True)
     def tracking_error(self) -> Tracking | None:
-        """Largest error of the load against the target, whose corners are rounded; None without a machine."""
+        """Largest error of the load against the target, whose corners are rounded, or None without a machine."""
         if self.axes is None:
             return None
         time, axes = self._at_own_times(self.axes)
@@ -334,7 +334,7 @@ class Driven:
 
     @declared("", "largest error of the load against the flight's own", role="part", name=None, optional=True)
     def flight_error(self) -> Tracking | None:
-        """Largest error of the load against the flight's own; None where that is not known."""
+        """Largest error of the load against the flight's own, or None where that is not known."""
         if self.axes is None or self.axes.flight is None:
             return None
         time, axes = self._at_own_times(self.axes)
@@ -342,8 +342,8 @@ class Driven:
 
     def _at_own_times(self, axes: AxesResult) -> tuple[Floats, AxesResult]:
         """Times and axes of the imitation where they are known; those of the result else."""
-        known = axes.imitated
-        return (self.time, axes) if known is None or known.axes is None else (known.time, known.axes)
+        imitated = axes.imitated
+        return (self.time, axes) if imitated is None or imitated.axes is None else (imitated.time, imitated.axes)
 
 
 def _peak(time: Floats, values: Floats) -> Peak:
@@ -352,7 +352,9 @@ def _peak(time: Floats, values: Floats) -> Peak:
 
 
 def _tracking(time: Floats, axes: AxesResult, aim: Floats) -> Tracking:
-    """Largest error of the load against `aim` (t, 3) where the target is the flight's load; NaN where it never is."""
+    """Largest error of the load against `aim` (t, 3) where the target is the flight's load,
+    or NaN where it never is.
+    """
     if axes.not_followed.all():
         return Tracking(math.nan, math.nan, math.nan)
     error = np.where(axes.not_followed, -1.0, np.linalg.norm(axes.actual - aim, axis=1))

@@ -28,11 +28,11 @@ class StressCycles(Part):
 
     @declared("Pa", "largest range", name=None, key="largest_range")
     def largest(self) -> float:
-        """Largest range, Pa; zero without cycles."""
+        """Largest range, Pa, or zero without cycles."""
         return float(self.range.max(initial=0.0))
 
     def equivalent_range(self, exponent: float) -> float:
-        """Range of the one cycle that does the same damage, (Σ n Δσᵐ)^(1/m) Pa; zero without cycles."""
+        """Range of the one cycle that does the same damage, (Σ n Δσᵐ)^(1/m) Pa, or zero without cycles."""
         scale = self.largest  # taken out, so that no power of a stress overflows
         return scale * float(np.sum(self.count * (self.range / scale) ** exponent)) ** (1 / exponent) if scale else 0.0
 
@@ -60,7 +60,7 @@ class Fatigue(Part):
 
     @declared("", "damage of the machine over flight's")
     def damage_ratio(self) -> float:
-        """Damage on the machine over that in flight by Palmgren and Miner, Σ n Δσᵐ; means count for nothing.
+        """Damage on the machine over that in flight by Palmgren and Miner, Σ n Δσᵐ. Means count for nothing.
 
         NaN without cycles in flight, inf beside cycles that are next to none.
         """
@@ -95,7 +95,7 @@ class StationStatistics(Part):
 
     Trend: a Butterworth low-pass of fourth order, run forwards and backwards so that it shifts nothing in time, −6 dB
     at the cut-off; vibration: the rest (2020, section 4.3). Where the slope of a displacement jumps by k m/s, a false
-    vibration of up to 0.12 k/cutoff appears within one period of the cut-off; the ends are continued by their point
+    vibration of up to 0.12 k/cutoff appears within one period of the cut-off. The ends are continued by their point
     reflection, and the first and last half period of the cut-off are less certain.
     """
 
@@ -203,7 +203,7 @@ class RootHistory(Part):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class RootLoads(Part):
-    """Loads of the root in both environments, over the times compared; stress is NaN without outer fibres."""
+    """Loads of the root in both environments, over the times compared. Stress is NaN without outer fibres."""
 
     force_flight: Floats = quantity("N", "largest size of N, V_y, V_z in flight", "axis", name=None, key="force.flight")
     force_centrifuge: Floats = quantity(
@@ -239,7 +239,7 @@ class RootLoads(Part):
 
     @property
     def moment_agreement(self) -> float:
-        """Largest difference of the bending moment that is largest in flight, over that; NaN without a moment."""
+        """Largest difference of the bending moment that is largest in flight, over that, or NaN without a moment."""
         largest = float(self.moment_flight[self.main])
         return float(self.moment_difference[self.main]) / largest if largest > 0 else float("nan")
 
@@ -262,7 +262,7 @@ class Shock(Part):
 
     The acceleration is the tip's, or the spectra are the weighted mean of those at several control points.
 
-    Smallwood's ramp-invariant filter (absolute acceleration, maximax over the times compared); the oscillators begin at
+    Smallwood's ramp-invariant filter (absolute acceleration, maximax over the times compared). The oscillators begin at
     rest relative to the first sample.
     """
 
@@ -288,14 +288,14 @@ class Shock(Part):
 
     @property
     def ratio(self) -> Floats:
-        """Machine over flight, (f, 3); less than a tenth of flight's largest at a frequency counts as that tenth."""
-        least = _FELT * self.flight.max(axis=1, keepdims=True)
+        """Machine over flight, (f, 3). Less than a tenth of flight's largest at a frequency counts as that tenth."""
+        threshold = _FELT * self.flight.max(axis=1, keepdims=True)
         with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(np.maximum(self.centrifuge, least) / np.maximum(self.flight, least))
+            return np.asarray(np.maximum(self.centrifuge, threshold) / np.maximum(self.flight, threshold))
 
     @declared("", "largest and smallest ratio", "extreme", role="rows", name=None)
     def extremes(self) -> tuple[SpectrumRatio, ...]:
-        """The largest and the smallest ratio; empty where none is known."""
+        """The largest and the smallest ratio, or empty where none is known."""
         ratio = self.ratio
         if not np.isfinite(ratio).any():
             return ()

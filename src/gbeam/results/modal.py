@@ -253,12 +253,12 @@ class Campbell(Noted, Figured[Literal["campbell"]]):
 
     @declared("", "estimated error of the frequency in all", "mode", name=None)
     def error_estimate(self) -> Floats:
-        """Estimated errors of the frequencies, (k,), fractions; NaN where there is no estimate."""
+        """Estimated errors of the frequencies, (k,), fractions, or NaN where there is no estimate."""
         return totals(self.errors, len(self.direction))
 
     @declared("rad/s", "critical speed", role="fact", name=None)
     def critical_speed(self) -> float | None:
-        """Speed at which the equilibrium is lost, rad/s; None where it is not."""
+        """Speed at which the equilibrium is lost, rad/s, or None where it is not."""
         return None if self.critical is None else self.critical.value
 
     @declared("", "how the equilibrium is lost, as a sentence", role="fact", name=None)

@@ -35,12 +35,12 @@ class OneBody:
 
     @property
     def stations(self) -> Floats:
-        """Positions along the body from its root, (s,) m; the last is the tip."""
+        """Positions along the body from its root, (s,) m. The last is the tip."""
         return self.body.stations
 
 
 class DeflectedBody(OneBody):
-    """A result with the displacement of a body, likewise; over time its arrays begin with an axis of times."""
+    """A result with the displacement of a body, likewise. Over time its arrays begin with an axis of times."""
 
     @property
     def displacement(self) -> Floats:
@@ -54,7 +54,7 @@ class DeflectedBody(OneBody):
 
     @property
     def loads(self) -> Loads | None:
-        """Forces, moments and stresses of the body's sections; None where they are not computed."""
+        """Forces, moments and stresses of the body's sections, or None where they are not computed."""
         return self.body.loads
 
     @property
@@ -100,7 +100,7 @@ class ShapedBody(OneBody):
 
     @property
     def twist(self) -> Complex | None:
-        """Angle of the sections about the body's axis, (k, s) rad/m; None of a model without twist."""
+        """Angle of the sections about the body's axis, (k, s) rad/m, or None of a model without twist."""
         return self.body.twist
 
     @property

@@ -98,10 +98,10 @@ class Outline(Part):
         """Positions, m, ascending, and words of the supports: of all, or of those that hold a direction."""
         if self.supports is None:
             return ()
-        held = zip(self.support_rigid, self.support_yielding, strict=True)
-        chosen = [not direction or direction in f"{rigid} {yielding}".split() for rigid, yielding in held]
+        supports = zip(self.support_rigid, self.support_yielding, strict=True)
+        chosen = [not direction or direction in f"{rigid} {yielding}".split() for rigid, yielding in supports]
         places = zip(self.supports.tolist(), self.support_words, chosen, strict=True)
-        return tuple(sorted((at, words) for at, words, among in places if among))
+        return tuple(sorted((place, words) for place, words, axes in places if axes))
 
     @declared("m", "position of the body from the root", "body")
     def body_position(self) -> Floats:
@@ -113,7 +113,7 @@ class Outline(Part):
 
     @declared("", "rotation from base axes (columns) to hub axes (rows)", "hub_axis axis")
     def hub_mounting(self) -> Floats | None:
-        """Rotation from base to hub axes, (3, 3); None without a hub."""
+        """Rotation from base to hub axes, (3, 3), or None without a hub."""
         return self.R_HB if np.isfinite(self.radius) else None
 
 
@@ -236,12 +236,12 @@ class LoadPeaks(Part):
 
     @declared("", "least margin on yield of the section", "section", name=None, key="margin", optional=True)
     def section_margin(self) -> Floats | None:
-        """Least margin on yield of each section, (s,); None where the strength is not known."""
+        """Least margin on yield of each section, (s,), or None where the strength is not known."""
         return None if self.yield_strength is None else yield_margin(self.yield_strength, self.equivalent.value)
 
     @declared("Pa", "largest size of the normal stress", role="part", name=None, key="stress", optional=True)
     def largest_stress(self) -> StressPeak | None:
-        """Largest size of the normal stress along the beam; None where fibres are unknown."""
+        """Largest size of the normal stress along the beam, or None where fibres are unknown."""
         if not np.isfinite(self.tension.value).all():
             return None
         highest, lowest = self.tension.value.argmax(), self.compression.value.argmin()
@@ -254,7 +254,7 @@ class LoadPeaks(Part):
 
     @declared("1", "least margin on yield", role="part", name=None, key="margin", optional=True)
     def least_margin(self) -> Lowest | None:
-        """Least margin on yield, where the stress is largest; None where the strength or fibres are unknown."""
+        """Least margin on yield, where the stress is largest, or None where the strength or fibres are unknown."""
         margin, equivalent = self.section_margin, self.equivalent
         if margin is None or not np.isfinite(self.tension.value).all():
             return None
@@ -268,7 +268,7 @@ class LoadPeaks(Part):
 
     @declared("Pa", "largest von Mises stress", role="part", name=None, key="von_mises", optional=True)
     def largest_von_mises(self) -> Highest | None:
-        """Largest von Mises stress along the beam; None where it is not known."""
+        """Largest von Mises stress along the beam, or None where it is not known."""
         if self.von_mises is None:
             return None
         return Highest(*self._place(self.von_mises, int(self.von_mises.value.argmax())))
@@ -330,8 +330,9 @@ class Peaks(Part):
 
 
 def judged_point(sizes: Floats) -> int:
-    """Index of the point of a body under supports by which it is judged, from their displacements (p,): that of its
-    tip, the last, unless supports hold it; then that of the point that moves farthest.
+    """Index of the point of a body under supports by which it is judged, from the displacements (p,) of its points.
+
+    It is the tip, the last point, unless supports hold the tip. Then it is the point that moves farthest.
     """
     return int(sizes.argmax()) if sizes[-1] < HELD * sizes.max() else len(sizes) - 1
 
@@ -358,7 +359,7 @@ class Loads(Part):
     fixed to the beam at a station counts as outboard of it. The first of the sections is the root, the last the tip.
 
     Stresses over the section are N/A ± (|M_y| c_z/I_y + |M_z| c_y/I_z), of a round section N/A ± √(M_y² + M_z²) c/I,
-    with the section's extreme fibres c_y and c_z; NaN where these are unknown. Von Mises' has Saint-Venant's torsion
+    with the section's extreme fibres c_y and c_z, or NaN where these are unknown. Von Mises' has Saint-Venant's torsion
     and the shear forces' parabola besides, at 37 points of a rectangle and 24 around a circle or a tube; it is NaN of
     sections by properties or matrices, whose shear stress is not known. The margin on yield is by it where it is known.
     """
@@ -438,11 +439,11 @@ class Loads(Part):
 
     @declared("", "yield strength over stress less one", "time section", name="yield_margin", optional=True, key="")
     def margin(self) -> Floats | None:
-        """Margin on yield, yield strength over stress less one, (t, s); None where the strength is not given."""
+        """Margin on yield, yield strength over stress less one, (t, s), or None where the strength is not given."""
         if self.yield_strength is None:
             return None
-        known = self.von_mises is not None and np.isfinite(self.von_mises).all()
-        return yield_margin(self.yield_strength, np.asarray(self.von_mises) if known else self.stress)
+        is_known = self.von_mises is not None and np.isfinite(self.von_mises).all()
+        return yield_margin(self.yield_strength, np.asarray(self.von_mises) if is_known else self.stress)
 
     @declared("N", "force of the base on the beam", "time axis", name=None, key="")
     def root_force(self) -> Floats:

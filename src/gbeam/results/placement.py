@@ -157,8 +157,8 @@ class Placement(Figured[Literal["difference"]]):
 
     @declared("", "control point, mounting and smoothing of the best", role="part", name=None, key=INSIDE)
     def placed(self) -> Setting:
-        best = self.best
-        return Setting(best.control_point, best.mounting, best.smoothing, best.place, best.turn)
+        chosen = self.best
+        return Setting(chosen.control_point, chosen.mounting, chosen.smoothing, chosen.place, chosen.turn)
 
     @declared("", "the changes as KEY=VALUE of --set", role="fact", name=None, key="set")
     def settings(self) -> tuple[str, ...]:
@@ -166,24 +166,24 @@ class Placement(Figured[Literal["difference"]]):
 
     @property
     def changes(self) -> dict[str, str | list[str]]:
-        """Keys of the centrifuge to change, with their values as in a scenario; empty where the placement is the best
-        already, or every option breaks a limit.
+        """Keys of the centrifuge to change, with their values as in a scenario, or empty where the placement is the
+        best already, or every option breaks a limit.
         """
-        best, before = self.best, self.before
+        chosen, present = self.best, self.before
         if self.outcome != "done":
             return {}
         changes: dict[str, str | list[str]] = {}
-        now = (self.current, 0.0, 0.0) if before is None else before.place
-        if math.dist(best.place, now) > _SAME * self.length:
-            place = [f"{1e3 * component:.6g} mm" for component in best.place]
-            changes["control_point"] = place if any(best.place[1:]) or best.place[0] < 0 else place[0]
-        if before is not None and best.turn != before.turn:
-            changes["turn"] = [f"{math.degrees(component):.6g} deg" for component in best.turn]
-        if before is not None and best.mounting != before.mounting:
-            changes["mounting"] = best.mounting
-        if before is not None and abs(best.smoothing - before.smoothing) > 1e-3 * before.smoothing:
+        present_place = (self.current, 0.0, 0.0) if present is None else present.place
+        if math.dist(chosen.place, present_place) > _SAME * self.length:
+            place = [f"{1e3 * component:.6g} mm" for component in chosen.place]
+            changes["control_point"] = place if any(chosen.place[1:]) or chosen.place[0] < 0 else place[0]
+        if present is not None and chosen.turn != present.turn:
+            changes["turn"] = [f"{math.degrees(component):.6g} deg" for component in chosen.turn]
+        if present is not None and chosen.mounting != present.mounting:
+            changes["mounting"] = chosen.mounting
+        if present is not None and abs(chosen.smoothing - present.smoothing) > 1e-3 * present.smoothing:
             # Upwards: rounding must not sharpen the corners of a machine at its limit.
-            changes["smoothing"] = f"{math.ceil(1e5 * best.smoothing - 1e-6) / 100:g} ms"
+            changes["smoothing"] = f"{math.ceil(1e5 * chosen.smoothing - 1e-6) / 100:g} ms"
         return changes
 
     @declared("", "why none is allowed, or why placing saves little", role="fact")
@@ -191,24 +191,24 @@ class Placement(Figured[Literal["difference"]]):
         """Sentence on why no option is allowed, that the placement is the best already, or that placing saves little;
         empty where it helps.
         """
-        best, before = self.best, self.before
+        chosen, present = self.best, self.before
         if self.outcome != "done":
-            broken = "; ".join(str(use) for use in best.exceeded)
+            broken = "; ".join(str(use) for use in chosen.exceeded)
             return (
-                f"none of {len(self.options)} options keeps the machine's limits; nearest comes {best.mounting}, "
-                f'{1e3 * best.smoothing:.4g} ms: {broken}; try wider smoothing or inverse = "planned"'
+                f"none of {len(self.options)} options keeps the machine's limits; nearest comes {chosen.mounting}, "
+                f'{1e3 * chosen.smoothing:.4g} ms: {broken}; try wider smoothing or inverse = "planned"'
             )
         if not self.changes:
             return "the scenario has the best placement already"
-        if before is None or before.exceeded or best.total_error <= (1 - _LEVER) * before.total_error:
+        if present is None or present.exceeded or chosen.total_error <= (1 - _LEVER) * present.total_error:
             return ""
-        most_used = best.most_used
+        most_used = chosen.most_used
         at_limit = most_used is not None and most_used.share >= _FULL
         limit = f"; the machine is at its limit: {most_used}" if at_limit else ""
         return (
-            f"another place changes little: the measure goes from {100 * before.total_error:.3g} % to "
-            f"{100 * best.total_error:.3g} % of flight's peak, of which the error of the load at the control point "
-            f"makes {100 * best.tracking:.3g} %{limit}"
+            f"another place changes little: the measure goes from {100 * present.total_error:.3g} % to "
+            f"{100 * chosen.total_error:.3g} % of flight's peak, of which the error of the load at the control point "
+            f"makes {100 * chosen.tracking:.3g} %{limit}"
         )
 
     @declared(
@@ -225,21 +225,21 @@ class Placement(Figured[Literal["difference"]]):
         key="vibration_gain_over_middle",
     )
     def vibration_gain(self) -> float:
-        """Vibration with the control point at mid-span over that with the best, simulated; NaN where it was not."""
+        """Vibration with the control point at mid-span over that with the best, simulated, or NaN where it was not."""
         vibration = {check.name: check.vibration for check in self.verifications}
         if not {"best", "middle"} <= vibration.keys() or vibration["best"] <= 0:
             return float("nan")
         return vibration["middle"] / vibration["best"]
 
     def __repr__(self) -> str:
-        best = self.best
+        chosen = self.best
         measure = " + ".join(f"{weight:g} × {name}" for name, weight in self.weights.items() if weight)
         share = f" ({self.fraction:.4f} of the length)" if self.straight else ""
         lines = [
             f"Placement of {self.centrifuge!r}, tracking {self.flight!r}, by {measure}",
-            f"control point {1e3 * best.control_point:.2f} mm from the root{share}, "
-            f"{best.mounting}, smoothing {1e3 * best.smoothing:.4g} ms",
-            f"difference of the load {100 * best.difference:.3g} % of flight's peak, "
-            f"in total {100 * best.total_error:.3g} %; {len(self.options)} candidates",
+            f"control point {1e3 * chosen.control_point:.2f} mm from the root{share}, "
+            f"{chosen.mounting}, smoothing {1e3 * chosen.smoothing:.4g} ms",
+            f"difference of the load {100 * chosen.difference:.3g} % of flight's peak, "
+            f"in total {100 * chosen.total_error:.3g} %; {len(self.options)} candidates",
         ]
         return "\n  ".join(lines)

@@ -99,14 +99,14 @@ class Provenance(Part):
     def stated(self) -> tuple[Provenance, Environment]:
         """Return the provenance with date and environment filled in, and the environment, which takes time to find."""
         environment = self.environment or current_environment()
-        return replace(self, environment=environment, date=self.date or _now()), environment
+        return replace(self, environment=environment, date=self.date or _date()), environment
 
 
-def _now() -> str:
+def _date() -> str:
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")  # of builds that must be the same again
     decimal = epoch.isdecimal() and len(epoch) < 12  # before the year 5139
-    now = datetime.fromtimestamp(int(epoch), UTC) if decimal else datetime.now(UTC)
-    return now.isoformat(timespec="seconds")
+    timestamp = datetime.fromtimestamp(int(epoch), UTC) if decimal else datetime.now(UTC)
+    return timestamp.isoformat(timespec="seconds")
 
 
 @cache

@@ -212,7 +212,7 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
 
     @declared("s", "time of the part of the flight", "ends", name=None, key="span", optional=True)
     def part_span(self) -> tuple[float, float] | None:
-        """First and last time of the part of a flight, s; None where it is all of it."""
+        """First and last time of the part of a flight, s, or None where it is all of it."""
         return None if self.whole is None else self.flight_span
 
     @declared("", "samples of the histories, and those in files", role="fact", name=None)
@@ -221,7 +221,7 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
 
     @declared("m", "length of the vector of half peak-to-peak from residual_from on", "point", optional=True, name=None)
     def residual_size(self) -> Floats | None:
-        """Length of the vector of half peak-to-peak of every point, (p,) m; None where there is no residual."""
+        """Length of the vector of half peak-to-peak of every point, (p,) m, or None where there is no residual."""
         return None if self.residual_amplitude is None else np.linalg.norm(self.residual_amplitude, axis=-1)
 
     @declared("", "coordinate at the end", "coordinate", name="last", key="end")
@@ -299,7 +299,7 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
         return self.q[:, index_of("name", name, self.coordinates)]
 
     def _signal(self, name: str) -> Floats | None:
-        """Quantity over time by its whole name; None if there is none."""
+        """Quantity over time by its whole name, or None if there is none."""
         owner, _, kind = name.rpartition(".")
         of_point, _, axis = kind.rpartition("_")
         if owner in self.points and of_point in _OF_POINTS and axis in tuple("xyz"):

@@ -36,7 +36,7 @@ class StressAt(Part):
 
     @declared("", "yield strength over von Mises stress less one", optional=True)
     def margin(self) -> float | None:
-        """Margin on yield; None where the strength is not known."""
+        """Margin on yield, or None where the strength is not known."""
         if self.yield_strength is None:
             return None
         return float(yield_margin(self.yield_strength, np.array(self.von_mises)))
@@ -280,13 +280,13 @@ class SpecimenLoads(Figured[Literal["specimen"]]):
 
     @declared("", "whether the spread is within its limit", role="fact", name=None, optional=True)
     def within_limit(self) -> bool | None:
-        """True if the spread is within its limit; None without one, or where nothing accelerates."""
+        """True if the spread is within its limit, or None without one, or where nothing accelerates."""
         spread, limit = self.spread_max, self.spread_limit
         return None if limit is None or np.isnan(spread) else bool(spread <= limit)
 
     @property
     def refusal(self) -> str:
-        """The limit that is not kept, in words; empty where it is, or there is none."""
+        """The limit that is not kept, in words, or empty where it is, or there is none."""
         if self.within_limit is not False:
             return ""
         assert self.spread_limit is not None

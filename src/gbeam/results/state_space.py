@@ -102,18 +102,20 @@ class Truncation(Part):
     @declared("mixed", "bound of the error", role="fact")
     def bound(self) -> float:
         """Twice the sum of the Hankel singular values left out, which the difference's largest singular value never
-        exceeds at any frequency (Glover 1984); NaN of a modal truncation."""
+        exceeds at any frequency (Glover 1984), or NaN of a modal truncation."""
         return float(2 * self.hankel[len(self.hankel) - self.states :].sum()) if self.method == "balanced" else math.nan
 
     @declared("", "the error over the gain", "output input", name=None)
     def share(self) -> Floats:
-        """The error over the gain, (p, m); zero where there is no gain at all."""
+        """The error over the gain, (p, m), or zero where there is no gain at all."""
         return np.divide(self.error, self.gain, out=np.zeros_like(self.error), where=self.gain > 0)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Margin(Part):
-    """Stability margins of a loop that is cut at one drive, the others closed; NaN where an error exceeds one half."""
+    """Stability margins of a loop that is cut at one drive, the others closed,
+    or NaN where an error exceeds one half.
+    """
 
     drive: str = labels("name of the controller and its drive", key="")
     gain: float = quantity(
@@ -198,7 +200,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
 
     @declared("", "estimated error of the frequency, a fraction", "pole", key=None, optional=True)
     def pole_error(self) -> Floats:
-        """Total errors of the poles' frequencies, (k,); empty where there is no estimate."""
+        """Total errors of the poles' frequencies, (k,), or empty where there is no estimate."""
         return np.zeros(0) if self.errors is None else self.errors.total
 
     @declared("1/s", "eigenvalue of A; of samples ln z over their step", "eigenvalue", key="/eigenvalue")
@@ -215,7 +217,7 @@ class StateSpace(Noted, Figured[Literal["poles"]]):
 
     @declared("Hz", "frequency up to which every pole is accurate", role="fact", name=None)
     def accurate_to(self) -> float:
-        """Frequency up to which every pole's is within one in a hundred of the exact model's, Hz; NaN if not known.
+        """Frequency up to which every pole's is within one in a hundred of the exact model's, Hz, or NaN if not known.
 
         Zero where the first is not.
         """

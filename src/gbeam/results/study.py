@@ -260,7 +260,7 @@ class Reproduction(Part):
 
     def circumstances(self) -> list[str]:
         """Lines on what has changed since the file was written."""
-        return [f"{name} was {old_value}, is {now}" for name, (old_value, now) in self.changed.items()]
+        return [f"{name} was {old_value}, is {new_value}" for name, (old_value, new_value) in self.changed.items()]
 
 
 # Every kind of result by its name.

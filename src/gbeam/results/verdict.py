@@ -48,14 +48,14 @@ class Verdict:
     def headline(self) -> str:
         """The decision and its reason in one line, with three numbers where as many are known."""
         judged = self.judged
-        decision, intro, reason, worst = self._decided
+        decision, intro, reason, worst_words = self._decided
         numbers = {
             "largest_load": self._loads(with_flight=not judged.criteria),
             "followed": f"followed {self._followed} of the time",
         }
-        figures = [words for name, words in numbers.items() if words and not (worst and worst.name == name)]
+        figures = [words for name, words in numbers.items() if words and not (worst_words and worst_words.name == name)]
         # A criterion that is told has a number of its own.
-        count = 1 if worst is not None and worst.passed is not None else 2
+        count = 1 if worst_words is not None and worst_words.passed is not None else 2
         flight = level_words("the flight", self.scale)
         if judged.whole is not None:
             decision += f" for a part of {flight}"
@@ -71,9 +71,9 @@ class Verdict:
         judged, criteria = self.judged, self.judged.criteria
         if judged.decision == NOT_ACCEPTED:
             missed = [criterion for criterion in criteria if criterion.passed is False]
-            worst = max(missed, key=lambda criterion: criterion.use)
+            worst_criterion = max(missed, key=lambda criterion: criterion.use)
             unkept = [criterion for criterion in criteria if criterion.passed is not True]
-            return NOT_ACCEPTED, "" if len(unkept) == 1 else "worst of all: ", worst.brief, worst
+            return NOT_ACCEPTED, "" if len(unkept) == 1 else "worst of all: ", worst_criterion.brief, worst_criterion
         if judged.decision == NOT_DECIDED:
             unknown = next(criterion for criterion in criteria if criterion.passed is not True)
             return NOT_DECIDED, "", f"{unknown.words} is not known ({unknown.limit_written})", unknown
@@ -82,8 +82,8 @@ class Verdict:
         if judged.not_judged:
             if not criteria:
                 return "Machine alone, no limit judged", "", "", None
-            worst = max(criteria, key=lambda criterion: criterion.use)
-            return "Machine alone, no limit missed", "", worst.brief, worst
+            worst_criterion = max(criteria, key=lambda criterion: criterion.use)
+            return "Machine alone, no limit missed", "", worst_criterion.brief, worst_criterion
         if not criteria:
             return judged.decision or "No limits set", "", "", None
         nearest = max(criteria, key=lambda criterion: criterion.use)
@@ -120,8 +120,8 @@ class Verdict:
         limits = {criterion.name: criterion for criterion in self.judged.criteria if criterion.name in names}
         first = limits.pop(names[0], None)
         words = f"({otherwise})" if first is None else f"({_with_miss(first)})"
-        others = [criterion for criterion in limits.values() if criterion.passed is not True]
-        return words + "".join(f"; missed: {criterion}" for criterion in others)
+        other_limits = [criterion for criterion in limits.values() if criterion.passed is not True]
+        return words + "".join(f"; missed: {criterion}" for criterion in other_limits)
 
     def _load(self) -> str:
         load = self.judged.peaks.get("largest_load", PeakPair())
@@ -135,18 +135,18 @@ class Verdict:
 
     def _peaks(self) -> str:
         accounting = self.judged.accounting
-        peaks, above = accounting.peaks, f" above {in_g(accounting.idle)} (idle)" if accounting.idle else ""
+        peaks, above_idle = accounting.peaks, f" above {in_g(accounting.idle)} (idle)" if accounting.idle else ""
         if not peaks:
-            return f"Peaks: the flight has none{above}."
-        count = f"{len(peaks) - len(accounting.missed)} of {len(peaks)}{above} reproduced"
-        main, worst = accounting.main, max(peaks, key=lambda peak: peak.error)
+            return f"Peaks: the flight has none{above_idle}."
+        count = f"{len(peaks) - len(accounting.missed)} of {len(peaks)}{above_idle} reproduced"
+        main, worst_peak = accounting.main, max(peaks, key=lambda peak: peak.error)
         name = "the worst"
         if main is not None and main.reason:
-            name, worst = "the largest", main
-        size = f"{percent(worst.error)} off" if worst.error >= _APART else "within 0.1 %"
+            name, worst_peak = "the largest", main
+        size = f"{percent(worst_peak.error)} off" if worst_peak.error >= _APART else "within 0.1 %"
         limit = self._limit("peaks", otherwise=f"tolerance {percent(accounting.tolerance)}")
-        reason = f"; {_because(worst.reason)}" if worst.reason else ""
-        load = f"{in_g(worst.load)} at {worst.time:.2f} s"
+        reason = f"; {_because(worst_peak.reason)}" if worst_peak.reason else ""
+        load = f"{in_g(worst_peak.load)} at {worst_peak.time:.2f} s"
         peak = load if len(peaks) == 1 else f"{name}, {load},"
         return f"Peaks: {count}; {peak} is {size} {limit.removesuffix(')')}{reason})."
 
@@ -198,13 +198,13 @@ class Verdict:
             return stretch.end - stretch.start
 
         above_idle = [stretch for stretch in stretches if stretch.reason != _IDLE and length(stretch) > _BRIEF]
-        worst = max(above_idle or stretches, key=length, default=None)
-        if worst is None:
+        longest = max(above_idle or stretches, key=length, default=None)
+        if longest is None:
             return ""
-        span = f"from {worst.start:.2f} to {worst.end:.2f} s"
-        if worst.reason == _IDLE:
+        span = f"from {longest.start:.2f} to {longest.end:.2f} s"
+        if longest.reason == _IDLE:
             return f"Machine: it cannot go below idle, {in_g(self.judged.accounting.idle)}, longest {span}."
-        return f"Machine: it cannot follow {in_g(worst.flight_peak)} {span} ({_because(worst.reason)})."
+        return f"Machine: it cannot follow {in_g(longest.flight_peak)} {span} ({_because(longest.reason)})."
 
 
 def _because(reason: str) -> str:
@@ -215,8 +215,8 @@ def _because(reason: str) -> str:
 def _shortened(start: str, intro: str, reason: str, context: list[str], remark: str) -> str:
     """Headline of at most :data:`WORDS` words: without the last of the context, all of it, the intro, or the remark."""
     shorter = [(intro, context[:count], remark) for count in range(len(context), -1, -1)]
-    for first, known, last in (*shorter, ("", [], remark), ("", [], "")):
-        parts = [f"{first}{reason}", ", ".join(known), last]
+    for first, words, last in (*shorter, ("", [], remark), ("", [], "")):
+        parts = [f"{first}{reason}", ", ".join(words), last]
         line = f"{start}: {'; '.join(filter(None, parts))}"
         if len(line.split()) <= WORDS:
             break

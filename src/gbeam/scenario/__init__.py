@@ -1,7 +1,7 @@
 """Scenario files: text -> validated scenario -> the objects of the core.
 
-text/ reads quantities, places and overrides; schema/ declares the tables; load validates; build makes the objects;
-explain and placing put every error at its line; template is for those who write scenarios.
+text/ reads quantities, places and overrides; schema/ declares the tables; load validates. Build makes the objects;
+explain and placing put every error at its line. Template is for those who write scenarios.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""Objects of the core from a validated scenario; their modules are imported only when one is built."""
+"""Objects of the core from a validated scenario. Their modules are imported only when one is built."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def build(scenario: AnyScenario, *, ahead: bool = False, system: System | None =
 
 
 def _system(parts: Collector, scenario: schema.Environments) -> System | None:
-    """The bodies of a scenario; None if they cannot be made, with the reasons in `parts`."""
+    """The bodies of a scenario, or None if they cannot be made, with the reasons in `parts`."""
     if isinstance(scenario, schema.Scenario):  # whose modules are fewer
         return parts.attempt("", _of_beam, parts, scenario)
     from gbeam.scenario.build_system import system_of
@@ -150,7 +150,7 @@ def build_machines(scenario: schema.Environments) -> dict[str, Centrifuge]:
 
 
 def build_specimen(scenario: schema.Environments) -> System | None:
-    """System of a scenario; None if it has no specimen."""
+    """System of a scenario, or None if it has no specimen."""
     if type(scenario) is schema.Environments:
         return None
     parts = Collector()
@@ -161,7 +161,7 @@ def build_specimen(scenario: schema.Environments) -> System | None:
 
 
 def _acceptance(parts: Collector, scenario: schema.Environments) -> dict[str, Acceptance]:
-    """Limits of acceptance and their settings, by the name of the centrifuge; `parts` collects what is wrong."""
+    """Limits of acceptance and their settings, by the name of the centrifuge. `parts` collects what is wrong."""
     machines = {name: table for name, table in scenario.motion.items() if isinstance(table, schema.Centrifuge)}
     by_machine = ((name, table.limits_of_acceptance) for name, table in machines.items())
     limited: dict[str, Any] = {name: limits for name, limits in by_machine if limits}

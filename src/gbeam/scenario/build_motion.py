@@ -72,9 +72,9 @@ def centrifuges(
 
 def _centrifuge(parts: Collector, where: str, table: Any, flight: Flight) -> Centrifuge | None:
     """Build one centrifuge for the flight that it tracks, on an example machine if one is named."""
-    before = len(parts.errors)
+    errors_before = len(parts.errors)
     options = arguments_of(parts, where, table, {"kind", "tracks", "machine", "commands", "accept"})
-    if len(parts.errors) > before:
+    if len(parts.errors) > errors_before:
         return None
     if table.machine is not None:
         machine, limits = machines[table.machine], options.get("limits", MachineLimits())

@@ -10,15 +10,15 @@ from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
 
 def system_of(parts: Collector, scenario: SystemScenario | SpecimenScenario) -> System | None:
-    """The system of a scenario; None if it cannot be made, with the reasons in `parts`."""
+    """The system of a scenario, or None if it cannot be made, with the reasons in `parts`."""
     if isinstance(scenario, SpecimenScenario):
         name, table = scenario.specimen
         kind = OF_TABLE[type(table)]
         body = (kind.alone or kind.build)(parts, f"bodies.{name}", table)
         return None if body is None else System.of(body, name)
-    before = len(parts.errors)
+    errors_before = len(parts.errors)
     bodies = {name: OF_TABLE[type(body)].build(parts, f"bodies.{name}", body) for name, body in scenario.bodies.items()}
-    others = {key: object_of(parts, key, getattr(scenario, key)) for key in ("joints", "forces", "controllers")}
-    if len(parts.errors) > before:
+    other_tables = {key: object_of(parts, key, getattr(scenario, key)) for key in ("joints", "forces", "controllers")}
+    if len(parts.errors) > errors_before:
         return None
-    return parts.attempt("", System, bodies, gravity=scenario.system.gravity, **others)
+    return parts.attempt("", System, bodies, gravity=scenario.system.gravity, **other_tables)

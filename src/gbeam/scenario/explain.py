@@ -41,14 +41,14 @@ def explain(source: Source, error: ErrorDetails) -> Diagnostic:
 
 def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, Mark, Path]:
     """Message, hint, mark (whether the caret stands under the key or the value), and path of the error."""
-    what, context = error["type"], error.get("ctx", {})
+    problem_kind, context = error["type"], error.get("ctx", {})
     field = _field(source, path)
     value = source.raw(path)
-    if what == "value_error":  # of a quantity
+    if problem_kind == "value_error":  # of a quantity
         return context["error"].problem, context["error"].hint, "value", path
-    if what == "scenario":
+    if problem_kind == "scenario":
         return context["message"], context["hint"], context["mark"], path
-    if what == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
+    if problem_kind == "missing" and isinstance(path[-1], int):  # a tuple of fixed length
         parts = annotation_parts(field.annotation if field else None)
         count = next((len(get_args(part)) for part in parts if get_origin(part) is tuple), 3)
         return (
@@ -57,32 +57,32 @@ def _words(source: Source, error: ErrorDetails, path: Path) -> tuple[str, str, M
             "value",
             path[:-1],
         )
-    if what == "missing":
+    if problem_kind == "missing":
         return f"{path[-1]} is missing", _add(str(path[-1]), field), "key", path[:-1]
-    if what == "extra_forbidden":
+    if problem_kind == "extra_forbidden":
         table = _table(source, path[:-1])
         names = fields_of(table) if table else {}
         return "unknown key", advise(str(path[-1]), names, listed="the keys here are"), "key", path
-    if what in ("union_tag_invalid", "union_tag_not_found") and isinstance(value, dict):
+    if problem_kind in ("union_tag_invalid", "union_tag_not_found") and isinstance(value, dict):
         tag, choices = _choices(field)
-        if what == "union_tag_not_found":
+        if problem_kind == "union_tag_not_found":
             return f"{tag} is missing", f"choose one of {', '.join(choices)}", "key", path
         return "unknown choice {value}", advise(context["tag"], choices), "value", (*path, tag)
-    if what == "literal_error":
+    if problem_kind == "literal_error":
         choices = [str(choice) for choice in _literals(field.annotation if field else None)]
         return "unknown choice {value}", advise(str(value), choices), "value", path
-    if what in ("too_short", "too_long"):
+    if problem_kind in ("too_short", "too_long"):
         limit = context.get("min_length", context.get("max_length"))
         count = context["actual_length"]
-        bound = "at least" if what == "too_short" else "at most"
+        bound = "at least" if problem_kind == "too_short" else "at most"
         return f"has {count} {'entry' if count == 1 else 'entries'}", f"give {bound} {limit}", "value", path
-    if what == "greater_than_equal":
+    if problem_kind == "greater_than_equal":
         size = f"below {context['ge']}" if context["ge"] else "negative"
         return f"{{value}} is {size}", f"give {context['ge']} or more", "value", path
-    if what == "less_than_equal":
+    if problem_kind == "less_than_equal":
         return "{value} is more than is computed", f"give {context['le']} or less", "value", path
-    if what in _NOT_A:
-        return f"{spoken(value)} is not {_NOT_A[what][0]}", _NOT_A[what][1], "value", path
+    if problem_kind in _NOT_A:
+        return f"{spoken(value)} is not {_NOT_A[problem_kind][0]}", _NOT_A[problem_kind][1], "value", path
     # All other errors are of a value where a table belongs.
     description = field.description if field else ""
     return f"{spoken(value)} is not a table", f"give a table: {description}", "value", path

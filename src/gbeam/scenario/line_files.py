@@ -46,7 +46,7 @@ def read_line(file: str, unit: str | None, twist: Any, smooth: bool) -> Line:
 
 
 def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
-    """Columns of a line's file by name, in SI; `unit` is of lengths without one. InputError for an unknown column."""
+    """Columns of a line's file by name, in SI. `unit` is of lengths without one. InputError for an unknown column."""
     from gbeam.motion.records.units import unit_in_name, words_of
 
     declared = parameters_of(Line.of_points)
@@ -54,9 +54,9 @@ def _columns(rows: Table, unit: str | None) -> dict[str, Any]:
     columns: dict[str, Any] = {}
     for column in rows.columns:
         stated = column.unit.strip("[]() ") or unit_in_name(column.name)
-        name, *others = words_of(column.name) or [""]
+        name, *further_words = words_of(column.name) or [""]
         kind = known.kind if (known := kinds.get(name)) else ""
-        if not kind or others not in ([], words_of(stated)) or name in columns:
+        if not kind or further_words not in ([], words_of(stated)) or name in columns:
             problem = f"has a column {column.name!r}" + (" a second time" if name in columns else "")
             raise InputError("", problem, _NAMED)
         length_unit = unit if kind == "length" else None

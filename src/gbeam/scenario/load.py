@@ -1,4 +1,4 @@
-"""Validated scenarios from a file or a text, with their origin; errors have their places in the text."""
+"""Validated scenarios from a file or a text, with their origin. Errors have their places in the text."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def provenance(scenario: Environments, command: str = "") -> Provenance:
 
 
 def text_of(scenario: Environments) -> ScenarioText | None:
-    """Text that a scenario was read from, by which it is read again; None of one that was made without."""
+    """Text that a scenario was read from, by which it is read again, or None of one that was made without."""
     from gbeam.results.provenance import ScenarioText
 
     source = scenario.source
@@ -57,7 +57,7 @@ def text_of(scenario: Environments) -> ScenarioText | None:
 
 
 def _files(scenario: Environments) -> Iterator[tuple[str, str]]:
-    """Yield name and path of files that a scenario reads; records are named by their motion, others by their key."""
+    """Yield name and path of files that a scenario reads. Records are named by their motion, others by their key."""
     for name, motion in scenario.motion.items():
         if isinstance(motion, Flight) and isinstance(motion.record, Record):
             yield name, motion.record.file
@@ -149,7 +149,7 @@ def _source(
     *,
     distributions: bool = False,
 ) -> Source:
-    """Parsed text with its overrides; distributions have their centres, or are errors unless `distributions`."""
+    """Parsed text with its overrides. Distributions have their centres, or are errors unless `distributions`."""
     data, applied = override(parse(name, text), name, overrides)
     source = Source(name, text, Path(folder), data, applied)
     distributed = list(find_distributions(data))

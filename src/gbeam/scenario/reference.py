@@ -88,9 +88,9 @@ class _Page:
                     self._visit(self.tables[name], inner)
 
     def _heading(self, name: str) -> str:
-        place, *others = self.places[name]
+        place, *other_places = self.places[name]
         key, word = tag_of(self.tables[name])
-        return ", ".join([place, *([f'{key} = "{word}"'] if key else []), *others])
+        return ", ".join([place, *([f'{key} = "{word}"'] if key else []), *other_places])
 
     def _table(self, name: str) -> str:
         table = self.tables[name]
@@ -137,10 +137,10 @@ class _Page:
 
     def _by_coordinate(self, name: str, profile_quantity: str) -> str:
         """Keys of a table by a joint's coordinates and their possible values; keys with the same ones together."""
-        alike: dict[str, list[str]] = {}
+        keys_by_value: dict[str, list[str]] = {}
         for key, schema in self.tables[name]["properties"].items():
-            alike.setdefault(self._value(schema, profile_quantity), []).append(f"`{key}`")
-        return "; ".join(f"{', '.join(keys)}: {value}" for value, keys in alike.items())
+            keys_by_value.setdefault(self._value(schema, profile_quantity), []).append(f"`{key}`")
+        return "; ".join(f"{', '.join(keys)}: {value}" for value, keys in keys_by_value.items())
 
     def _quantity(self, schema: dict[str, Any], profile_quantity: str) -> str:
         """Name of a quantity with its unit, sign and the words accepted instead of it."""

@@ -123,15 +123,15 @@ def run_again(path: str | os.PathLike[str], result: Stored, progress: Progress =
         scenario = loads(origin.scenario, str(path), changes, folder=folder)
         answers = study(replace(build(scenario, ahead=True), provenance=None), progress=progress)
         result_now = stored(answers)
-    before, now = computed_values(result), computed_values(result_now)
+    values_before, values_now = computed_values(result), computed_values(result_now)
     holds_a_study = any(name.startswith("motions/") for name in result.variables)
     if not holds_a_study:
-        (motion, *others) = facts_of(result).get("motions") or answers.responses
-        if others:
+        (motion, *further_motions) = facts_of(result).get("motions") or answers.responses
+        if further_motions:
             fix = "give the result.nc of all its motions"
             raise InputError(str(path), "holds one response, and does not say of which motion", fix)
-        now = _of_one_motion(now, motion, before)
-    return reproduction(os.fspath(path), before, now, origin, units_in(result))
+        values_now = _of_one_motion(values_now, motion, values_before)
+    return reproduction(os.fspath(path), values_before, values_now, origin, units_in(result))
 
 
 def _of_one_motion(study: Mapping[str, Any], motion: str, names: Collection[str]) -> dict[str, Any]:
@@ -157,7 +157,7 @@ def reproduction(
     origin: Provenance,
     unit_of: Callable[[str], str],
 ) -> Reproduction:
-    """Compare variables of a file, by name, with those computed again; `unit_of` gives the unit of a name.
+    """Compare variables of a file, by name, with those computed again. `unit_of` gives the unit of a name.
 
     In another environment than that of the file, differences are allowed that rounding makes.
     """
@@ -167,7 +167,7 @@ def reproduction(
     scales = _scales(before, [name for name in before if name in now], unit_of) if changed else {}
 
     def scale_of(name: str) -> float:
-        """Size against which rounding of a variable is measured; zero in the same environment."""
+        """Size against which rounding of a variable is measured, or zero in the same environment."""
         is_share = bool(changed) and unit_of(name) in ("", "1") and _SHARE.search(name) is not None
         return 1.0 if is_share else scales.get(unit_of(name), 0.0)
 

@@ -19,7 +19,7 @@ _STEP = re.compile(r"([^.\[\]=\s]+)((?:\[[0-9]{1,9}\])*)")
 
 @dataclass(frozen=True)
 class Span:
-    """A stretch of one line: `line` and `column` count from 1, in characters; `end` is past its last."""
+    """A stretch of one line: `line` and `column` count from 1, in characters. `end` is past its last."""
 
     line: int
     column: int
@@ -28,7 +28,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Place:
-    """Places of an entry's key and value; elements of lists have the value's twice, tables with a header its name."""
+    """Places of an entry's key and value. Elements of lists have the value's twice, tables with a header its name."""
 
     key: Span
     value: Span
@@ -41,7 +41,7 @@ def path_text(path: Path) -> str:
 
 
 def parse_path(text: str) -> Path | None:
-    """Read a path; None if `text` is not one."""
+    """Read a path, or None if `text` is not one."""
     path: Path = ()
     for part in text.split("."):
         match = _STEP.fullmatch(part)
@@ -111,7 +111,7 @@ FAMILIES = {
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution of one value; `arguments` are in `unit`, and `words` are these as they were written."""
+    """A distribution of one value. `arguments` are in `unit`, and `words` are these as they were written."""
 
     family: str
     arguments: tuple[float, ...]
@@ -139,8 +139,8 @@ def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
     """Read a distribution from its name and its numbers."""
     law = FAMILIES.get(family)
     if law is None:
-        near = closest(family, FAMILIES)
-        fix = f"did you mean {near!r}?" if near else f"choose {', '.join(FAMILIES)}"
+        match = closest(family, FAMILIES)
+        fix = f"did you mean {match!r}?" if match else f"choose {', '.join(FAMILIES)}"
         raise InputError("", f"has the unknown distribution {family!r}", fix)
     words = ", ".join(part.strip() for part in parts)
     if len(parts) != len(law.arguments):
@@ -149,9 +149,9 @@ def read_distribution(family: str, parts: Sequence[str]) -> Distribution:
         )
     if family == "lognormal":
         (median,), unit = quantities(parts[:1])
-        (spread,), other = quantities(parts[1:])
-        if other:
-            raise InputError("", f"has a spread in {other}", "the logarithm's has no unit")
+        (spread,), spread_unit = quantities(parts[1:])
+        if spread_unit:
+            raise InputError("", f"has a spread in {spread_unit}", "the logarithm's has no unit")
         arguments = [median, spread]
     else:
         arguments, unit = quantities(parts)

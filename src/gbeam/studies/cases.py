@@ -156,7 +156,7 @@ class Variation:
         return replace(self, texts=texts, values=values)
 
     def parameter(self, unit: str) -> Parameter:
-        """Record of the variation in the result; `unit` is the scenario's, used where the values have none."""
+        """Record of the variation in the result. `unit` is the scenario's, used where the values have none."""
         assert self.values is not None
         distribution = str(self.distribution) if self.distribution else ""
         numeric = np.issubdtype(self.values.dtype, np.number)

@@ -2,7 +2,7 @@
 
 Those of responses over time come from the derivative of the run (`gbeam.analysis.response.differentiated`).
 Where a jump moves with the value, which the run's fixed steps would miss, and for all other answers, they are central
-differences of fourth order; their error is the difference from those of second order.
+differences of fourth order. Their error is the difference from those of second order.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Neighbourhood:
     """A case with its answer, and the cases with a little less and a little more of each value.
 
     With `grids`, by motion, runs take those steps and estimate no errors; `parts` (``loads``, ``axes``) that are
-    false are not computed; `adapt` changes every case before it is answered.
+    false are not computed. `adapt` changes every case before it is answered.
     """
 
     def __init__(
@@ -211,7 +211,7 @@ class Neighbourhood:
         return in_model_of(self.case, case)
 
     def _built(self, k: int | None, step: float) -> Any:
-        """The case with parameter `k` more by `step`; reduced meshes are kept on disk of the unchanged case only."""
+        """The case with parameter `k` more by `step`. Reduced meshes are kept on disk of the unchanged case only."""
         changes = self._changes(k, step)
         with unkept() if changes else nullcontext():
             return self.adapt(self.inquiry.case(changes))
@@ -251,7 +251,7 @@ class Quantities:
         adapt: Callable[[Any], Any] = lambda case: case,
         progress: Progress = None,
     ) -> None:
-        """Prepare functions of the parameters; nothing is computed yet."""
+        """Prepare functions of the parameters. Nothing is computed yet."""
         self._inquiry, self._parameters, self._read = inquiry, parameters, read
         self._motions, self._parts, self._adapt, self._progress = motions, parts, adapt, progress
         self._start = start if start is not None and start.runs else None
@@ -261,11 +261,11 @@ class Quantities:
         self.evaluations = 0
 
     def __call__(self, values: Floats) -> Floats:
-        """Quantities (m,) at values (p,) of the parameters; the last ones are kept."""
+        """Quantities (m,) at values (p,) of the parameters. The last ones are kept."""
         return self._evaluate(values)[1]
 
     def slopes(self, values: Floats) -> Floats:
-        """Derivatives with respect to the values, (m, p); the last ones are kept."""
+        """Derivatives with respect to the values, (m, p). The last ones are kept."""
         nearby = self._evaluate(values)[2]
         if self._sloped is None or self._sloped[0] is not nearby:
             self._sloped = nearby, nearby.slopes(self._read, self._motions, rough=True).slopes
@@ -342,7 +342,7 @@ def _slope(smaller: Floats, middle: Floats, larger: Floats, step: float) -> tupl
 def _differences(shifted: Callable[[float], Floats], middle: Floats, step: float) -> tuple[Floats, Floats, Floats]:
     """Difference of fourth order, difference of the one-sided slopes, and difference from second order, (m,) each.
 
-    `shifted` returns the quantities a number of steps away; `middle` are those at no steps.
+    `shifted` returns the quantities a number of steps away. `middle` are those at no steps.
     """
     inner = shifted(1.0), shifted(-1.0)
     slope, bend = _slope(inner[1], middle, inner[0], step)

@@ -1,6 +1,6 @@
 """Computation of cases by a worker, from the scenario's text to the figures, one by one or integrated together.
 
-A case's digits do not depend on the cases beside it (:func:`gbeam.simulate_batch`); whether it is integrated with
+A case's digits do not depend on the cases beside it (:func:`gbeam.simulate_batch`). Whether it is integrated with
 others depends only on the sweep and on the case.
 """
 
@@ -78,7 +78,7 @@ class Inquiry:
 
     @cached_property
     def needs(self) -> Needs:
-        """Parts of answers that the figures are taken from; all parts while their keys are not known."""
+        """Parts of answers that the figures are taken from. All parts while their keys are not known."""
         if not self.keys and not self.histories:
             return Needs()
         errors = any("error" in str(key) for keys in self.keys for key in own_keys(keys))
@@ -162,7 +162,7 @@ def without_figures(number: int, width: int, error: Exception) -> Row:
 
 
 def _line(error: Exception) -> str:
-    """First line of an error's message; further lines show the scenario's source."""
+    """First line of an error's message. Further lines show the scenario's source."""
     text = str(error).strip()
     return text.splitlines()[0] if text else type(error).__name__
 
@@ -260,7 +260,7 @@ def _responses(
 
 
 def _row(inquiry: Inquiry, number: int, case: Case, answers: Mapping[str, Response | Exception]) -> Row:
-    """Row of a case from its answers. A ComputationError concerns one motion; any other exception ends the case."""
+    """Row of a case from its answers. A ComputationError concerns one motion. Any other exception ends the case."""
     responses: dict[str, Response] = {}
     failures: dict[str, Failure] = {}
     try:

@@ -54,7 +54,7 @@ def answer_facts(answer: Any, title: str = "") -> Facts:
 
 @cache  # by kind, whose declarations do not change; nobody writes into it
 def tree_of_figures(kind: type) -> dict[str, Any]:
-    """Declared entries of the answers of a class, as a tree like `answer_facts`; the key ANY stands for any name."""
+    """Declared entries of the answers of a class, as a tree like `answer_facts`. The key ANY stands for any name."""
     from gbeam.results.criteria import RULES
     from gbeam.results.facts import ANY, Entry
     from gbeam.results.study import tree_of_answers
@@ -81,7 +81,7 @@ def choices(verb: str) -> dict[str, Entry]:
 
 
 def _message(answer: Any) -> str:
-    """Reasons, by motion, why there is no answer, or why it is refused; empty if there are none."""
+    """Reasons, by motion, why there is no answer, or why it is refused, or empty if there are none."""
     if isinstance(answer, tuple):
         reasons = {plan.name: plan.message or plan.refusal for plan in answer if hasattr(plan, "refusal")}
     elif hasattr(answer, "unfinished"):
@@ -213,7 +213,7 @@ def usual_figures(template: Template, verb: str, *, judged: bool = False) -> tup
 
 
 def value_at(facts: Facts, keys: Keys) -> float:
-    """Figure at `keys`, 1 or 0 for a truth; NaN where this case has none."""
+    """Figure at `keys`, 1 or 0 for a truth, or NaN where this case has none."""
     try:
         node = node_at(facts, keys)
     except (KeyError, IndexError, TypeError):
@@ -228,14 +228,14 @@ def node_at(facts: Facts, keys: Keys) -> Any:
 
 
 def declared_unit(facts: Facts, keys: Keys) -> str | None:
-    """Unit of the figure at `keys`, empty where it has none; None where no unit is declared for its place."""
+    """Unit of the figure at `keys`, empty where it has none, or None where no unit is declared for its place."""
     from gbeam.results.facts import unit_at
 
     return unit_at(facts, tree_of_figures(facts[KIND]), keys)
 
 
 def unit_at(facts: Facts, keys: Keys) -> str:
-    """SI unit of the figure at `keys`; empty where it has none."""
+    """SI unit of the figure at `keys`, or empty where it has none."""
     return declared_unit(facts, keys) or ""
 
 
@@ -277,7 +277,7 @@ class History:
     unit: str  # SI
 
     def interpolate(self, study: Study, times: Floats) -> Floats:
-        """Values at times (t,), s; NaN where the response has none."""
+        """Values at times (t,), s, or NaN where the response has none."""
         response = study.responses.get(self.motion)
         if response is None:
             return np.full(len(times), math.nan)
@@ -286,8 +286,8 @@ class History:
         # Twenty steps to the shortest period: straight lines between them would be off by 1 % of a vibration.
         time, values = response.time, response.signal(self.quantity)
         slack = 1e-9 * float(time[-1] - time[0])
-        covered = (times >= time[0] - slack) & (times <= time[-1] + slack)
-        return np.where(covered, CubicSpline(time, values)(times), math.nan)
+        is_inside = (times >= time[0] - slack) & (times <= time[-1] + slack)
+        return np.where(is_inside, CubicSpline(time, values)(times), math.nan)
 
 
 def read_history(text: str, case: Case, where: str = HISTORY, chosen: str | None = None) -> History:

@@ -57,7 +57,7 @@ def fit(
     """Find values of a scenario by least squares from measured histories, or from frequencies and damping.
 
     The columns of the data have unknown noise each, which is found from their residuals and weighs them. Errors hold if
-    the residuals are noise without correlation; where they are not, a warning says so.
+    the residuals are noise without correlation. Where they are not, a warning says so.
 
     Parameters
     ----------
@@ -192,20 +192,22 @@ def _result_of(
     )
 
 
-def _columns(measurement: Measurement, fitted: Floats, before: Floats, size: int) -> tuple[FittedColumn, ...]:
+def _columns(measurement: Measurement, fitted: Floats, start_values: Floats, size: int) -> tuple[FittedColumn, ...]:
     """Each measured column with the model's values, its noise, and the correlation of neighbouring residuals.
 
-    `size` is the number of parameters, `before` are the model's values before the fit.
+    `size` is the number of parameters, `start_values` are the model's values before the fit.
     """
     ends = np.cumsum([len(column.values) for column in measurement.columns])[:-1]
     share = 1 - size / len(fitted)  # of the degrees of freedom that the parameters leave
     columns = []
-    for column, now, start in zip(measurement.columns, np.split(fitted, ends), np.split(before, ends), strict=True):
-        r = column.values - now
+    for column, fitted_values, start in zip(
+        measurement.columns, np.split(fitted, ends), np.split(start_values, ends), strict=True
+    ):
+        r = column.values - fitted_values
         power = float(np.sum(r**2))
         correlation = float(np.sum(r[1:] * r[:-1])) / power if power > 0 and not measurement.modal else np.nan
         noise = float(np.sqrt(power / (len(r) * share)))
-        columns.append(FittedColumn(column.name, column.unit, column.values, now, start, noise, correlation))
+        columns.append(FittedColumn(column.name, column.unit, column.values, fitted_values, start, noise, correlation))
     return tuple(columns)
 
 
@@ -309,6 +311,6 @@ def tell_apart(jacobian: Floats, parameters: Sequence[PhysicalValue]) -> float:
     _, sizes, directions = np.linalg.svd(jacobian / lengths, full_matrices=False)
     if sizes[-1] > _ALIKE * sizes[0]:
         return float(sizes[0] / sizes[-1])
-    alike = [names[k] for k in np.argsort(-np.abs(directions[-1])) if abs(directions[-1][k]) > 0.1]
-    problem = f"the data cannot tell {' and '.join(alike)} apart: changed together they leave it as it is"
+    confused = [names[k] for k in np.argsort(-np.abs(directions[-1])) if abs(directions[-1][k]) > 0.1]
+    problem = f"the data cannot tell {' and '.join(confused)} apart: changed together they leave it as it is"
     raise ComputationError(ALIKE, f"{problem}; free only one of them, or measure what they do differently")

@@ -123,10 +123,10 @@ class Journal:
             return
         # A new file takes the place of the old one at once: an interruption leaves one of them whole.
         new_file = self._file.with_suffix(".new")
-        with open(new_file, "wb") as out:
-            out.writelines(intact)
-            out.flush()
-            os.fsync(out.fileno())
+        with open(new_file, "wb") as stream:
+            stream.writelines(intact)
+            stream.flush()
+            os.fsync(stream.fileno())
         os.replace(new_file, self._file)
         if os.name == "posix":  # synchronise the file's name too
             folder = os.open(self.folder, os.O_RDONLY)
@@ -136,7 +136,9 @@ class Journal:
                 os.close(folder)
 
     def _stored_lines(self) -> tuple[Line, list[Line]]:
-        """First line and rows of the file, without damaged rows at its end, which were cut off; None without a file."""
+        """First line and rows of the file, without damaged rows at its end, which were cut off,
+        or None without a file.
+        """
         try:
             lines = _parsed(self._file.read_bytes()) if self._file.exists() else []
         except OSError as error:

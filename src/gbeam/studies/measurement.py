@@ -41,8 +41,10 @@ _MICROSTRAIN = {"µm/m": 1e-6, "um/m": 1e-6, "microstrain": 1e-6}
 
 @dataclass(frozen=True)
 class Measured:
-    """A column of the data: `values` (t,), SI, of a quantity such as ``tip.z`` of a motion; of a strain of a `body` at
-    `at`, m, on `face`, or at a point of a solid along an axis.
+    """A column of the data: `values` (t,), SI.
+
+    It is of a quantity such as ``tip.z`` of a motion, of a strain of a `body` at `at`, m, on `face`, or of a strain at
+    a point of a solid along an axis.
     """
 
     name: str
@@ -204,7 +206,7 @@ def _column(table: Table, name: str, unit: str, modal: bool, case: Case, motion:
 def _gauge(name: str, unit: str, values: Floats, strain: re.Match[str], case: Case, motion: str | None) -> Measured:
     """A column of a strain gauge, such as ``flight.strip.strain.z@10 mm``.
 
-    Its name has the motion and the body that deforms; each may be left out if there is only one.
+    Its name has the motion and the body that deforms. Each may be left out if there is only one.
     """
     owners, (prefix, face, place) = case.system.flexible, strain.groups()
     names = prefix.split(".")[:-1]

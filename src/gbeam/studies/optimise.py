@@ -56,8 +56,8 @@ def optimise(
     """Find the values of a scenario at which a figure is least.
 
     The search (sequential least squares programming) goes from the scenario's values along exact derivatives, by the
-    steps that the scenario's own run needs; the figures of the answer come from a run with its own. One
-    start finds the nearest valley; several, spread over the bounds, find others, and the answer says how many of them
+    steps that the scenario's own run needs. The figures of the answer come from a run with its own. One
+    start finds the nearest valley. Several, spread over the bounds, find others, and the answer says how many of them
     agree.
 
     Parameters
@@ -120,7 +120,7 @@ def optimise(
     ends = search_all(parameters, limits, starts, search)
     values = search.tried[-1][0]
     last_neighbourhood = Neighbourhood(inquiry, parameters, values.tolist(), progress=progress)
-    before, after = (
+    start_study, found_study = (
         values_at(facts_of(neighbourhood.answer), goal.keys)
         for neighbourhood in (first_neighbourhood, last_neighbourhood)
     )
@@ -129,7 +129,12 @@ def optimise(
             last_neighbourhood.require_response(name)
     requirements = tuple(
         Requirement(
-            name, unit_at(facts_of(last_neighbourhood.answer), keys), low, high, float(before[k]), float(after[k])
+            name,
+            unit_at(facts_of(last_neighbourhood.answer), keys),
+            low,
+            high,
+            float(start_study[k]),
+            float(found_study[k]),
         )
         for k, (name, keys, low, high) in enumerate(goal.required, 1)
     )
@@ -145,8 +150,8 @@ def optimise(
         values=values,
         bounds=limits,
         at_bound=on_bound(values, limits),
-        figure_before=float(before[0]),
-        figure=float(after[0]),
+        figure_before=float(start_study[0]),
+        figure=float(found_study[0]),
         error=_error(last_neighbourhood.answer),
         requirements=requirements,
         path=np.array([x for x, _ in search.tried]),
@@ -162,7 +167,7 @@ def optimise(
 
 
 def _error(answer: Any) -> float:
-    """Largest estimated error of a study's responses; NaN for other answers."""
+    """Largest estimated error of a study's responses, or NaN for other answers."""
     if not isinstance(answer, Study):
         return math.nan
     return max((response.error_estimate for response in answer.responses.values()), default=math.nan)
@@ -250,11 +255,11 @@ class Search:
         sizes = self._sizes(self.model(start))
         begun = self.model.evaluations
         power = 1 if self.goal.unit else 2  # without a unit its size, by the square, which is smooth at zero
-        best: tuple[float, float, Floats] | None = None
+        best_case: tuple[float, float, Floats] | None = None
         slopes = self.model.slopes
 
         def objective(x: Floats) -> float:
-            nonlocal best
+            nonlocal best_case
             if self.model.evaluations - begun >= _EVALUATIONS:
                 raise _Enough
             values = low + x * width
@@ -262,8 +267,8 @@ class Search:
             excess = float(max(0.0, *(-self._slack(figures) / sizes[1:]))) if self.goal.required else 0.0
             cost = abs(float(figures[0])) if power == 2 else float(figures[0])
             rank = (0.0 if excess <= _FEASIBLE else excess, cost)
-            if best is None or rank < best[:2]:
-                best = (*rank, values)
+            if best_case is None or rank < best_case[:2]:
+                best_case = (*rank, values)
                 if not self.ranks or rank < self.ranks[-1]:
                     self.ranks.append(rank)
                     self.tried.append((values, float(figures[0])))
@@ -292,8 +297,8 @@ class Search:
             end = f"after {_EVALUATIONS} evaluations"
         if end:
             self.warnings = (f"a search ended early ({end}); the best values tried are given",)
-        assert best is not None
-        return best[2]
+        assert best_case is not None
+        return best_case[2]
 
     @property
     def _signs(self) -> Floats:

@@ -50,12 +50,12 @@ class PhysicalValue:
 
     @property
     def unit(self) -> str:
-        """SI unit; empty for a plain number."""
+        """SI unit, or empty for a plain number."""
         return KINDS[self.kind].unit
 
     @property
     def of_motion(self) -> str:
-        """Name of the only motion that it belongs to; empty if it belongs to none, or to several."""
+        """Name of the only motion that it belongs to, or empty if it belongs to none, or to several."""
         motions = {place.split(".")[1] if place.startswith("motion.") else "" for place in self.places}
         return motions.pop() if len(motions) == 1 else ""
 
@@ -70,8 +70,8 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
     chosen: list[PhysicalValue] = []
     for name in names:
         places = _matching(name, possible) or ((name,) if name in quantities else ())
-        taken = {path for value in chosen for path in value.places}
-        repeated = [path for path in places if path in taken]
+        named_paths = {path for value in chosen for path in value.places}
+        repeated = [path for path in places if path in named_paths]
         if repeated:
             raise InputError("--with", f"names {repeated[0]} twice", "name each value once")
         if not places:
@@ -94,10 +94,10 @@ def physical_values(scenario: Template, names: Sequence[str] = ()) -> list[Physi
 
 def _matching(name: str, paths: Sequence[str]) -> tuple[str, ...]:
     """Paths that match a pattern, whose ``*`` stand for part of one step, but not of the first; () without ``*``."""
-    first, *others = name.split("*")
-    if not others or "." not in first:
+    first, *further_parts = name.split("*")
+    if not further_parts or "." not in first:
         return ()
-    pattern = re.compile(r"[^.\[\]]+".join(map(re.escape, (first, *others))))
+    pattern = re.compile(r"[^.\[\]]+".join(map(re.escape, (first, *further_parts))))
     return tuple(filter(pattern.fullmatch, paths))
 
 
@@ -226,7 +226,7 @@ def on_bound(values: Floats, limits: Floats) -> Flags:
 def _starting_points(start: Floats, limits: Floats, count: int) -> list[Floats]:
     """Starting points (p,) of searches: the scenario's values, and further points spread evenly between bounds (p, 2).
 
-    They are Sobol points; between bounds far apart they are spread in equal ratios.
+    They are Sobol points. Between bounds far apart they are spread in equal ratios.
     """
     if count < 1:
         raise InputError("--starts", f"is {count}", "give one or more")

@@ -152,7 +152,7 @@ def sensitivity(
 
 
 def _run_error(answer: Any, motions: Sequence[str]) -> float:
-    """Largest estimated error of the runs in some motions; NaN if none is known."""
+    """Largest estimated error of the runs in some motions, or NaN if none is known."""
     if not isinstance(answer, Study):
         return math.nan
     totals = []

@@ -40,7 +40,7 @@ _AFTER = 1.25  # least duration of a scenario with the command, over the command
 
 
 def _drive(arguments: Mapping[str, Any]) -> tuple[bool, bool]:
-    """Two truths about the command that arguments ask for: it is an effort; its coordinate is a displacement."""
+    """Two truths about the command that arguments ask for: it is an effort. Its coordinate is a displacement."""
     case = template_of(arguments["scenario"], arguments.get("overrides", ())).built()
     command = driven_of(case, arguments.get("motion"), arguments.get("joint"))
     return command.hub.free, slides(command.name)
@@ -217,8 +217,8 @@ def _grounded(case: Case, name: str | None) -> System:
     times = np.linspace(settings.start, settings.start + settings.duration, _POINTS)
     base = case.motions[chosen].base(times)
     load = np.asarray(base.a_WO_B)
-    turning = max(float(np.abs(rates).max()) for rates in (base.w_WB_B, base.alpha_WB_B))
-    if turning > 0 or np.ptp(load, axis=0).max() > _REST * max(float(np.abs(load).max()), 1e-300):
+    largest_rate = max(float(np.abs(rates).max()) for rates in (base.w_WB_B, base.alpha_WB_B))
+    if largest_rate > 0 or np.ptp(load, axis=0).max() > _REST * max(float(np.abs(load).max()), 1e-300):
         fix = "give a flight of constant acceleration, or leave it out"
         raise InputError(f"motion.{chosen}", "shakes or turns the system, which no command undoes", fix)
     return replace(case.system, gravity=tuple((-load[0]).tolist()))
@@ -233,7 +233,7 @@ def _end(hub: Hub, name: str) -> float:
 
 
 def _goal(hub: Hub, name: str) -> tuple[float | None, float | None]:
-    """Angle to turn by, or rate to reach, of the scenario's own command; the other one is None."""
+    """Angle to turn by, or rate to reach, of the scenario's own command. The other one is None."""
     if hub.free or hub.rate is None:
         fix = "give --angle or --rate"
         raise InputError("--angle", f"is missing, and the torque of {name} says of no angle or rate", fix)

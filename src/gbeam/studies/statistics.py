@@ -29,11 +29,11 @@ LEAST = 8  # base samples from which indices are estimated
 
 
 def statistics(values: Floats, *, truth: bool = False) -> Statistics:
-    """Estimate the distribution of independent draws (..., n); NaN, of cases without a figure, are left out.
+    """Estimate the distribution of independent draws (..., n). NaN, of cases without a figure, are left out.
 
-    The mean's bounds are Student's; the standard deviation's come from the fourth moment; a quantile's are order
-    statistics, of a binomial number, and NaN where there are too few draws; a probability's, of a `truth` that is 0 or
-    1, are Clopper and Pearson's.
+    The mean's bounds are Student's. The standard deviation's come from the fourth moment. A quantile's are order
+    statistics, of a binomial number, and NaN where there are too few draws. Those of a probability, of a `truth` that
+    is 0 or 1, are Clopper and Pearson's.
     """
     names = (PROBABILITY,) if truth else (MEAN, SPREAD, *QUANTILES)
     estimates = np.full((*values.shape[:-1], len(names), len(BOUNDS)), math.nan)
@@ -90,7 +90,7 @@ def _moments_and_quantiles(draws: Floats) -> Floats:
 def indices(values: Floats, parameters: Sequence[str], seed: int) -> Indices:
     """Sobol indices of values (..., (d + 2) n) in the order of the sampler saltelli: A, B, and A with each column of B.
 
-    The estimators are Saltelli's (2010) and, for the total, Jansen's (1999); bounds are normal, with a bootstrap's
+    The estimators are Saltelli's (2010) and, for the total, Jansen's (1999). Bounds are normal, with a bootstrap's
     standard error. Base samples with a NaN in one of their d + 2 cases are left out; with fewer than 8 others, or equal
     values, the indices are NaN. ``scipy.stats.sobol_indices`` would need a power of 2.
     """

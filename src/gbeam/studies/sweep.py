@@ -160,19 +160,19 @@ def sweep(
     sweep_identity = {} if store is None else identity(inquiry, cases, names, [over_time.names, over_time.count])
     journal, done = open_journal(store, resume, sweep_identity)
     stored = {row.case for row in done}
-    missing = [number for number in range(len(cases)) if number not in stored] if stored else range(len(cases))
-    several = workers > 1 and scheduler is None and len(missing) > 1
+    missing_cases = [number for number in range(len(cases)) if number not in stored] if stored else range(len(cases))
+    several = workers > 1 and scheduler is None and len(missing_cases) > 1
     with processes(workers, functions) if several else nullcontext() as pool:
         if journal is not None and done:
-            begun = go_on(inquiry, cases, missing, done, journal.figures, over_time)
+            begun = go_on(inquiry, cases, missing_cases, done, journal.figures, over_time)
         else:
-            begun = start(inquiry, cases, missing, names, over_time)
+            begun = start(inquiry, cases, missing_cases, names, over_time)
         inquiry = begun.inquiry
-        _confirm(len(missing), begun.seconds / workers, confirmed)
+        _confirm(len(missing_cases), begun.seconds / workers, confirmed)
         tried = {row.case for row in begun.rows}
-        remaining = len(missing) - len(tried)
+        remaining = len(missing_cases) - len(tried)
         size = int(min(_LONGEST, KEPT / max(begun.seconds, 1e-4), remaining / (4 * workers)))
-        tasks = ((number, cases.overrides(number)) for number in missing if number not in tried)
+        tasks = ((number, cases.overrides(number)) for number in missing_cases if number not in tried)
         batches = _batches(tasks, max(1, size // width(inquiry)) * width(inquiry))
         if scheduler is not None:
             computed = on_scheduler(inquiry, batches, scheduler)

@@ -99,7 +99,7 @@ class ScenarioTemplate:
         return quantities(self.scenario)
 
     def unit(self, path: str) -> str:
-        """SI unit of the quantity at a path; empty if it has none."""
+        """SI unit of the quantity at a path, or empty if it has none."""
         node: Any = self.scenario
         kind = ""
         for step in parse_path(path) or ():
@@ -128,7 +128,7 @@ class _BeamBody:
 
 @dataclass(frozen=True)
 class CaseTemplate:
-    """A case made in Python, with the members of a ScenarioTemplate; its values are arguments of its objects, in SI."""
+    """A case made in Python, with the members of a ScenarioTemplate. Its values are arguments of its objects, in SI."""
 
     case: Case
 

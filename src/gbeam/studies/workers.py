@@ -1,6 +1,6 @@
 """Computation of cases: in this process, in others of this machine, or by the workers of a Dask scheduler.
 
-Each takes batches of cases and yields their rows in any order; the same cases give the same rows everywhere. What a
+Each takes batches of cases and yields their rows in any order. The same cases give the same rows everywhere. What a
 worker that dies was computing goes to another, at last with its cases one by one. A batch for a scheduler goes with the
 version of gbeam that sent it: a worker with another one refuses it.
 """
@@ -379,7 +379,7 @@ class _Dispatch:
             future.add_done_callback(self.done.put)
 
     def _received(self, future: Any, batch: Sequence[Task]) -> list[Row]:
-        """Rows of a batch; an empty list if its cases are to be computed again one by one, as their
+        """Rows of a batch, or an empty list if its cases are to be computed again one by one, as their
         worker was killed.
         """
         from distributed import KilledWorker
@@ -401,15 +401,15 @@ class _Dispatch:
 
     def _look(self) -> None:
         """Count the workers' threads, at most once a second. ComputationError if there was none for a minute."""
-        now = time.monotonic()
-        if now - self.looked < _TICK:
+        time_now = time.monotonic()
+        if time_now - self.looked < _TICK:
             return
         if self.client.status != "running":
             raise OSError("the connection broke")
         threads = sum(self.client.nthreads().values())
         if threads:
-            self.threads, self.looked = threads, now
-        elif now - self.looked > PATIENCE:
+            self.threads, self.looked = threads, time_now
+        elif time_now - self.looked > PATIENCE:
             self._interrupted(f"the scheduler at {self.address} has had no worker for {PATIENCE:.0f} s")
 
     def _interrupted(self, message: str) -> None:

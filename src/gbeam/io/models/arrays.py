@@ -25,9 +25,12 @@ NODES = "nodes"  # places of all nodes, beside the matrices
 
 
 class Contents(TypedDict, total=False):
-    """Parts of a model: matrices, sparse ones as :func:`sparse_parts`; unknowns (u, 2), number of the node and
-    direction, 1 to 6, or 0 of a coordinate of its own, by the name of the matrix, or all under no name; numbers (k,),
-    places (k, 3) and axes in columns (k, 3, 3) of nodes; modes by their parts; a body of standard input data.
+    """Parts of a model that a file holds.
+
+    Sparse matrices are as :func:`sparse_parts` has them. Unknowns (u, 2) have the number of their node and a direction,
+    1 to 6, or 0 of a coordinate of its own. They stand by the name of the matrix, or all under no name. Nodes have
+    numbers (k,), places (k, 3) and axes in columns (k, 3, 3). Modes stand by their parts. A body is one of standard
+    input data.
     """
 
     matrices: Matrices

@@ -1,6 +1,6 @@
 """Flexible bodies in files: universal files (data sets 15, 2411, 55 and 2414), and standard input data (SID).
 
-Universal files are read by pyuff; standard input data hold Taylor polynomials in the body's coordinates, after
+Universal files are read by pyuff. Standard input data hold Taylor polynomials in the body's coordinates, after
 Wallrapp (1993, 1994).
 """
 

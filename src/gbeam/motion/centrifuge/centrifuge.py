@@ -39,7 +39,7 @@ class Centrifuge:
     """A beam on a three-axis centrifuge whose axes reproduce a flight's load at the control point.
 
     The machine spins up from standstill before the flight's first time, follows the flight, and spins down after its
-    last; its clock is the flight's. Target and axis motions belong to the flight's times: `over` prepares them, as
+    last. Its clock is the flight's. Target and axis motions belong to the flight's times: `over` prepares them, as
     every analysis does for its own times; with `span` they are there at once. What the axes do is known only then.
 
     Raises
@@ -274,9 +274,9 @@ class Centrifuge:
         first, last = self.target.span
         begin, finish = self.extent
         slack = 1e-9 * (last - first)
-        before = first - begin if start <= first + slack else 0.0
-        after = finish - last if end >= last - slack else 0.0
-        return before, after
+        time_before = first - begin if start <= first + slack else 0.0
+        time_after = finish - last if end >= last - slack else 0.0
+        return time_before, time_after
 
     @property
     def target(self) -> Target:
@@ -304,7 +304,7 @@ class Centrifuge:
         return course.solved(self.method, self.limits, self.ends, self.ease) if course.solution is None else course
 
     def less_eased(self) -> Self | None:
-        """The machine with a plan of less ease, sought from its own; None with an inverse that plans nothing."""
+        """The machine with a plan of less ease, sought from its own, or None with an inverse that plans nothing."""
         course = self._solved
         if not isinstance(course.inverse, Planned):
             return None
@@ -339,9 +339,9 @@ class Centrifuge:
         return self.actual(t) - self.reference(t)
 
     def not_followed(self, t: Times) -> Any:
-        """Tell at which times `t` (s) the reference is not the flight's load; spin-up and spin-down are among them."""
-        (first, last), now = self.target.span, as_array(t)
-        return self.target.not_followed(now) | (now < first) | (now > last)
+        """Tell at which times `t` (s) the reference is not the flight's load. Spin-up and spin-down are among them."""
+        (first, last), time = self.target.span, as_array(t)
+        return self.target.not_followed(time) | (time < first) | (time > last)
 
     def episodes(self) -> list[Episode]:
         """Stretches of the flight's time in which it is not, with the reason."""
@@ -381,9 +381,9 @@ class Centrifuge:
             raise InputError(error.where, error.problem, fix) from None
 
     def _changed(self, **fields: Any) -> Self:
-        other = copy.copy(self)
-        assign(other, **fields)
-        return other
+        copied = copy.copy(self)
+        assign(copied, **fields)
+        return copied
 
 
 def _position(control_point: Any) -> Any:

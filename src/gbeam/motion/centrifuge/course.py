@@ -80,17 +80,17 @@ def planned(target: Target, geometry: Geometry, limits: Limits, ends: Ends, ease
     step = min(_COARSE, *(length / _PER_RAMP for length in lengths))
     grid = Grid(float(begin), float(end), step, _POINTS)
     c = grid.fit(_guess(grid.time, target, geometry, ramps))
-    best, within_limits = np.inf, False
+    smallest_error, within_limits = np.inf, False
     while True:
         splines = AxisSplines(grid, standstill=ramps is not None)
-        kept = KeptLimits(splines, geometry, limits, target)
+        kept_limits = KeptLimits(splines, geometry, limits, target)
         x = splines.unknowns(c)
-        feasible = x if within_limits else nearest_point(kept, x)
+        feasible = x if within_limits else nearest_point(kept_limits, x)
         if feasible is not None:
             tracking, x = Tracking(splines, geometry, target, ramps), feasible
             for factor in (1.0,) if within_limits else _GENTLER:
-                x, cost = minimise(tracking.gentler(factor * ease), kept, x)
-            c, gain, best, within_limits = splines.coefficients(x), best - cost, cost, True
+                x, cost = minimise(tracking.gentler(factor * ease), kept_limits, x)
+            c, gain, smallest_error, within_limits = splines.coefficients(x), smallest_error - cost, cost, True
             if grid.step <= _FINE and gain <= _GAIN * (cost - tracking.bound):
                 break
         if grid.step / 2 < _FINEST:

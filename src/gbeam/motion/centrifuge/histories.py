@@ -93,20 +93,20 @@ def _tracking_warnings(motion: Centrifuge, time: Floats, axes: AxesResult) -> tu
     too_large = share > motion.inverse.within
     if not too_large.any():
         return ()
-    worst = int(np.argmax(np.where(too_large, error, 0.0)))
+    index = int(np.argmax(np.where(too_large, error, 0.0)))
     causes: list[str] = []
     harder = motion.less_eased()
     if harder is not None:
-        remaining = float(np.linalg.norm(harder.tracking_error(time[worst])))
-        limits = used_up(axes.limit_shares, _reversal_samples(time, worst, motion.limits))
+        remaining = float(np.linalg.norm(harder.tracking_error(time[index])))
+        limits = used_up(axes.limit_shares, _reversal_samples(time, index, motion.limits))
         if limits:
             causes.append(f"used up there: {', '.join(limits)}")
-        if remaining < (1 - _FELT) * error[worst]:
+        if remaining < (1 - _FELT) * error[index]:
             ease = f"the plan's ease, for ease = {harder.ease:g} leaves {in_g(remaining)} on the same knots"
-            causes.insert(len(causes) if remaining > _MOST * error[worst] else 0, ease)
+            causes.insert(len(causes) if remaining > _MOST * error[index] else 0, ease)
     return (
-        f"the machine cannot follow the load at {time[worst]:.3f} s: error {in_g(error[worst])} "
-        f"({percent(share[worst])}; the plan aims at {100 * motion.inverse.within:.2g} %); "
+        f"the machine cannot follow the load at {time[index]:.3f} s: error {in_g(error[index])} "
+        f"({percent(share[index])}; the plan aims at {100 * motion.inverse.within:.2g} %); "
         f"{'; '.join(causes) or motion.inverse.unless}",
     )
 

@@ -13,9 +13,9 @@ from gbeam.results.parts import Base
 class Axes:
     """States of the three axes; every field an array of the shape of time, angles in rad.
 
-    Axis 1 turns the arm about the vertical Z; its angle is the integral of its rate and moves nothing but
+    Axis 1 turns the arm about the vertical Z. Its angle is the integral of its rate and moves nothing but
     the scenery. Axis 2 (yaw, parallel to axis 1) turns the gimbal at the arm's end by `angle2` from the
-    outward radius; axis 3 (roll) turns the specimen about the beam's axis by `angle3` from the horizontal.
+    outward radius. Axis 3 (roll) turns the specimen about the beam's axis by `angle3` from the horizontal.
     """
 
     rate1: Any
@@ -71,6 +71,6 @@ def control_point_load(axes: Axes, arm: Any, gravity: Any) -> Any:
     sin2, cos2, sin3, cos3 = xp.sin(axes.angle2), xp.cos(axes.angle2), xp.sin(axes.angle3), xp.cos(axes.angle3)
     radial, tangential = -arm * axes.rate1**2, arm * axes.acceleration1
     # The arm's radial and tangential accelerations, turned by θ2 into the beam's axes and by θ3 about the beam.
-    along = radial * cos2 + tangential * sin2
-    across = -radial * sin2 + tangential * cos2
-    return xp.stack([along, across * cos3 + gravity * sin3, -across * sin3 + gravity * cos3], axis=-1)
+    axial = radial * cos2 + tangential * sin2
+    lateral = -radial * sin2 + tangential * cos2
+    return xp.stack([axial, lateral * cos3 + gravity * sin3, -lateral * sin3 + gravity * cos3], axis=-1)

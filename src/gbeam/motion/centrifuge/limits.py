@@ -45,7 +45,7 @@ class AxisLimit:
 @typed
 @dataclass(frozen=True)
 class MachineLimits:
-    """Limits of a three-axis centrifuge as a person gives them; exceeding one ends in exit status 1 unless allowed.
+    """Limits of a three-axis centrifuge as a person gives them. Exceeding one ends in exit status 1 unless allowed.
 
     Examples
     --------

@@ -128,7 +128,7 @@ class Turned(Profile):
 
 @typed
 def vector(x: Any | None = None, y: Any | None = None, z: Any | None = None) -> Vector:
-    """Return the vector profile of three components; one left out is zero.
+    """Return the vector profile of three components. One left out is zero.
 
     Parameters
     ----------
@@ -161,14 +161,14 @@ def as_profile(where: str, value: Any, components: int = 1) -> Profile:
             profile = constant(value)
     shape = np.shape(profile(0.0))
     if shape != (() if components == 1 else (components,)):
-        what = "a scalar" if shape == () else "a vector" if shape == (3,) else f"an array of shape {shape}"
+        shape_words = "a scalar" if shape == () else "a vector" if shape == (3,) else f"an array of shape {shape}"
         fix = "give a scalar; a vector goes by name, acceleration = ..." if components == 1 else "give x, y and z"
-        raise InputError(where, f"is {what}", fix)
+        raise InputError(where, f"is {shape_words}", fix)
     return profile
 
 
 def merged_extent(*profiles: Profile) -> tuple[float, float] | None:
-    """From the first time of any of the profiles to the last, s; None if all are constant."""
+    """From the first time of any of the profiles to the last, s, or None if all are constant."""
     ends = [profile.extent for profile in profiles if profile.extent is not None]
     return (min(first for first, _ in ends), max(last for _, last in ends)) if ends else None
 
@@ -184,7 +184,7 @@ _PER_WIDTH = 40  # knots per width of a kernel: straight lines between them are 
 
 
 def clamped(profile: Profile, first: float, last: float) -> Profile:
-    """Return a profile that keeps its values before `first` and after `last` (s); lines keep their closed smoothing."""
+    """Return a profile that keeps its values before `first` and after `last` (s). Lines keep their closed smoothing."""
     match profile:
         case PiecewiseLinear() if not is_traced(profile.times, profile.values):
             return _cut(profile, first, last)
@@ -219,18 +219,18 @@ class Clamped(Profile):
         assign(self, first=as_array(self.first), last=as_array(self.last))
 
     def series(self, t: Times, order: int) -> Series:
-        now = as_array(t)
-        inner = self.profile.series(namespace(now, self.first, self.last).clip(now, self.first, self.last), order)
-        inside = (now >= self.first) & (now <= self.last)  # the ends themselves belong to it, with their derivatives
-        return where(append_axes(inside, inner.value.ndim - now.ndim), inner, inner.value)
+        time = as_array(t)
+        inner = self.profile.series(namespace(time, self.first, self.last).clip(time, self.first, self.last), order)
+        inside = (time >= self.first) & (time <= self.last)  # the ends themselves belong to it, with their derivatives
+        return where(append_axes(inside, inner.value.ndim - time.ndim), inner, inner.value)
 
     @property
     def breaks(self) -> Any:
         """The two times, in place of what lies beyond them, and the breaks between, s."""
         breaks = self.profile.breaks
         xp = namespace(breaks, self.first, self.last)
-        between = xp.clip(breaks, self.first, self.last)
-        return xp.concatenate([self.first[None], between, self.last[None]])
+        inner_breaks = xp.clip(breaks, self.first, self.last)
+        return xp.concatenate([self.first[None], inner_breaks, self.last[None]])
 
     def corners(self, step: Seconds) -> Floats:
         """The two times and the corners between, s."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @record
 class PiecewiseLinear(Profile):
-    """Straight between knots, constant before the first and after the last; one knot makes a constant."""
+    """Straight between knots, constant before the first and after the last. One knot makes a constant."""
 
     times: Any  # of the knots, (k,) s, strictly increasing
     values: Any  # (k,) or (k, 3)
@@ -51,9 +51,9 @@ class PiecewiseLinear(Profile):
         assign(self, times=t, values=v, slopes=xp.concatenate([level, rise, level]), summary=record)
 
     def series(self, t: Times, order: int) -> Series:
-        now = as_array(t)
-        xp = namespace(now, self.times)
-        return _line(self, now, xp.searchsorted(xp.asarray(self.times), now, side="right"), order)
+        time = as_array(t)
+        xp = namespace(time, self.times)
+        return _line(self, time, xp.searchsorted(xp.asarray(self.times), time, side="right"), order)
 
     @property
     def breaks(self) -> Any:
@@ -142,21 +142,23 @@ class SmoothedPiecewiseLinear(Rounded):
 
     def series(self, t: Times, order: int) -> Series:
         """Values and derivatives at times `t`, s: the line at the window's begin, and a rounded ramp for each bend."""
-        now = as_array(t)
-        xp = namespace(now, self.times, self.bends, self.width)
+        time = as_array(t)
+        xp = namespace(time, self.times, self.bends, self.width)
         times, bends = xp.asarray(self.times), xp.asarray(self.bends)
-        first, count = xp.searchsorted(times[:-1], now - self.width / 2, side="right"), self.count
-        if xp is np and now.size:  # no more knots than the windows of these times hold
-            count = int((np.searchsorted(times[:-1], now + self.width / 2, side="right") - first).max())
-            if now.ndim == 1 and now.size * count > TOGETHER:
-                return Series.in_pieces(lambda piece: self.series(piece, order), now, 1 + now.size * count // TOGETHER)
+        first, count = xp.searchsorted(times[:-1], time - self.width / 2, side="right"), self.count
+        if xp is np and time.size:  # no more knots than the windows of these times hold
+            count = int((np.searchsorted(times[:-1], time + self.width / 2, side="right") - first).max())
+            if time.ndim == 1 and time.size * count > TOGETHER:
+                return Series.in_pieces(
+                    lambda piece: self.series(piece, order), time, 1 + time.size * count // TOGETHER
+                )
         # Each knot in the window adds its bend times a rounded ramp.
         knots = xp.minimum(first[..., None] + np.arange(count), times.size - 1)
-        ramps = hann_orders(0, order, (now[..., None] - times[knots]) / self.width)
+        ramps = hann_orders(0, order, (time[..., None] - times[knots]) / self.width)
         knot_bends = bends[knots]
         subscripts = "...j,...jv->...v" if bends.ndim > 1 else "...j,...j->..."
         rounded = [xp.einsum(subscripts, ramp, knot_bends) * self.width ** (1 - k) for k, ramp in enumerate(ramps)]
-        return _line(self.table, now, first, order) + Series.from_derivatives(rounded, order)
+        return _line(self.table, time, first, order) + Series.from_derivatives(rounded, order)
 
     @property
     def sharp(self) -> Profile:

@@ -31,8 +31,8 @@ STEPS_PER_EVENT = 4  # a rounded corner or a pulse of so many steps is resolved
 class Profile(ABC):
     """A scalar or vector given over time, with its time derivatives in closed form.
 
-    NumPy arrays in, NumPy arrays out; JAX arrays and tracers pass, in the times as in the profile's own values, which
-    are the leaves of a pytree: profiles can be traced, mapped and differentiated with respect to them.
+    NumPy arrays in, NumPy arrays out. JAX arrays and tracers pass, in the times as in the profile's own values, which
+    are the leaves of a pytree. So profiles can be traced, mapped and differentiated with respect to them.
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -55,16 +55,16 @@ class Profile(ABC):
         return self.series(t, order).derivatives()
 
     def integral(self, t: Times) -> Any | None:
-        """Integral over time up to times `t` (s), but for a constant; None where it has no closed form here."""
+        """Integral over time up to times `t` (s), but for a constant, or None where it has no closed form here."""
         return None
 
     @property
     @abstractmethod
     def breaks(self) -> Any:
-        """Times (s, ascending) at which a derivative jumps, shape (b,); empty if the third is continuous."""
+        """Times (s, ascending) at which a derivative jumps, shape (b,), or empty if the third is continuous."""
 
     def corners(self, step: Seconds) -> Floats:
-        """Times (s, ascending) that steps of length `step` (s) should not pass unseen; breaks are among them."""
+        """Times (s, ascending) that steps of length `step` (s) should not pass unseen. Breaks are among them."""
         return np.asarray(self.breaks, dtype=np.float64)
 
     @abstractmethod
@@ -73,12 +73,12 @@ class Profile(ABC):
 
     @property
     def record(self) -> RecordSummary | None:
-        """The flight's record that it is, perhaps with its corners rounded; None of any other profile."""
+        """The flight's record that it is, perhaps with its corners rounded, or None of any other profile."""
         return None
 
     @property
     def extent(self) -> tuple[float, float] | None:
-        """First and last time of what it prescribes, s, whatever rounds its corners; None if it is constant."""
+        """First and last time of what it prescribes, s, whatever rounds its corners, or None if it is constant."""
         times = self.knots(_FOR_EVER)
         return (float(times[0]), float(times[-1])) if times.size > 1 else None
 
@@ -273,25 +273,25 @@ class Convolved(Rounded):
 
     def series(self, t: Times, order: int) -> Series:
         """Values and derivatives at times `t`, s, by Gauss's rule on panels between the breaks in each window."""
-        now, breaks, width = as_array(t), self.profile.breaks, self.width
-        xp = namespace(now, breaks, width)
+        time, breaks, width = as_array(t), self.profile.breaks, self.width
+        xp = namespace(time, breaks, width)
         nodes = (breaks.size + 1) * _POINTS.size
-        if xp is np and now.ndim == 1 and now.size > 1 and now.size * nodes > TOGETHER:
+        if xp is np and time.ndim == 1 and time.size > 1 and time.size * nodes > TOGETHER:
             return Series.in_pieces(
-                lambda piece: self.series(piece, order), now, min(now.size, 1 + now.size * nodes // TOGETHER)
+                lambda piece: self.series(piece, order), time, min(time.size, 1 + time.size * nodes // TOGETHER)
             )
-        low, high = now[..., None] - width / 2, now[..., None] + width / 2
+        low, high = time[..., None] - width / 2, time[..., None] + width / 2
         # Panels end at breaks, which stand still, and at the ends of the window, which move with t: at speed one.
-        one, still = xp.ones_like(low), (breaks > low) & (breaks < high)
+        one, is_inside = xp.ones_like(low), (breaks > low) & (breaks < high)
         node, weight = _panels(xp, xp.concatenate([low, xp.clip(breaks, low, high), high], axis=-1))
-        speed, widening = _panels(xp, xp.concatenate([one, xp.where(still, 0.0, 1.0), one], axis=-1))
+        speed, widening = _panels(xp, xp.concatenate([one, xp.where(is_inside, 0.0, 1.0), one], axis=-1))
         inner = self.profile.series(node, order)
         axes = inner.value.ndim - node.ndim
         values = Series(tuple(append_axes(speed**k, axes) * c for k, c in enumerate(inner.coefficients)))
-        orders = hann_orders(2, 2 + order, (now[..., None] - node) / width)
+        orders = hann_orders(2, 2 + order, (time[..., None] - node) / width)
         kernel = Series(tuple(((1 - speed) / width) ** k * h / factorial(k) for k, h in enumerate(orders)))
         weighted = Series.from_derivatives([weight / width, widening / width], order) * kernel
-        return (weighted.map(lambda c: append_axes(c, axes)) * values).map(lambda c: c.sum(axis=now.ndim))
+        return (weighted.map(lambda c: append_axes(c, axes)) * values).map(lambda c: c.sum(axis=time.ndim))
 
     @property
     def sharp(self) -> Profile:
@@ -299,7 +299,7 @@ class Convolved(Rounded):
 
 
 def _panels(xp: Any, ends: Any) -> tuple[Any, Any]:
-    """Gauss's points and weights of the panels between ends (..., p + 1), along one last axis; linear in the ends."""
+    """Gauss's points and weights of the panels between ends (..., p + 1), along one last axis. Linear in the ends."""
     middle, half = (ends[..., 1:] + ends[..., :-1]) / 2, xp.diff(ends) / 2
     points = middle[..., None] + half[..., None] * _POINTS
     shape = (*ends.shape[:-1], points.shape[-2] * points.shape[-1])

@@ -165,18 +165,18 @@ class SplineProfile(Profile):
         return Spline(0.0, self.duration / (self.coefficients.shape[0] - DEGREE), self.coefficients[:, None])
 
     def series(self, t: Times, order: int) -> Series:
-        since = as_array(t) - self.start
-        xp = namespace(since, self.coefficients)
-        inside = self._spline.series(xp.clip(since, 0.0, self.duration), order)
-        beyond = (since < 0) | (since > self.duration)
+        elapsed = as_array(t) - self.start
+        xp = namespace(elapsed, self.coefficients)
+        inside = self._spline.series(xp.clip(elapsed, 0.0, self.duration), order)
+        is_outside = (elapsed < 0) | (elapsed > self.duration)
         value, *rates = (coefficient[..., 0] for coefficient in inside.coefficients)
-        return Series((value, *(xp.where(beyond, 0.0, rate) for rate in rates)))
+        return Series((value, *(xp.where(is_outside, 0.0, rate) for rate in rates)))
 
     def integral(self, t: Times) -> Any:
-        since = as_array(t) - self.start
-        inside = namespace(since, self.coefficients).clip(since, 0.0, self.duration)
+        elapsed = as_array(t) - self.start
+        inside = namespace(elapsed, self.coefficients).clip(elapsed, 0.0, self.duration)
         # Before and after it is constant.
-        return self._spline.integral(inside)[..., 0] + (since - inside) * self(t)
+        return self._spline.integral(inside)[..., 0] + (elapsed - inside) * self(t)
 
     @property
     def breaks(self) -> Any:

@@ -153,7 +153,7 @@ def load_factors(table: Table, names: dict[str, str], unit: str, *, specific: bo
 
 
 def _kind(name: str) -> str:
-    """Kind of quantity that a column's name says it is, such as "a speed"; empty for an unknown name."""
+    """Kind of quantity that a column's name says it is, such as "a speed", or empty for an unknown name."""
     words = words_of(name)
     if any(_LOADS.fullmatch(word) for word in words):
         return "a load"

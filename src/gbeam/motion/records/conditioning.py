@@ -32,7 +32,7 @@ def _jumps(change: Floats, neighbours: Floats) -> bool:
 
 
 def dropout(values: Floats, step: float) -> tuple[int, int] | None:
-    """First and last sample of a stretch without change that begins or ends with a jump; None if there is none.
+    """First and last sample of a stretch without change that begins or ends with a jump, or None if there is none.
 
     A true plateau is entered and left by a corner: the first change beside it is like the next. After a dropout the
     channel has gone on in the meantime, and jumps by much more than in the samples beside the jump. A channel that is
@@ -70,19 +70,19 @@ def spikes(load: Floats, least_jump: float = LEAST_JUMP) -> Flags:
     middle = _median_of_three(padded[:-2], padded[1:-1], padded[2:])
     for length in range(1, min(_LONGEST_RUN, len(load) // 2) + 1):
         count = len(load) - length + 1  # of runs, by their first sample
-        before, after = middle[:count], middle[length + _SIDE : length + _SIDE + count]
-        lines = (before + (after - before) * (k + 2) / (length + 3) for k in range(-1, length + 1))
+        left_values, right_values = middle[:count], middle[length + _SIDE : length + _SIDE + count]
+        lines = (left_values + (right_values - left_values) * (k + 2) / (length + 3) for k in range(-1, length + 1))
         deviation = [np.abs(padded[k + _SIDE :][:count] - line) for k, line in enumerate(lines, start=-1)]
-        least, mean = np.minimum.reduce(deviation[1:-1]), np.mean(deviation[1:-1], axis=0)
+        smallest, mean = np.minimum.reduce(deviation[1:-1]), np.mean(deviation[1:-1], axis=0)
         limit = np.maximum(_OUTLIER * _SPREAD * np.median(mean, axis=0), least_jump)
         neighbour_deviation = np.maximum(deviation[0], deviation[-1])
-        is_spike = (least > limit) & (neighbour_deviation < _BESIDE * least)
+        is_spike = (smallest > limit) & (neighbour_deviation < _BESIDE * smallest)
         is_spike &= ~np.logical_or.reduce([flags[k:][:count] for k in range(length)])
         first, channel = np.nonzero(is_spike)
         distances = length + _SIDE + np.arange(_NEARBY)
         nearby = np.clip(first + np.concatenate([-distances, distances])[:, None], 0, count - 1)
         limit = np.maximum(_OUTLIER * _SPREAD * np.median(mean[nearby, channel], axis=0), limit[channel])
-        is_spike[first, channel] = (least[first, channel] > limit) & (neighbour_deviation[first, channel] < limit)
+        is_spike[first, channel] = (smallest[first, channel] > limit) & (neighbour_deviation[first, channel] < limit)
         is_spike[length:-length] &= ~(is_spike[: -2 * length] & is_spike[2 * length :])
         for k in range(length):
             flags[k:][:count] |= is_spike
@@ -113,9 +113,9 @@ def flat_tops(values: Floats) -> Iterator[tuple[float, list[slice]]]:
             yield extreme, runs
 
 
-def without_spikes(time: Floats, load: Floats, at: Flags) -> Floats:
+def without_spikes(time: Floats, load: Floats, is_spike: Flags) -> Floats:
     """The record with its spikes replaced by straight lines between their neighbours."""
-    columns = (np.interp(time, time[~bad], values[~bad]) for values, bad in zip(load.T, at.T, strict=True))
+    columns = (np.interp(time, time[~bad], values[~bad]) for values, bad in zip(load.T, is_spike.T, strict=True))
     return np.stack(list(columns), axis=1)
 
 

@@ -88,8 +88,8 @@ class Instrument:
         """
         if not any(self.arm):
             return load, []
-        turning = body_rates(PiecewiseLinear(time, rates))
-        root = shift_base(Base(load, *turning.derivatives(time)), np.array(self.arm)).a_WO_B
+        rates_profile = body_rates(PiecewiseLinear(time, rates))
+        root = shift_base(Base(load, *rates_profile.derivatives(time)), np.array(self.arm)).a_WO_B
         largest_change = np.linalg.norm(root - load, axis=1).max() / STANDARD_GRAVITY
         arm = ", ".join(f"{1e3 * component:.4g}" for component in self.arm)
         return root, [f"at the root, ({arm}) mm from the instrument: turning adds up to {largest_change:.4g} g"]

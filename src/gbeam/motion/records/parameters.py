@@ -99,11 +99,11 @@ class Rates:
         if p is not None and q is not None and r is not None and rate_unit is not None:
             return cls(p, q, r, rate_unit)
         keys = {"p": p, "q": q, "r": r, "rate_unit": rate_unit}
-        known = [key for key, value in keys.items() if value is not None]
-        if known:
-            missing = next(key for key, value in keys.items() if value is None)
+        named = [key for key, value in keys.items() if value is not None]
+        if named:
+            lacking = next(key for key, value in keys.items() if value is None)
             fix = 'give p, q and r ("0" for none) and rate_unit = "rad/s" or "deg/s"'
-            raise InputError("record", f"has no {missing} beside {known[0]}", fix)
+            raise InputError("record", f"has no {lacking} beside {named[0]}", fix)
         return None
 
 

@@ -67,12 +67,12 @@ def read_table(path: str | os.PathLike[str], words: Iterable[str] = ()) -> Table
         raise InputError("record.file", problem, "give the path of a record") from None
 
 
-def columns_of_text(path: str, most: int) -> tuple[list[tuple[str, str]], list[float]]:
-    """Return the names and units of the first columns of a record of text, `most` of them, and the sample rates, Hz,
-    that it states.
-    """
+def columns_of_text(path: str, column_limit: int) -> tuple[list[tuple[str, str]], list[float]]:
+    """Return the names and units of the first `column_limit` columns of a record of text, and its sample rates, Hz."""
     table = read_text(path)
-    return [(column.name, column.unit) for column in table.columns[:most]], [stated.rate for stated in table.stated]
+    return [(column.name, column.unit) for column in table.columns[:column_limit]], [
+        stated.rate for stated in table.stated
+    ]
 
 
 @dataclass(frozen=True)
@@ -238,7 +238,7 @@ class Recording:
         rate = units[1].size * read[1] if rates is not None else np.empty((count, 0))
         specific, columns_of = quantity == "specific-force", {**names, **turns}
         axes, mounted, levelled = instrument.axes(times, load, rate, table.counted, specific=specific)
-        said = time_unit is None and times.unit.size != 1
+        is_stated = time_unit is None and times.unit.size != 1
         return cls(
             path=os.fspath(file),
             table=table,
@@ -251,7 +251,7 @@ class Recording:
             rates=rate,
             sound=sound,
             channels=_as_read(table, times, (names, turns), units, read),
-            done=(f"time in {times.unit.text}, as the file says",) if said else (),
+            done=(f"time in {times.unit.text}, as the file says",) if is_stated else (),
             sections=None if sections is None else Sections.read(table, sections, times.values),
             conditioning=conditioning,
             quantity=quantity,
@@ -284,7 +284,7 @@ class Recording:
         return part, whole
 
     def _samples(self, time: Floats, load: Floats, rows: Indices) -> Samples:
-        """Make samples as the checks of :mod:`.soundness` take them; `rows` are their rows in the file."""
+        """Make samples as the checks of :mod:`.soundness` take them. `rows` are their rows in the file."""
 
         def place(i: int) -> str:
             return self.table.place(int(rows[i]))
@@ -295,8 +295,9 @@ class Recording:
     @np.errstate(all="ignore")
     def refuse_unlevel(self) -> None:
         """Raise InputError if the whole record, of which flights are parts, is level in another unit or upside down."""
-        known = np.flatnonzero(np.isfinite(self.load).all(axis=1))  # outside the flights there may be what is no number
-        samples = self._samples(self.times.values[known], self.load[known], known)
+        # Outside the flights there may be what is no number.
+        finite_rows = np.flatnonzero(np.isfinite(self.load).all(axis=1))
+        samples = self._samples(self.times.values[finite_rows], self.load[finite_rows], finite_rows)
         refuse_unlevel(samples, self.conditioning.skipped)
 
     @np.errstate(all="ignore")
@@ -304,7 +305,7 @@ class Recording:
         """Return a part of the record, conditioned and judged, and say what was done to it."""
         conditioning, skip, evened = self.conditioning, self.conditioning.skipped, self.conditioning.evened
         table, times, clock, stated = self.table, self.times, self.times.values, self.stated
-        names, turns, load, turning = self.names, self.turns, self.load, self.rates
+        names, turns, load, rates = self.names, self.turns, self.load, self.rates
         load_unit, vehicle, instrument = self.units[0], self.vehicle, self.instrument
         (part, whole), axes, offsets = self.part((from_, to), section), self.axes, self.offsets
 
@@ -312,8 +313,8 @@ class Recording:
             if "sampling" not in skip:
                 check_interval(time, times, stated, brief=vehicle == "other")
 
-        both, bridge = np.concatenate([load, turning], axis=1), conditioning.bridge
-        line = Timeline.from_times(times, part, both, table.place, bridge=bridge, evened=evened, judge=judge)
+        load_and_rates, bridge = np.concatenate([load, rates], axis=1), conditioning.bridge
+        line = Timeline.from_times(times, part, load_and_rates, table.place, bridge=bridge, evened=evened, judge=judge)
 
         flown = self._samples(line.time, line.values[:, :3], line.rows)
         ignored = (*skip, "spikes") if conditioning.despike else skip
@@ -324,17 +325,17 @@ class Recording:
         notes += oddities(flown)
         notes += offsets.extrapolation_warnings(*line.time[[0, -1]])
         calm, spiked = _despiked(flown, turns, line.values[:, 3:], despike=conditioning.despike)
-        off = offsets.evaluate(line.time)
-        calm = calm - off
+        offset = offsets.evaluate(line.time)
+        calm = calm - offset
         turned = np.concatenate([calm[:, k : k + 3] @ axes.T for k in range(0, calm.shape[1], 3)], axis=1)
-        new, both = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
+        resampled_time, load_and_rates = filtered(line.time, turned, conditioning.cutoff, conditioning.resample)
         done = [*self.done, *line.done]
         (done if conditioning.despike else notes).extend(spiked)
         if conditioning.cutoff is not None:
             done.append(f"low-pass at {conditioning.cutoff:g} Hz, zero phase")
         if conditioning.resample is not None:
             done.append(f"resampled at {conditioning.resample:g} Hz")
-        at_root, carried = instrument.carried(new, both[:, :3], both[:, 3:])
+        at_root, carried = instrument.carried(resampled_time, load_and_rates[:, :3], load_and_rates[:, 3:])
         done += [*self.mounted, *carried]
         as_read = line.values[line.read]
         facts = RecordSummary(
@@ -345,8 +346,8 @@ class Recording:
             span=(float(line.time[0]), float(line.time[-1])),
             whole=whole,
             read=curves(line.time[line.read], as_read[:, :3], as_read[:, 3:]),
-            flown=curves(new, at_root, both[:, 3:]),
-            level=level(replace(flown, load=flown.load - off[:, :3])),
+            flown=curves(resampled_time, at_root, load_and_rates[:, 3:]),
+            level=level(replace(flown, load=flown.load - offset[:, :3])),
             rate_columns=(turns["p"], turns["q"], turns["r"]) if turns else None,
             gaps=line.gaps,
             offsets=offsets.of_stretches,
@@ -361,12 +362,12 @@ class Recording:
             as_flown=Channels(
                 (*names, *turns),
                 ("m/s^2",) * 3 + ("rad/s",) * len(turns),
-                new,
-                np.concatenate([at_root, both[:, 3:]], axis=1),
+                resampled_time,
+                np.concatenate([at_root, load_and_rates[:, 3:]], axis=1),
             ),
         )
-        flown_rates = PiecewiseLinear(new, both[:, 3:]) if turns else None
-        return FlightRecord(PiecewiseLinear(new, at_root, record=facts), flown_rates)
+        flown_rates = PiecewiseLinear(resampled_time, load_and_rates[:, 3:]) if turns else None
+        return FlightRecord(PiecewiseLinear(resampled_time, at_root, record=facts), flown_rates)
 
 
 def _as_read(
@@ -433,7 +434,7 @@ def _despiked(record: Samples, turns: Iterable[str], rates: Floats, *, despike: 
     if not spiked_samples.any():
         return values, []
     calm, first = without_spikes(record.time, values, spiked), int(np.argmax(spiked_samples))
-    outcome, was, now = (
+    outcome, was, change = (
         ("were replaced", "was", "is") if despike else ("are kept; despike = true replaces them", "is", "then")
     )
     formatters = [record.said] * len(record.names) + [lambda value: f"{np.degrees(value):.4g} deg/s"] * rates.shape[1]
@@ -442,7 +443,7 @@ def _despiked(record: Samples, turns: Iterable[str], rates: Floats, *, despike: 
         if (before != after).any():
             old_range = f"{words(before.min())} to {words(before.max())}"
             new_range = f"{words(after.min())} to {words(after.max())}"
-            ranges.append(f"{key} {was} {old_range}, {now} {new_range}")
+            ranges.append(f"{key} {was} {old_range}, {change} {new_range}")
     note = (
         f"{spiked_samples.sum()} sample(s) that look like spikes, in {len(true_runs(spiked_samples))} run(s), "
         f"the first at {record.time[first]:g} s ({record.place(first)}), {outcome}: {'; '.join(ranges)}"

@@ -84,7 +84,7 @@ class Offsets:
     values: Floats  # (s, n) of the columns x, y, z and p, q, r, m/s² and rad/s
 
     def evaluate(self, time: Floats) -> Floats:
-        """Return the offsets (t, n) at times (t,), s; beyond the stretches the lines go on."""
+        """Return the offsets (t, n) at times (t,), s. Beyond the stretches the lines go on."""
         if len(self.times) < 2:  # of one stretch, or of none
             return np.broadcast_to(self.values.sum(axis=0), (len(time), self.values.shape[1]))
         k = np.clip(np.searchsorted(self.times, time) - 1, 0, len(self.times) - 2)
@@ -130,32 +130,34 @@ def offsets_of(
         start, end = float(clock.min()), float(clock.max())
         span = f"from {start:.6g} to {end:.6g} s"
         at_rest = _UP if specific else (0.0, 0.0, 0.0)
-        known = axes.T @ vector(f"record.{key}.load", at_rest if rest.load is None else rest.load)
+        rest_load = axes.T @ vector(f"record.{key}.load", at_rest if rest.load is None else rest.load)
         if np.any(rest.rates) and not rates.size:
             fix = "name the columns of the body's rates, p, q and r, and rate_unit, or leave it out"
             raise InputError(f"record.{key}.rates", "is given, and the record has no rates", fix)
         turn = axes.T @ vector(f"record.{key}.rates", rest.rates)
-        unknown = load[stretch] - known, rates[stretch] - (turn if rates.size else 0.0)
+        unknown = load[stretch] - rest_load, rates[stretch] - (turn if rates.size else 0.0)
         if trust and all(np.isfinite(vectors).all() for vectors in unknown):
             means = [vectors.mean(axis=0) for vectors in unknown]
         else:
             means = [*mean_of(key, *unknown, span, STILL)]
-        off = sensed * np.concatenate(means)
-        size = float(np.abs(off[:3]).max()) / STANDARD_GRAVITY
+        offset = sensed * np.concatenate(means)
+        size = float(np.abs(offset[:3]).max()) / STANDARD_GRAVITY
         if size > _OFF and not trust:
-            axis = "xyz"[int(np.abs(off[:3]).argmax())]
+            axis = "xyz"[int(np.abs(offset[:3]).argmax())]
             problem = f"is no stretch at rest: {axis} = {columns[axis]!r} is {size:.3g} g off what is known {span}"
             mean = np.round(axes @ load[stretch].mean(axis=0) / STANDARD_GRAVITY, 4) + 0.0  # no -0
             known_g = ", ".join(f'"{component:.4g} g"' for component in mean)
-            if known @ load[stretch].mean(axis=0) < 0:
+            if rest_load @ load[stretch].mean(axis=0) < 0:
                 problem = f"is upside down: the load {span} points against what is known, {axis} = {columns[axis]!r}"
                 fix = "change the signs of the columns: aircraft axes, z down, want y and z with a minus"
                 raise InputError(f"record.{key}", problem, fix)
             fix = f"{STILL}; or say the load there, such as load = [{known_g}]; {_TRUST}"
             raise InputError(f"record.{key}", problem, fix)
-        x, y, z, *turning = off.tolist()
-        facts = Offset(start, end, (x, y, z), (turning[0], turning[1], turning[2]) if turning else None)
-        offsets.append((float(clock.mean()), facts, off))
+        x, y, z, *rate_offsets = offset.tolist()
+        facts = Offset(
+            start, end, (x, y, z), (rate_offsets[0], rate_offsets[1], rate_offsets[2]) if rate_offsets else None
+        )
+        offsets.append((float(clock.mean()), facts, offset))
     offsets.sort(key=itemgetter(0))
     for (_, one, _), (_, other, _) in pairwise(offsets):
         if other.start <= one.end:

@@ -50,9 +50,9 @@ class Sections:
         """
         section = as_word(section)
         if section not in self.names:
-            known = list(dict.fromkeys(self.names))
-            rest_words = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
-            fix = advise(section, known[:_LISTED], listed=f"column {self.column!r} has") + rest_words
+            names = list(dict.fromkeys(self.names))
+            rest_words = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+            fix = advise(section, names[:_LISTED], listed=f"column {self.column!r} has") + rest_words
             raise InputError("record.section", f"is {section}, which no section is", fix)
         runs = [run for name, run in zip(self.names, self.stretches, strict=True) if name == section]
         parts = [(slice(max(run.start, within.start), min(run.stop, within.stop)), run) for run in runs]

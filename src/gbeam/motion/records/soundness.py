@@ -109,7 +109,7 @@ def _trust(check: str, otherwise: str = "if the record is right as it is") -> st
 
 
 def _check_spikes(record: Samples, spiked: Flags, size: Floats) -> None:
-    """Refuse a spike that would be the record's peak: where `spiked` (t, 3); `size` (t,) is without spikes."""
+    """Refuse a spike that would be the record's peak: where `spiked` (t, 3). `size` (t,) is without spikes."""
     raw_size = np.linalg.norm(record.load, axis=1)
     i = int(np.argmax(np.where(spiked.any(axis=1), raw_size, 0)))
     calm_size, largest = size.max(), LARGEST * STANDARD_GRAVITY
@@ -212,10 +212,10 @@ def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
     """
     in_g = size / STANDARD_GRAVITY
     level = (in_g > LEVEL[0]) & (in_g < LEVEL[1])
-    down, up = level & (upwards < -_TURNED * size), level & (upwards > _TURNED * size)
-    if down.mean() < _SOME or down.sum() <= up.sum():
+    is_down, is_up = level & (upwards < -_TURNED * size), level & (upwards > _TURNED * size)
+    if is_down.mean() < _SOME or is_down.sum() <= is_up.sum():
         return
-    i = int(down.argmax())
+    i = int(is_down.argmax())
     boost = upwards / STANDARD_GRAVITY - np.copysign(_BOOST, upwards)
     pushed = np.sum(boost[upwards > 0].clip(0)) > -np.sum(boost[upwards < 0].clip(None, 0))
     upright = np.median(upwards[_beginning(record)]) > _BEGINS_LEVEL[0] * STANDARD_GRAVITY
@@ -224,7 +224,7 @@ def _check_sign(record: Samples, upwards: Floats, size: Floats) -> None:
     raise InputError(
         "record.z",
         f"is {record.said(upwards[i])} at {record.time[i]:g} s ({record.place(i)}), and downwards for "
-        f"{100 * down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
+        f"{100 * is_down.sum() / level.sum():.0f} % of level flight, which is 1 g upwards, along +z",
         "; ".join([*([] if pushed or upright else [turn_over]), _ACCELERATION, *_vehicles(record, size), trust]),
     )
 
@@ -233,9 +233,9 @@ def _check_dropouts(record: Samples) -> None:
     """Refuse a channel that stops changing where a sensor dropped out."""
     step = float(np.median(np.diff(record.time)))
     for values, (axis, name) in zip(record.load.T, record.names.items(), strict=True):
-        still = dropout(values, step)
-        if still is not None:
-            first, last = still
+        frozen = dropout(values, step)
+        if frozen is not None:
+            first, last = frozen
             raise InputError(
                 f"record.{axis}",
                 f"column {name.lstrip('-')!r} stands still at {record.said(values[first])} "
@@ -286,16 +286,16 @@ def oddities(record: Samples) -> Iterator[str]:
             )
     size = np.linalg.norm(record.load, axis=1)
     top = int(size.argmax())
-    along = record.load[top] @ record.axes[0]
-    if abs(along) > _ALONG * size[top]:
+    along_beam = record.load[top] @ record.axes[0]
+    if abs(along_beam) > _ALONG * size[top]:
         yield (
             f"the largest load, {record.said(size[top])} at {record.time[top]:g} s, lies along the beam (x is "
-            f"{record.said(along)}), which bends it little; x is {record.names['x']!r}"
+            f"{record.said(along_beam)}), which bends it little; x is {record.names['x']!r}"
         )
 
 
 def level(record: Samples) -> Level | None:
-    """Longest stretch of level flight, of at least a second, with its mean load; None without any."""
+    """Longest stretch of level flight, of at least a second, with its mean load, or None without any."""
     if not record.specific or record.vehicle != "aircraft":
         return None
     in_g = np.linalg.norm(record.load, axis=1) / STANDARD_GRAVITY

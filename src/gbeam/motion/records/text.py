@@ -58,7 +58,7 @@ def read_text(path: str | os.PathLike[str]) -> Table:
                 "record.file", f"row {number} has {len(cells)} cells, the header {len(header)}", "complete the row"
             )
     labview_units, stated, remarks = _labview({cells[0]: cells[1:] for _, cells in rows[:start]}, len(data))
-    units = [unit or other for unit, other in zip_longest(units, labview_units[:width], fillvalue="")]
+    units = [unit or labview_unit for unit, labview_unit in zip_longest(units, labview_units[:width], fillvalue="")]
     columns = (
         _column(name, unit, data, i, indexed=name in indices)
         for i, (name, unit) in enumerate(zip(header[:width], units, strict=False))
@@ -148,7 +148,7 @@ def _is_data(cells: list[str]) -> bool:
 
 
 def _comment(line: str, delimiter: str) -> str | None:
-    """Text of a comment; None if a line is none. A line of semicolons may be one whose first cell is empty."""
+    """Text of a comment, or None if a line is none. A line of semicolons may be one whose first cell is empty."""
     mark = _COMMENT.match(line)
     return None if mark is None or (delimiter == ";" == mark[1]) else line[mark.end() :]
 
@@ -182,7 +182,7 @@ def _header(path: str | os.PathLike[str], lines: list[str], delimiter: str, widt
 
 
 def _indices(header: list[str]) -> set[str]:
-    """Names that end in an index in brackets, ``acc[0]``; ``n_z [1]`` is a number of g, if no other has an index."""
+    """Names that end in an index in brackets, ``acc[0]``. ``n_z [1]`` is a number of g, if no other has an index."""
     numbered = {name: pair for name in header if (pair := bracketed(name)) and pair[1].isdecimal()}
     stems = Counter(stem for stem, _ in numbered.values())
     return {name for name, (stem, index) in numbered.items() if index != "1" or stems[stem] > 1 or unit_in_name(stem)}

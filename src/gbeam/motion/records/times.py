@@ -71,7 +71,7 @@ class Times:
         return float(self.values.min()), float(self.values.max())
 
     def part(self, span: Span, counted: Callable[[int], str], keys: tuple[str, str] = ("from", "to")) -> slice:
-        """Return the samples within a span of the record's own clock; `keys` are those at which the scenario gives it.
+        """Return the samples within a span of the record's own clock. `keys` are those at which the scenario gives it.
 
         InputError if an end lies outside the record, or if too few samples are left.
         """
@@ -151,8 +151,8 @@ class Timeline:
     @property
     def read(self) -> Indices:
         """Samples that the file has, of all."""
-        lost = [(self.time > gap.start) & (self.time < gap.end) for gap in self.gaps]
-        return np.flatnonzero(~np.logical_or.reduce(lost)) if lost else np.arange(len(self.time))
+        in_gap = [(self.time > gap.start) & (self.time < gap.end) for gap in self.gaps]
+        return np.flatnonzero(~np.logical_or.reduce(in_gap)) if in_gap else np.arange(len(self.time))
 
 
 def _in_order(
@@ -192,7 +192,7 @@ def _in_order(
         ]
         done = "late samples are put in order, and those of one time become their mean"
         fix = f'add resample = "{_round_rate(1 / usual):g} Hz": {done}'
-        raise InputError("record.time", ", ".join(told) + _more(len(back)), fix)
+        raise InputError("record.time", ", ".join(told) + _further_words(len(back)), fix)
     return order, starts
 
 
@@ -234,7 +234,7 @@ def _gaps(time: Floats, place: Place, bridge: float | None, *, evened: bool) -> 
     problem = (
         f"has {len(gaps)} gap{'s' if len(gaps) > 1 else ''}, where the interval is {usual:g} s: "
         + ", ".join(listed[:_LISTED])
-        + _more(len(gaps))
+        + _further_words(len(gaps))
     )
     resampling = "" if evened else f' and resample = "{_round_rate(1 / usual):g} Hz"'
     verb = "add" if bridge is None else "write"
@@ -252,8 +252,8 @@ def _bridged(time: Floats, values: Floats, gaps: Sequence[Gap]) -> tuple[Floats,
     """Fill gaps in the times (t,), s, and values (t, n): lost samples come at equal intervals, on straight lines."""
     if not gaps:
         return time, values
-    lost = sum(gap.lost for gap in gaps)
-    refuse_more("record.bridge", "samples", len(time) + lost, SAMPLES, 24.0, "bridge shorter gaps")
+    lost_count = sum(gap.lost for gap in gaps)
+    refuse_more("record.bridge", "samples", len(time) + lost_count, SAMPLES, 24.0, "bridge shorter gaps")
     parts = [np.linspace(gap.start, gap.end, gap.lost + 2)[1:-1] for gap in gaps]
     filled = np.sort(np.concatenate([time, *parts]))
     return filled, np.stack([np.interp(filled, time, channel) for channel in values.T], axis=1)
@@ -279,7 +279,7 @@ def _unevenness(time: Floats, place: Place, *, evened: bool) -> float:
 def check_interval(time: Floats, times: Times, stated: Mapping[str, float], *, brief: bool) -> None:
     """Refuse an interval of the times (t,), s, that no record of a flight has, and say which unit would make it one.
 
-    `stated` are the sample rates, Hz, by name, that the file states; another one is refused, too. A `brief` record may
+    `stated` are the sample rates, Hz, by name, that the file states. Another one is refused, too. A `brief` record may
     be short and densely sampled.
     """
     where, step, length = f"record.{times.key}", float(np.median(np.diff(time))), float(time[-1] - time[0])
@@ -322,5 +322,5 @@ def _round_up(number: float) -> float:
     return float(f"{math.ceil(number / unit / _ROUND) * unit:.3g}")
 
 
-def _more(count: int) -> str:
+def _further_words(count: int) -> str:
     return f" and {count - _LISTED} more" if count > _LISTED else ""

@@ -132,7 +132,7 @@ def _separated(name: str) -> list[str]:
 
 
 def bracketed(name: str) -> tuple[str, str] | None:
-    """Parts of a name that ends in brackets: before these and inside; None of another name."""
+    """Parts of a name that ends in brackets: before these and inside, or None of another name."""
     match = _BRACKETS.fullmatch(name.strip())
     return match and (match[1].rstrip(), match[2].strip())
 
@@ -143,10 +143,10 @@ def unit_in_name(name: str) -> str:
     It follows a separator, or has two letters: ``timeUS`` is in µs, ``accHighG`` has no unit.
     """
     stem = _INDEX.sub("", name)
-    *before, last = _separated(stem) or [""]
+    *earlier_words, last = _separated(stem) or [""]
     camel = _CAMEL.split(stem)[-1].lower()
-    candidates = [f"{before[-1]}/{last}"] if len(before) > 1 else []
-    candidates += [last] if before and last not in _BARE and before[-1] not in _RANGES else []
+    candidates = [f"{earlier_words[-1]}/{last}"] if len(earlier_words) > 1 else []
+    candidates += [last] if earlier_words and last not in _BARE and earlier_words[-1] not in _RANGES else []
     candidates += [camel] if 1 < len(camel) < len(last) else []
     return next((text for text in candidates if is_unit(text)), "")
 
@@ -157,7 +157,7 @@ def is_unit(text: str) -> bool:
 
 
 def spelled(text: str, quantity: str) -> str | None:
-    """Return the unit that a spelling stands for, a key of ``UNITS`` for the quantities there; None for none."""
+    """Return the unit that a spelling stands for, a key of ``UNITS`` for the quantities there, or None for none."""
     words = text.strip().strip("[]()").replace("²", "^2").replace("**", "^").replace("µ", "u").replace("μ", "u")
     words = words.lower().split(" since ")[0]  # "seconds since 2024-01-01", as netCDF has it
     words = _WORD.sub(lambda word: _LONG[word[1]], words)
@@ -232,5 +232,5 @@ def _unknown(key: str, quantity: str, text: str, problem: str, other_kinds: list
     if quantity == "time":
         return f"{problem}, which is no unit of time", 'write time_unit = "s" and skip_checks = ["unit"] if it is in s'
     unit, plain = ("g", text.strip("[]()")) if quantity == "acceleration" else ("deg/s", text.strip("[]()"))
-    such = f'such as {key} = "1 {unit} / 100{f" {plain}" if plain.isalpha() else ""}"'
-    return f"{problem}, which is no unit of {quantity}", f"give its size, {such}; {_TRUST}"
+    example = f'such as {key} = "1 {unit} / 100{f" {plain}" if plain.isalpha() else ""}"'
+    return f"{problem}, which is no unit of {quantity}", f"give its size, {example}; {_TRUST}"

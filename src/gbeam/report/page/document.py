@@ -103,15 +103,15 @@ def description_page(words: str, origin: Mapping[str, Any], figures: Mapping[str
 def viewer(
     kind: str, facts: Mapping[str, Any], variables: Mapping[str, Any], numbers: Numbers
 ) -> dict[str, dict[str, Any]]:
-    """Return what the viewer shows, as ``modes`` or ``scene``, from JSON and variables; empty if nothing moves."""
+    """Return what the viewer shows, as ``modes`` or ``scene``, from JSON and variables, or empty if nothing moves."""
     if kind == "Modes" and facts["modes"] and "hangs_on" in variables:
         return {"modes": shapes(facts, variables, numbers)}
     motions = facts["motions"] if kind == "Study" else {}
     if kind == "Rest":
         motions = {name: {"environment": "rest"} for name in facts["motions"]}
     environments = {name: motion["environment"] for name, motion in motions.items() if "environment" in motion}
-    moving = scene(environments, variables, numbers)
-    return {} if moving is None else {"scene": moving}
+    viewed = scene(environments, variables, numbers)
+    return {} if viewed is None else {"scene": viewed}
 
 
 def _subject(verb: str, origin: Mapping[str, Any]) -> str:
@@ -126,7 +126,7 @@ def _date(text: str) -> str:
 
 
 def _title(origin: Mapping[str, Any]) -> str:
-    """The scenario's title; empty where there is none."""
+    """The scenario's title, or empty where there is none."""
     text = origin.get("scenario", "")
     try:
         scenario = tomllib.loads(text)

@@ -48,7 +48,7 @@ def draw_blocks(blocks: Iterable[Block], viewer: str, figures: str, level: int =
 
 
 def _draw_block(block: Block, viewer: str, figures: str, level: int) -> str:
-    """HTML of one block; empty if it has nothing to show."""
+    """HTML of one block, or empty if it has nothing to show."""
     match block:
         case Table():
             return table(block)
@@ -71,7 +71,7 @@ def _draw_block(block: Block, viewer: str, figures: str, level: int) -> str:
 
 
 def table(block: Table) -> str:
-    """Return a table as HTML, with columns of numbers flush right; empty if it has no rows."""
+    """Return a table as HTML, with columns of numbers flush right, or empty if it has no rows."""
     if not block.rows:
         return ""
     numeric = [block.numeric(k) for k in range(len(block.heads))]
@@ -149,7 +149,7 @@ _NUDGE = 1e-5  # of the whole width: places that are the same are drawn beside e
 
 
 def draw_figures(figures: Iterable[Figure], numbers: Numbers, header: dict[str, Any]) -> str:
-    """Return the places of figures on a page; what is drawn there goes into `header`, its arrays into `numbers`."""
+    """Return the places of figures on a page. What is drawn there goes into `header`, its arrays into `numbers`."""
     return "".join(_figure(figure, numbers, header) for figure in figures)
 
 

@@ -66,7 +66,7 @@ def figures_in(kind: str, facts: Facts, variables: Facts) -> dict[str, Describe]
 def read(kind: type[_R], facts: Facts, v: Facts | None = None, pattern: str = "*", /, **more: Any) -> _R:
     """Return a record. Each field is taken from `more`, else from the variables `v` of a file, else from JSON.
 
-    Only fields that no figure reads may be missing in all of these; they are left empty. Variables of a record within
+    Only fields that no figure reads may be missing in all of these. They are left empty. Variables of a record within
     another have the `pattern` of :func:`gbeam.io.layout.group_of`.
     """
     by_name = {field.name: field for field in fields(kind)}  # type: ignore[arg-type]
@@ -100,7 +100,7 @@ def _is_needed(field: Any) -> bool:
 
 
 def _stored_value(kind: type, name: str, declaration: Declaration, facts: Facts, v: Facts, pattern: str) -> Any:
-    """Value of a field from the variables of a file; None if the file does not have it.
+    """Value of a field from the variables of a file, or None if the file does not have it.
 
     A field may be a record or rows of records, a complex variable stored in two parts, a plain variable or coordinate,
     or two ends.
@@ -144,7 +144,7 @@ def _has(kind: type, v: Facts, pattern: str) -> bool:
 
 
 def _value(kind: type, name: str, declaration: Declaration, facts: Facts) -> Any:
-    """Value of a field in JSON, in the rows of a dimension or at its key; None where it is not there."""
+    """Value of a field in JSON, in the rows of a dimension or at its key, or None where it is not there."""
     value = _at_key(kind, name, declaration, facts, declaration.key or name)
     if value is None or np.complex128 not in types_in(annotation(kind, name)):
         return value

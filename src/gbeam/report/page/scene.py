@@ -38,15 +38,15 @@ WIDE, THICK = 0.03, 0.012  # of the length: of a body whose section is not known
 
 
 def scene(motions: Mapping[str, str], variables: Variables, numbers: Numbers) -> dict[str, Any] | None:
-    """Return the motions that can be shown, and the time at which the first one deflects most; None if
+    """Return the motions that can be shown, and the time at which the first one deflects most, or None if
     there are none.
     """
     motion_scenes = []
     for name, environment in motions.items():
         v = variables_under(f"motions/{name}/", variables)
         if "hangs_on" in v:
-            moving = _at_once(v) if v["place"].ndim == 2 else _on_hub(v)
-            motion_scenes.append(motion(name, environment, moving, numbers))
+            moved = _at_once(v) if v["place"].ndim == 2 else _on_hub(v)
+            motion_scenes.append(motion(name, environment, moved, numbers))
     if not motion_scenes:
         return None
     _, time, displacement = motion_scenes[0]
@@ -172,8 +172,8 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
             part |= {"box": _box(high - low, (low + high) / 2, np.eye(3)), "points": bolts.tolist()}
             reach = np.concatenate([low + CORNERS * (high - low), bolts])
         else:
-            others = [i for i, point in enumerate(points) if point.startswith(f"{body}.") and i != root]
-            part["points"] = [turn[0].inv().apply(place[0, i] - origin[0]).tolist() for i in others]
+            other_points = [i for i, point in enumerate(points) if point.startswith(f"{body}.") and i != root]
+            part["points"] = [turn[0].inv().apply(place[0, i] - origin[0]).tolist() for i in other_points]
             if "box" in v and np.isfinite(v["box"][k]).all():  # no variable where all are flexible
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
                 part["box"] = _box(size, centre, rotation)
@@ -289,21 +289,21 @@ def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str
         turn = max(np.abs(turns).max() for turns in (of_mode("point_turn", k)[roots], *twists.values()))
         amplitude = _amplitude(2 * radius, float(max(sizes)), float(turn))
         attitudes = [Rotation.from_rotvec(amplitude * turns) * rest for turns in _swung(of_mode("point_turn", k))]
-        moving = {
+        modes = {
             **v,
             "time": PHASES,
             "place": v["place"] + amplitude * _swung(of_mode("point_shape", k)),
             "attitude": np.stack([np.roll(attitude.as_quat(), 1, axis=-1) for attitude in attitudes]),
         }
         for body in beams:
-            moving[f"{body}_outline_time"] = PHASES
-            moving[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of_mode(f"{body}_outline_shape", k))
+            modes[f"{body}_outline_time"] = PHASES
+            modes[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of_mode(f"{body}_outline_shape", k))
         for body, twist in twists.items():
-            moving[f"{body}_outline_twist"] = amplitude * _swung(twist)
+            modes[f"{body}_outline_twist"] = amplitude * _swung(twist)
         for body, mesh in meshes.items():
-            moving[f"{body}_surface_time"] = PHASES
-            moving[f"{body}_surface_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
-        motions.append(_mode(label, motion(label, label, moving, numbers)[0]))
+            modes[f"{body}_surface_time"] = PHASES
+            modes[f"{body}_surface_sizes"] = amplitude * _swung(_complex(mesh, "sizes")[k])
+        motions.append(_mode(label, motion(label, label, modes, numbers)[0]))
     return {"labels": labels, "motions": motions}
 
 

@@ -43,7 +43,7 @@ def _body(
 
 
 def _places(file: str | None) -> Any:
-    """Places of the nodes in a file of a matrix; None without a file."""
+    """Places of the nodes in a file of a matrix, or None without a file."""
     if file is None:
         return None
     with naming("nodes"):

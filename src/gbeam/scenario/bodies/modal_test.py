@@ -41,16 +41,16 @@ def _body(
 
 def _test(file: str | None, measured: dict[str, Any]) -> ModalTest:
     """The modes of a file, or those that are written; InputError unless it is one of both."""
-    beside = [key for key in ("frequency", "shapes", "nodes") if key in measured]
-    if file is not None and beside:
-        raise InputError(beside[0], "is given beside modal_test", "keep one of them")
+    own_keys = [key for key in ("frequency", "shapes", "nodes") if key in measured]
+    if file is not None and own_keys:
+        raise InputError(own_keys[0], "is given beside modal_test", "keep one of them")
     if file is not None:
         test = ModalTest.read(file, modal_mass=measured.get("modal_mass"))
         return replace(test, damping_ratio=measured["damping_ratio"]) if "damping_ratio" in measured else test
-    missing = [key for key in MEASURED if key not in measured]
-    if missing:
+    lacking = [key for key in MEASURED if key not in measured]
+    if lacking:
         fix = "give modal_test = FILE, or frequency, damping_ratio, shapes, nodes and modal_mass"
-        raise InputError("", f"{missing[0]} is missing", fix)
+        raise InputError("", f"{lacking[0]} is missing", fix)
     return ModalTest(**measured | {"shapes": _same_nodes(measured["shapes"], len(measured["nodes"]))})
 
 

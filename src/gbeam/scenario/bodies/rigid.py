@@ -47,7 +47,7 @@ def _specimen(
     """Structure of a rigid specimen, its points among its corners."""
     mass, centre = others.pop("mass"), others.pop("centre", (0.0, 0.0, 0.0))
     moments = inertia_of(_moments(mass, others.pop("inertia", None), centre, size, middle))
-    places = {name: getattr(each, "at", each) for name, each in (points or {}).items()}
+    places = {name: getattr(point, "at", point) for name, point in (points or {}).items()}
     listed = [*corners, *places.values()]
     if size is not None:
         signs = np.array(list(product((-0.5, 0.5), repeat=3)))
@@ -57,21 +57,21 @@ def _specimen(
     return RigidSpecimen(mass, centre, moments, listed, points=places, **others).structure
 
 
-def _alone(parts: Collector, where: str, table: Table) -> Structure | None:
-    """Structure of a rigid specimen alone on its base; None if it is refused."""
+def _lone_specimen(parts: Collector, where: str, table: Table) -> Structure | None:
+    """Structure of a rigid specimen alone on its base, or None if it is refused."""
     return _object(parts, where, table, _specimen)
 
 
 def _in_system(parts: Collector, where: str, table: Table) -> Rigid | Structure | None:
-    """Rigid body of a system, a specimen where corners or bolts are asked for; None if it is refused."""
+    """Rigid body of a system, a specimen where corners or bolts are asked for, or None if it is refused."""
     return _object(parts, where, table, _specimen if any(getattr(table, key) for key in _ITEM) else _rigid)
 
 
 def _object(parts: Collector, where: str, table: Table, make: Any) -> Any:
-    """Object of a table by one of the two functions; None if it is refused."""
-    before = len(parts.errors)
+    """Object of a table by one of the two functions, or None if it is refused."""
+    errors_before = len(parts.errors)
     arguments = arguments_of(parts, where, table, {"kind", *(() if make is _specimen else _ITEM)})
-    return parts.attempt(where, make, **arguments) if len(parts.errors) == before else None
+    return parts.attempt(where, make, **arguments) if len(parts.errors) == errors_before else None
 
 
 def _middle(centre: Any, middle: Any) -> Any:
@@ -123,5 +123,5 @@ BODY = BodyKind(
         },
     ),
     _in_system,
-    _alone,
+    _lone_specimen,
 )

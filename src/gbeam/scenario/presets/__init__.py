@@ -1,6 +1,6 @@
 """Presets of acceleration tests by standards: files of TOML that ship, each figure with its source and clause.
 
-``[arm]`` has keys of ``[motion.NAME]``, kind = "arm"; ``[source]`` says of each where it is from; ``[asked]`` says of
+``[arm]`` has keys of ``[motion.NAME]``, kind = "arm". ``[source]`` says of each where it is from; ``[asked]`` says of
 each key that the standard fixes, and whose text could not be read, where in the standard it stands: the scenario has to
 give it.
 """
@@ -33,7 +33,7 @@ class Preset:
 
     @property
     def directions(self) -> Mapping[str, Any]:
-        """Directions of the load by name; empty where the scenario has to give them."""
+        """Directions of the load by name, or empty where the scenario has to give them."""
         return self.arm.get("directions", {})
 
     def words(self, name: str, keys: Iterable[str]) -> str:
@@ -48,7 +48,7 @@ class Preset:
         return "; ".join(filter(None, parts))
 
     def advice(self, key: str) -> str:
-        """Words on where the standard has what a scenario leaves out at a key; empty of what it does not fix."""
+        """Words on where the standard has what a scenario leaves out at a key, or empty of what it does not fix."""
         if key not in self.asked:
             return ""
         return f"{self.standard}, {self.asked[key]}: gbeam could not read that text, and has no figure of it"

@@ -34,5 +34,5 @@ def kind_of_scenario(data: Mapping[str, Any]) -> type[Scenario | SystemScenario 
     from gbeam.scenario.schema.system import SpecimenScenario, SystemScenario
 
     bodies = data.get("bodies")
-    alone = isinstance(bodies, Mapping) and len(bodies) == 1 and {*_OF_SYSTEMS, "beam", "model"}.isdisjoint(data)
-    return SpecimenScenario if alone else SystemScenario
+    is_specimen = isinstance(bodies, Mapping) and len(bodies) == 1 and {*_OF_SYSTEMS, "beam", "model"}.isdisjoint(data)
+    return SpecimenScenario if is_specimen else SystemScenario

@@ -142,7 +142,7 @@ class Arm(_Held):
 
     @property
     def standard(self) -> str:
-        """Words on the preset's standard and the clauses of what is taken from it; empty without a preset."""
+        """Words on the preset's standard and the clauses of what is taken from it, or empty without a preset."""
         return "" if self.preset is None else preset_of(self.preset).words(self.preset, self._taken)
 
     @model_validator(mode="wrap")
@@ -188,7 +188,7 @@ class Arm(_Held):
                 yield (), wrong(f"{' or '.join(alternatives)} is missing{directions}", hint, mark="key")
 
     def _request(self, key: str) -> str:
-        """Words that ask for a key that the preset's standard fixes; empty where it does not."""
+        """Words that ask for a key that the preset's standard fixes, or empty where it does not."""
         advice = "" if self.preset is None else preset_of(self.preset).advice(key)
         return f"give {key} by {advice}" if advice else ""
 

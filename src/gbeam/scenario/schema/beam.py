@@ -139,9 +139,9 @@ def _line(
 ) -> _Line:
     """The line along which a beam lies at rest: by points, by pieces, or straight with a twist at stations."""
     ways = {"points": points, "pieces": pieces, "stations": stations}
-    way, *others = [name for name, value in ways.items() if value is not None] or [""]
-    if not way or others:
-        problem = f"{others[0]} is given beside {way}" if others else "the line is missing"
+    way, *other_ways = [name for name, value in ways.items() if value is not None] or [""]
+    if not way or other_ways:
+        problem = f"{other_ways[0]} is given beside {way}" if other_ways else "the line is missing"
         raise InputError("", problem, "give one of points, pieces and stations")
     of_file = isinstance(points, str)
     if length_unit is not None and not of_file:

@@ -120,7 +120,7 @@ def chosen(key: str, tables: Mapping[str, Any], tag_of: Callable[[Any], Any] | N
 
 
 def object_of(parts: Collector, where: str, value: Any) -> Any:
-    """Return the object of a table, or of a list or mapping of them; None if one is refused, with why in `parts`."""
+    """Return the object of a table, or of a list or mapping of them, or None if one is refused, with why in `parts`."""
     if isinstance(value, (list, tuple)):
         return tuple(object_of(parts, f"{where}[{i}]", entry) for i, entry in enumerate(value))
     if isinstance(value, Mapping):
@@ -128,9 +128,9 @@ def object_of(parts: Collector, where: str, value: Any) -> Any:
     if not isinstance(value, BaseModel):
         return value
     maker = _MAKERS[type(value)]
-    before = len(parts.errors)
+    errors_before = len(parts.errors)
     arguments = arguments_of(parts, where, value, {maker.tag})
-    return parts.attempt(where, maker.make, **arguments) if len(parts.errors) == before else None
+    return parts.attempt(where, maker.make, **arguments) if len(parts.errors) == errors_before else None
 
 
 def arguments_of(parts: Collector, where: str, table: BaseModel, without: Collection[str] = ()) -> dict[str, Any]:
@@ -175,7 +175,7 @@ def _is_list(written: Any) -> bool:
 
 
 def _origin(written: Any) -> Any:
-    """The generic class of a type without its annotations, such as tuple; None of others."""
+    """The generic class of a type without its annotations, such as tuple, or None of others."""
     return get_origin(written.__origin__ if get_origin(written) is Annotated else written)
 
 
@@ -219,9 +219,9 @@ def _annotated(hint: Any, metadata: tuple[Any, ...], title: str, of: str, quanti
         return _list_of(_array(_number(quantity), (marks[Rows].size,)))
     if quantity is not None and str in get_args(hint):  # texts that the quantity keeps, such as times of day
         return Annotated[hint, quantity]
-    others = (mark for mark in metadata if not isinstance(mark, _OURS))
+    other_marks = (mark for mark in metadata if not isinstance(mark, _OURS))
     annotated = value_type(hint, title, of, quantity)
-    for mark in others:
+    for mark in other_marks:
         annotated = Annotated[annotated, mark]
     return annotated
 

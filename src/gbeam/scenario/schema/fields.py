@@ -135,7 +135,7 @@ def fields_of(table: type[BaseModel]) -> dict[str, FieldInfo]:
 
 
 def kind_of(table: BaseModel, key: str) -> str:
-    """Kind of quantity, a key of ``KINDS``, of the value at a key of a table; empty if it is no quantity."""
+    """Kind of quantity, a key of ``KINDS``, of the value at a key of a table, or empty if it is no quantity."""
     return _kind_in(parts_of(fields_of(type(table)).get(key)))
 
 
@@ -144,7 +144,7 @@ def _kind_in(parts: Iterable[Any]) -> str:
 
 
 def parts_of(field: FieldInfo | None) -> tuple[Any, ...]:
-    """Metadata of a field and the parts of its annotation at any depth; empty for None."""
+    """Metadata of a field and the parts of its annotation at any depth, or empty for None."""
     return () if field is None else (*field.metadata, *annotation_parts(field.annotation))
 
 

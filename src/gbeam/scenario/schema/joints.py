@@ -65,7 +65,7 @@ def _optional(of: Any, description: str) -> tuple[Any, Any]:
 
 
 def _joint(name: str, kind: Kind) -> Any:
-    """Table of a kind of joint; values are written plainly for one coordinate, in tables by name for several."""
+    """Table of a kind of joint. Values are written plainly for one coordinate, in tables by name for several."""
     fields = _placed(name, kind)
     for key in OF_COORDINATES:
         parameter, coordinates = _PARAMETERS[key], kind.names_in(key)

@@ -120,7 +120,7 @@ class _Imitation(Table):
 
     @property
     def limits_of_acceptance(self) -> dict[str, Any]:
-        """Limits of [accept] by name; empty without the table."""
+        """Limits of [accept] by name, or empty without the table."""
         return {} if self.accept is None else self.accept.limits
 
 

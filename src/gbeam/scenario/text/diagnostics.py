@@ -57,8 +57,10 @@ class Diagnostic:
 
 
 class ScenarioError(InputError):
-    """The scenario is wrong (exit status 2): everything that is wrong with it, at once, each at its place in the file,
-    which it keeps wherever it is seen from; its own `where`, `problem` and `fix` are those of the first.
+    """The scenario is wrong (exit status 2).
+
+    It tells everything that is wrong at once, each at its place in the file, which it keeps wherever it is seen from.
+    Its own `where`, `problem` and `fix` are those of the first.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:

@@ -30,7 +30,7 @@ _HALF = re.compile("[\ud800-\udfff]")
 
 
 def excess(text: str) -> tuple[Span, str, str] | None:
-    """Place, problem and fix where a text exceeds the limits of size, nesting or numbers; None if it keeps them."""
+    """Place, problem and fix where a text exceeds the limits of size, nesting or numbers, or None if it keeps them."""
     if len(text) > SCENARIO_BYTES:
         limit = in_bytes(SCENARIO_BYTES)
         return Span(1, 1, 2), f"has {in_bytes(len(text))}, and {limit} are read at most", "give long tables as a record"
@@ -49,7 +49,7 @@ def excess(text: str) -> tuple[Span, str, str] | None:
 
 
 def no_text(text: str) -> tuple[Span, str, str] | None:
-    """Place, problem and fix of the first lone surrogate, which no file can hold, in a text; None without one."""
+    """Place, problem and fix of the first lone surrogate, which no file can hold, in a text, or None without one."""
     half = _HALF.search(text)
     if half is None:
         return None
@@ -57,7 +57,7 @@ def no_text(text: str) -> tuple[Span, str, str] | None:
 
 
 def crowded(data: dict[str, Any]) -> tuple[Path, str] | None:
-    """Return the path of a table or list with too many keys, tables or lists, and the problem; None without one."""
+    """Return the path of a table or list with too many keys, tables or lists, and the problem, or None without one."""
     nodes: list[tuple[Path, Any]] = [((), data)]
     for path, node in nodes:  # which grows
         steps = [*node.items()] if isinstance(node, dict) else [*enumerate(node)]

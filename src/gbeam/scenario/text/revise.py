@@ -109,7 +109,7 @@ def _refusal(path: Path) -> InputError:
 
 
 def _changed(text: str, change: Callable[[Any], None]) -> str:
-    """Return the text after a change of its document; comments before a table's header stay before it."""
+    """Return the text after a change of its document. Comments before a table's header stay before it."""
     import tomlkit
     from tomlkit.items import Comment, Table, Whitespace
 

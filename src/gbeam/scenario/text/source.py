@@ -184,11 +184,11 @@ class Source:
 
     def _override_of(self, path: Path) -> Override | None:
         """Last override that set the entry at `path` or a table around it; else one inside an entry not in the text."""
-        above = [change for change in self.overrides if path[: len(change.path)] == change.path]
-        if above:
-            return above[-1]
-        below = [change for change in self.overrides if path and change.path[: len(path)] == path]
-        return below[-1] if below and path not in self.places else None
+        outer = [change for change in self.overrides if path[: len(change.path)] == change.path]
+        if outer:
+            return outer[-1]
+        inner = [change for change in self.overrides if path and change.path[: len(path)] == path]
+        return inner[-1] if inner and path not in self.places else None
 
 
 def at_span(name: str, text: str, span: Span, path: str, message: str, hint: str) -> Diagnostic:
@@ -233,11 +233,11 @@ def read_text(path: File) -> str:
 
 def _in_another_encoding(name: str, error: UnicodeDecodeError) -> Diagnostic:
     """Diagnostic of the first byte of a text that is not UTF-8."""
-    before, rest = error.object[: error.start].decode("utf-8-sig"), error.object[error.start :].decode("latin-1")
-    lines = before.split("\n")
+    decoded, rest = error.object[: error.start].decode("utf-8-sig"), error.object[error.start :].decode("latin-1")
+    lines = decoded.split("\n")
     column = len(lines[-1]) + 1
     problem = f"the byte 0x{ord(rest[0]):02x}, {rest[0]!r} in Latin-1, is not UTF-8"
-    return at_span(name, before + rest, Span(len(lines), column, column + 1), "", problem, "save it as UTF-8")
+    return at_span(name, decoded + rest, Span(len(lines), column, column + 1), "", problem, "save it as UTF-8")
 
 
 @cache

@@ -28,7 +28,7 @@ _PAIRS = np.tril_indices(4)  # of states
 
 
 class AxisSplines:
-    """ω1, θ2 and θ3 as splines on one grid; the arm's rate at both ends is an unknown unless that is a `standstill`.
+    """ω1, θ2 and θ3 as splines on one grid. The arm's rate at both ends is an unknown unless that is a `standstill`.
 
     The first five coefficients of each are one number, and so are the last five: values are what they are, and their
     first four derivatives are zero. The unknowns x are those numbers and all the others between, axis after axis at
@@ -74,7 +74,7 @@ class AxisSplines:
         return np.asarray(np.append(x, 0.0)[self.number])
 
     def unknowns(self, coefficients: Floats) -> Floats:
-        """The unknowns x of coefficients (grid.size, 3); where several are one unknown, the outermost counts."""
+        """The unknowns x of coefficients (grid.size, 3). Where several are one unknown, the outermost counts."""
         x = np.zeros(self.size + 1)
         half = self.grid.size // 2
         x[self.number[half - 1 :: -1]] = coefficients[half - 1 :: -1]
@@ -84,7 +84,7 @@ class AxisSplines:
     def assembled(self, pieces: Floats) -> Any:
         """Sum matrices of single pieces into the sparse symmetric matrix (size, size) for x.
 
-        Each piece's matrix couples the 18 coefficients that act on it; `pieces` (171, pieces) holds the lower
+        Each piece's matrix couples the 18 coefficients that act on it. `pieces` (171, pieces) holds the lower
         triangles.
         """
         band = np.zeros((NEAR, AXES * self.grid.size))  # row d couples every coefficient with the d-th after it
@@ -102,7 +102,7 @@ _SLOW = 0.1  # of the largest rate: slower ones have its tangent
 
 
 def idle_rate(target: Target, geometry: Geometry) -> float:
-    """Rate of axis 1 at which the arm alone makes the idle load, rad/s; zero where there is no idle."""
+    """Rate of axis 1 at which the arm alone makes the idle load, rad/s, or zero where there is no idle."""
     horizontal2 = max(float(target.idle) ** 2 - float(geometry.gravity) ** 2, 0.0)
     return float((horizontal2 / float(geometry.arm) ** 2) ** 0.25)
 
@@ -114,7 +114,7 @@ class Tracking:
 
     where before the flight's first time and after its last the load is that of spin-up and spin-down by themselves.
 
-    The load depends on four states: ω1, dω1/dt, θ2 and θ3; each is a row of the unknowns at every time of the grid.
+    The load depends on four states: ω1, dω1/dt, θ2 and θ3. Each is a row of the unknowns at every time of the grid.
     """
 
     def __init__(
@@ -156,9 +156,9 @@ class Tracking:
 
     def gentler(self, factor: float) -> Tracking:
         """The cost with `EASE` multiplied by a factor."""
-        other = copy.copy(self)
-        other.ease, other.eased = factor**2 * self.ease, factor**2 * self.eased
-        return other
+        copied = copy.copy(self)
+        copied.ease, copied.eased = factor**2 * self.ease, factor**2 * self.eased
+        return copied
 
     def cost(self, x: Floats) -> float:
         """The cost of the unknowns."""
@@ -169,7 +169,7 @@ class Tracking:
         """Slope of the cost, and a positive semidefinite matrix in place of its second derivatives.
 
         At every time the second derivatives by the states are replaced by their absolute value, which has the absolute
-        eigenvalues. Where the flight's load is small, turning the machine's load is a saddle of the cost; Gauss and
+        eigenvalues. Where the flight's load is small, turning the machine's load is a saddle of the cost. Gauss and
         Newton's products of first derivatives alone would take it for a valley.
         """
         error, slope, second = self.error((self.states @ x).reshape(4, -1), 2)
@@ -181,22 +181,24 @@ class Tracking:
         return hessian, self.states.T @ by_states + self.ease @ x
 
     def error(self, state: Floats, order: int) -> tuple[Floats, ...]:
-        """Weighted tracking error (3, times), g0, of states (4, times); for order 0 with the load, m/s², for order 2
-        with its slope (3, 4, times) and the second derivatives (times, 4, 4) of half its square, by the states.
+        """Weighted tracking error (3, times), g0, of states (4, times).
+
+        Of order 0 the load, m/s², comes with it. Of order 2 its slope (3, 4, times) and the second derivatives (times,
+        4, 4) of half its square by the states come with it.
         """
         arm, gravity, (rate, acceleration, yaw, roll) = self.arm, self.gravity, state
         radial, tangential = -arm * rate**2, arm * acceleration
         sin2, cos2, sin3, cos3 = np.sin(yaw), np.cos(yaw), np.sin(roll), np.cos(roll)
         # `control_point_load`: what is along the beam and across it; the roll turns what is across it.
-        along, across = radial * cos2 + tangential * sin2, tangential * cos2 - radial * sin2
-        load = np.stack([along, across * cos3 + gravity * sin3, gravity * cos3 - across * sin3])
+        axial, lateral = radial * cos2 + tangential * sin2, tangential * cos2 - radial * sin2
+        load = np.stack([axial, lateral * cos3 + gravity * sin3, gravity * cos3 - lateral * sin3])
         error = self.weight * (load - self.flight.T)
         if order == 0:
             return error, load
         # First derivatives by the states, and Gauss and Newton's part of the second ones.
-        zero, by_rate = 0.0 * along, -2 * arm * rate
-        d_along = np.stack([by_rate * cos2, arm * sin2, across, zero])
-        d_across = np.stack([-by_rate * sin2, arm * cos2, -along, zero])
+        zero, by_rate = 0.0 * axial, -2 * arm * rate
+        d_along = np.stack([by_rate * cos2, arm * sin2, lateral, zero])
+        d_across = np.stack([-by_rate * sin2, arm * cos2, -axial, zero])
         slope = np.stack([d_along, d_across * cos3, -d_across * sin3])
         slope[1, 3], slope[2, 3] = load[2], -load[1]
         slope *= self.weight
@@ -209,7 +211,7 @@ class Tracking:
             (0, 0): 2 * arm * (sin2 * by_across - cos2 * by_along),
             (0, 2): -by_rate * (sin2 * by_along + cos2 * by_across),
             (1, 2): arm * (cos2 * by_along - sin2 * by_across),
-            (2, 2): -along * by_along - across * by_across,
+            (2, 2): -axial * by_along - lateral * by_across,
             (0, 3): d_across[0] * by_turned,
             (1, 3): d_across[1] * by_turned,
             (2, 3): d_across[2] * by_turned,
@@ -233,7 +235,7 @@ class KeptLimits:
     """Rows of the unknowns with lower and upper limits.
 
     A derivative of a spline lies between its coefficients, which are differences of the spline's own over the step: the
-    limits of these are kept between the knots too. The arm's power J ω1 |dω1/dt| <= P is not linear; its tangent at a
+    limits of these are kept between the knots too. The arm's power J ω1 |dω1/dt| <= P is not linear. Its tangent at a
     rate Ω, |dω1/dt| <= (P/J) (2 − ω1/Ω)/Ω, is within it at every other rate, because P/(J ω1) is convex. With one Ω for
     a piece it holds on all of the piece where it holds for the hull.
     """
@@ -250,7 +252,7 @@ class KeptLimits:
                 limit = allowed[quantity, axis]
                 if order == 0:
                     rows.append(splines.expand_rows(coefficients, axis))
-                    lower.append(self._least(grid, target))
+                    lower.append(self._least_coefficients(grid, target))
                     upper.append(np.full(grid.size, limit * _USED))
                 elif limit < np.inf:
                     rows.append(splines.expand_rows(_differences(grid, order), axis) / limit)
@@ -263,18 +265,18 @@ class KeptLimits:
         if self.power < np.inf:
             self.rate, self.acceleration = (splines.expand_rows(grid.hull(order), RATE) for order in (0, 1))
 
-    def _least(self, grid: Grid, target: Target) -> Floats:
+    def _least_coefficients(self, grid: Grid, target: Target) -> Floats:
         """Least coefficients of ω1: those that act during the flight are at idle, and the arm never turns back."""
         first, last = ((float(end) - grid.start) / grid.step for end in target.span)
-        least = np.zeros(grid.size)
+        least_load = np.zeros(grid.size)
         begin, end = max(int(np.floor(first)), 0), min(int(np.ceil(last)), grid.pieces)
-        least[begin : end + DEGREE] = self.idle / _USED
-        return least
+        least_load[begin : end + DEGREE] = self.idle / _USED
+        return least_load
 
     def linearise(self, x: Floats) -> tuple[Any, Floats, Floats]:
         """Matrix (m, size) and lower and upper limits (m,) of the linear constraints on the unknowns.
 
-        The power's limit |rate · acceleration| <= P is not linear; its rows are tangents at `x`.
+        The power's limit |rate · acceleration| <= P is not linear. Its rows are tangents at `x`.
         """
         if self.power == np.inf:
             return self.rows, self.lower, self.upper
@@ -282,8 +284,8 @@ class KeptLimits:
         rate = np.repeat(np.max((self.rate @ x).reshape(-1, PIECE), axis=1), PIECE)
         rate = np.maximum(rate, _SLOW * rate.max())
         braking = scipy.sparse.diags_array(rate / self.power) @ self.acceleration
-        turning = scipy.sparse.diags_array(1 / rate) @ self.rate
-        rows = scipy.sparse.vstack([self.rows, turning + braking, turning - braking], format="csr")
+        arm_rate = scipy.sparse.diags_array(1 / rate) @ self.rate
+        rows = scipy.sparse.vstack([self.rows, arm_rate + braking, arm_rate - braking], format="csr")
         count = 2 * rate.size
         return rows, np.append(self.lower, np.full(count, -np.inf)), np.append(self.upper, np.full(count, 2.0))
 

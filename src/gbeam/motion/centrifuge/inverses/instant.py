@@ -5,8 +5,8 @@ angles, as series in time, so that their rates come with them. The exact one has
 give the horizontal load its size and direction at once.
 
 With A = a/R, ω1² = A cos δ and dω1/dt = A sin δ: sin δ (δ' + 2 sqrt(A cos δ)) = (A'/A) cos δ, docs/theory.md (8.4).
-It is stable forward while the load rises and backward while it falls, so its smooth solution needs no initial value;
-where the load rises at the start or falls at the end, it is the solution that has no layer there: the machine is
+It is stable forward while the load rises and backward while it falls, so its smooth solution needs no initial value.
+Where the load rises at the start or falls at the end, it is the solution that has no layer there: the machine is
 yawed ahead of the record as if the load had been rising before. A spline is laid through all of it at once
 (collocation, by Gauss-Newton), which is both directions in one and joins them at the turning points.
 """
@@ -45,8 +45,8 @@ class Geometry:
 class Inverse(ABC):
     """Axis motion for a target.
 
-    Each says what it aims at: `within`, the largest tracking error as a fraction of the load where the target is the
-    flight's (infinite where it aims at nothing), and `unless`, why it may be more and what helps.
+    Each says what it aims at. `within` is the largest tracking error as a fraction of the load where the target is the
+    flight's, infinite where the inverse aims at nothing. `unless` tells why the error may be larger, and what helps.
     """
 
     within: ClassVar[float]
@@ -54,7 +54,7 @@ class Inverse(ABC):
 
     @property
     def extent(self) -> tuple[float, float] | None:
-        """First and last time of a motion that has its own beginning and end, s; None where they are to be added."""
+        """First and last time of a motion that has its own beginning and end, s, or None where they are to be added."""
         return None
 
     @abstractmethod
@@ -68,7 +68,9 @@ def speed(load: Series, geometry: Geometry) -> Series:
 
 
 def across_beam(load: Series, geometry: Geometry) -> Series:
-    """B2 = ±sqrt(f_y² + f_z² − γ²), the horizontal part of a load (..., 3) m/s² across the beam; zero where none is."""
+    """B2 = ±sqrt(f_y² + f_z² − γ²), the horizontal part of a load (..., 3) m/s² across the beam,
+    or zero where none is.
+    """
     horizontal2 = square(load[..., 1:]) - geometry.gravity**2
     bent = horizontal2.value > 0
     return where(bent, geometry.sign * sqrt(where(bent, horizontal2, 1.0)), 0.0)
@@ -80,14 +82,14 @@ def gimbals(load: Series, lag: Series | float, geometry: Geometry) -> tuple[Seri
     Axis 2 lags by `lag`, rad. θ3 is zero where the load lies along the beam.
     """
     fx, fy, fz = load[..., 0], load[..., 1], load[..., 2]
-    across = across_beam(load, geometry)
-    has_across = across.value != 0
-    xp = namespace(across.value)
-    safe_across = where(has_across, across, xp.ones_like(across.value))
-    gravity = Series.from_derivatives([geometry.gravity + 0.0 * across.value], across.order)
+    lateral_load = across_beam(load, geometry)
+    has_across = lateral_load.value != 0
+    xp = namespace(lateral_load.value)
+    safe_across = where(has_across, lateral_load, xp.ones_like(lateral_load.value))
+    gravity = Series.from_derivatives([geometry.gravity + 0.0 * lateral_load.value], lateral_load.order)
     safe_fy, safe_fz = where(has_across, fy, safe_across.value), where(has_across, fz, gravity.value)
     roll = arctan2(gravity, safe_across) - arctan2(safe_fz, safe_fy)
-    return math.pi - lag - arctan2(across, fx), roll
+    return math.pi - lag - arctan2(lateral_load, fx), roll
 
 
 @record
@@ -105,7 +107,7 @@ class QuasiStatic(Inverse):
 
 @record
 class Flat(Inverse):
-    """Yaw by δ = atan((dω1/dt)/ω1²) keeps the load's horizontal direction; its size is high by about δ²/2."""
+    """Yaw by δ = atan((dω1/dt)/ω1²) keeps the load's horizontal direction. Its size is high by about δ²/2."""
 
     within: ClassVar[float] = math.inf
     unless: ClassVar[str] = ""
@@ -212,8 +214,8 @@ def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None)
 
     def state(c: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """The terms of the equation for the lag, and its residual, at collocation points."""
-        near = np.lib.stride_tricks.sliding_window_view(c, PIECE)
-        lag, dlag = np.clip(near @ value.T, -1.5, 1.5), near @ slope.T
+        windows = np.lib.stride_tricks.sliding_window_view(c, PIECE)
+        lag, dlag = np.clip(windows @ value.T, -1.5, 1.5), windows @ slope.T
         sine, cosine = np.sin(lag), np.cos(lag)
         turn = 2 * np.sqrt(a * cosine)
         return sine, cosine, dlag, turn, sine * (dlag + turn) - growth * cosine
@@ -232,11 +234,11 @@ def _solve(grid: Grid, target: Target, geometry: Geometry, start: Spline | None)
         largest = np.abs(move).max()
         # Far from the solution a whole step may leave the range of the lag; near to it rounding decides what gains.
         for share in (1.0, 0.5, 0.25, 0.1) if largest > _NEAR else (1.0,):
-            new = state(c + share * move)
-            if np.sum(new[-1] ** 2) < np.sum(residual**2) * (1 + 1e-9):
+            tried = state(c + share * move)
+            if np.sum(tried[-1] ** 2) < np.sum(residual**2) * (1 + 1e-9):
                 break
         c = c + share * move
-        sine, cosine, dlag, turn, residual = new
+        sine, cosine, dlag, turn, residual = tried
         if largest < _CLOSE:
             break
     # |R dω1/dt − a sin δ| / a
@@ -247,16 +249,16 @@ def _refusal(target: Target, geometry: Geometry, grid: Grid, errors: Floats) -> 
     """The error of a load that turns too sharply: it names the worst time and, if any is enough, the smoothing."""
     turns = sharp_turns(target, float(geometry.arm))
     if not turns:
-        when = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]
-        problem = f"is too small for the exact inverse: no smooth motion follows the load about {when:.3f} s"
+        error_time = grid.time[int(np.argmax(np.where(np.isfinite(errors), errors, 0.0).ravel()))]
+        problem = f"is too small for the exact inverse: no smooth motion follows the load about {error_time:.3f} s"
         return InputError("smoothing", problem, 'give more, or inverse = "planned" or "flat"')
-    worst = max((turn for turn, _ in turns), key=lambda turn: turn.reference / turn.possible)
+    worst_turn = max((turn for turn, _ in turns), key=lambda turn: turn.reference / turn.possible)
     widths = [width for _, width in turns if width is not None]
     wider = f'give "{np.ceil(1e3 * max(widths)):.0f} ms" or more, or ' if len(widths) == len(turns) else "give "
     return InputError(
         "smoothing",
-        f"is too small for the exact inverse: about {worst.time:.3f} s the load turns by "
-        f"−ä = {worst.reference:.3g} m/s^4 "
-        f"and the arm allows a²/R = {worst.possible:.3g} m/s^4",
+        f"is too small for the exact inverse: about {worst_turn.time:.3f} s the load turns by "
+        f"−ä = {worst_turn.reference:.3g} m/s^4 "
+        f"and the arm allows a²/R = {worst_turn.possible:.3g} m/s^4",
         f'{wider}inverse = "planned" or "flat"',
     )

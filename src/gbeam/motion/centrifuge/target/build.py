@@ -69,7 +69,7 @@ def build_target(
     """Make of a flight's load the nearest one that a centrifuge can follow, at every time.
 
     The flight's corners are rounded by a Hann kernel. Where the load is then at least idle and in reach of the gimbals,
-    it is the target. Below idle, the target's size is idle; where the gimbals do not reach, the part along the beam is
+    it is the target. Below idle, the target's size is idle. Where the gimbals do not reach, the part along the beam is
     kept and the part across it raised. The direction on the way is near the flight's, without changes quicker than the
     period 2π √(R/idle) of an arm at idle; where it is that of the flight, path and flight meet without a corner.
     Before the span the load is that of its first time, after it that of its last.
@@ -138,8 +138,8 @@ def build_target(
     flight = smoothed(corners, width) if width else corners
     times = _knots(corners, first, last, width / _PER_WIDTH or _GRID)
     loads = np.asarray(flight(times))
-    size, across = np.linalg.norm(loads, axis=1), np.linalg.norm(loads[:, 1:], axis=1)
-    out_of_reach = across < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING) if gravity else np.zeros(times.size, bool)
+    size, lateral = np.linalg.norm(loads, axis=1), np.linalg.norm(loads[:, 1:], axis=1)
+    out_of_reach = lateral < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING) if gravity else np.zeros(times.size, bool)
     if out_of_reach.any() and least is None and not clip:
         at_corners = np.asarray(corners(times))
         out_of_reach |= np.linalg.norm(at_corners[:, 1:], axis=1) < MIN_TRANSVERSE_LOAD * (1 - _ROUNDING)
@@ -151,7 +151,7 @@ def build_target(
     if (low | out_of_reach | left_out).any():
         if least is not None:
             refuse_undirected(loads, least)
-            if not gravity and not across.any():
+            if not gravity and not lateral.any():
                 refuse_reversal(times, loads, least)
         path = _path(times, loads, low | left_out, out_of_reach, least, gravity, arm)
         load = NearestLoad(
@@ -163,7 +163,7 @@ def build_target(
         refuse_singular(times, values, least)
     steady = values if gravity else values / np.maximum(np.linalg.norm(values, axis=1), 1e-12)[:, None]
     reasons = np.select([low, left_out, out_of_reach], [BELOW_IDLE, LEFT_OUT, GIMBALS], -1)
-    rows = stretches(times, reasons, size - (least or 0.0), across - MIN_TRANSVERSE_LOAD, corners)
+    rows = stretches(times, reasons, size - (least or 0.0), lateral - MIN_TRANSVERSE_LOAD, corners)
     return target_of(
         load=load, corners=corners, stretches=padded_rows(rows), edges=merged_edges(rows, last),
         rounded=width > 0 or not _has_corners(load, first, last),
@@ -205,7 +205,7 @@ def _number(arm: Any) -> float:
 
 
 def _gate(times: Floats, size: Floats, idle: float | None, leave_out: Stretches) -> PiecewiseLinear | None:
-    """Gate over time: 0 on returns above idle that `leave_out` names, 1 on others, linear between; None
+    """Gate over time: 0 on returns above idle that `leave_out` names, 1 on others, linear between, or None
     if all are 1.
     """
     if idle is None or not leave_out:
@@ -232,11 +232,11 @@ def _knots(raw: Profile, start: float, end: float, step: float) -> Floats:
     """Knots of `raw` and of a grid with spacing `step`, s. Points that nearly coincide are left out: slopes between
     them would be rounding.
     """
-    least = 1e-4 * step
+    tolerance = 1e-4 * step
     first, last = raw.extent or (start, end)
     knots = raw.knots(min(step, max(_CURVE, (last - first) / _MOST)))
-    knots = np.concatenate([[start], knots[(knots > start + least) & (knots < end - least)], [end]])
-    knots = knots[np.diff(knots, prepend=-np.inf) > least]
+    knots = np.concatenate([[start], knots[(knots > start + tolerance) & (knots < end - tolerance)], [end]])
+    knots = knots[np.diff(knots, prepend=-np.inf) > tolerance]
     grid = sampled(start, end, step)
     next_knot = np.clip(np.searchsorted(knots, grid), 1, knots.size - 1)
     distance = np.minimum(np.abs(grid - knots[next_knot - 1]), np.abs(knots[next_knot] - grid))

@@ -53,16 +53,16 @@ def refuse_far(times: Floats, load: Floats, out_of_reach: Flags) -> None:
             'set idle = "1.4 g" or more, or gravity = false',
         )
     refuse_reversal(times, load[:, 1:], OPPOSED * STANDARD_GRAVITY)
-    across = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
-    worst = int(np.argmin(across))
+    lateral = np.linalg.norm(load[:, 1:], axis=1) / STANDARD_GRAVITY
+    index = int(np.argmin(lateral))
     unreached = np.flatnonzero(out_of_reach)
     raise InputError(
         "tracks",
-        f"loads the beam across by {across[worst]:.3g} g only at {times[worst]:.3f} s; where gravity acts the gimbals "
+        f"loads the beam across by {lateral[index]:.3g} g only at {times[index]:.3f} s; where gravity acts the gimbals "
         f"reach {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g or more (out of reach from {times[unreached[0]]:.3f} s, "
         f"last at {times[unreached[-1]]:.3f} s)",
         'set idle = "1.4 g", or clip = true to carry on with the nearest load in reach, '
-        f"or add {missing_across(across[worst] * STANDARD_GRAVITY)} across the beam",
+        f"or add {missing_across(lateral[index] * STANDARD_GRAVITY)} across the beam",
     )
 
 
@@ -73,11 +73,11 @@ def missing_across(load: float) -> str:
 
 def refuse_reversal(times: Floats, points: Floats, least: float) -> None:
     """Raise InputError if the polyline through `points` (k, n) at `times` passes within `least` of zero."""
-    when, distance = nearest_to_zero(times, points)
+    reversal_time, distance = nearest_to_zero(times, points)
     if distance < least:
         raise InputError(
             "tracks",
-            f"reverses its load through zero at {when:.3f} s",
+            f"reverses its load through zero at {reversal_time:.3f} s",
             "a centrifuge must carry the specimen round and cannot do so at once: "
             'set idle = "1.4 g", or track a part of the motion before or after, or add a steady load',
         )
@@ -89,18 +89,18 @@ def refuse_singular(times: Floats, load: Floats, idle: float | None) -> None:
     """
     peak = float(np.max(np.linalg.norm(load, axis=1)))
     if idle is None:
-        when, distance = nearest_to_zero(times, load)
+        singular_time, distance = nearest_to_zero(times, load)
         if distance <= _NEAR_ZERO * peak:
             raise InputError(
                 "tracks",
-                f"has next to no load at {when:.3f} s, where the arm's acceleration is singular",
+                f"has next to no load at {singular_time:.3f} s, where the arm's acceleration is singular",
                 'set idle = "1.4 g", or what the machine idles at',
             )
-    when, distance = nearest_to_zero(times, load[:, 1:])
+    singular_time, distance = nearest_to_zero(times, load[:, 1:])
     if distance < _ALONG_BEAM * peak and np.any(load[:, 1:]):
         raise InputError(
             "tracks",
-            f"loads the beam along its axis only at {when:.3f} s, where the roll axis has no defined angle",
+            f"loads the beam along its axis only at {singular_time:.3f} s, where the roll axis has no defined angle",
             "add a steady load across the beam, or leave the components across it at zero throughout",
         )
 
@@ -109,11 +109,11 @@ def nearest_to_zero(times: Floats, points: Floats) -> tuple[float, float]:
     """Time and distance at which the polyline through `points` (k, n) comes nearest to zero."""
     if len(points) == 1:
         return float(times[0]), float(np.linalg.norm(points[0]))
-    start, along = points[:-1], np.diff(points, axis=0)
-    length2 = np.sum(along**2, axis=1)
+    start, segments = points[:-1], np.diff(points, axis=0)
+    length2 = np.sum(segments**2, axis=1)
     # The foot of the perpendicular from zero on each segment, clipped to its ends.
-    share = np.clip(-np.sum(start * along, axis=1) / np.where(length2 > 0, length2, 1.0), 0.0, 1.0)
-    distance = np.linalg.norm(start + share[:, None] * along, axis=1)
+    share = np.clip(-np.sum(start * segments, axis=1) / np.where(length2 > 0, length2, 1.0), 0.0, 1.0)
+    distance = np.linalg.norm(start + share[:, None] * segments, axis=1)
     i = int(np.argmin(distance))
     return float(times[i] + share[i] * (times[i + 1] - times[i])), float(distance[i])
 
@@ -173,21 +173,25 @@ def shortfalls(target: Target, arm: float, *, turns: bool = True) -> tuple[Short
     flight = np.asarray(target.flight(time))
     idle, gravity = float(target.idle), float(target.gravity)
     stretches = [shortfall for shortfall, _ in sharp_turns(target, arm)] if turns else []
-    total, across = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
+    total, lateral = np.linalg.norm(flight, axis=-1), np.linalg.norm(flight[:, 1:], axis=-1)
     stretches += _idle_shortfalls(
-        time, total, idle, "below idle", lambda run: _idle_remedy(total[run], across[run], gravity)
+        time, total, idle, "below idle", lambda run: _idle_remedy(total[run], lateral[run], gravity)
     )
     if gravity:
         least = MIN_TRANSVERSE_LOAD
         rest = f"across the beam, or track a part of the flight with {MIN_TRANSVERSE_LOAD / STANDARD_GRAVITY:g} g there"
         stretches += _idle_shortfalls(
-            time, across, least, "across below gravity", lambda run: f"add {missing_across(np.min(across[run]))} {rest}"
+            time,
+            lateral,
+            least,
+            "across below gravity",
+            lambda run: f"add {missing_across(np.min(lateral[run]))} {rest}",
         )
     return tuple(sorted(stretches, key=lambda stretch: stretch.start))
 
 
 def sharp_turns(target: Target, arm: float) -> list[tuple[Shortfall, float | None]]:
-    """List where the load turns too sharply, with the smoothing, s, that is enough; None where none is.
+    """List where the load turns too sharply, with the smoothing, s, that is enough, or None where none is.
 
     At a maximum, and at the corner before a plateau, the horizontal load a can be followed without a jump of the yaw
     rate only where −ä <= a²/R, docs/theory.md (8.5). A corner of slope change j rounded over T has −ä = 2j/T, and a
@@ -248,10 +252,10 @@ def _idle_shortfalls(
     """Stretches in which a load (t,), m/s², is below the least that a machine makes."""
     stretches = []
     for run in joined(true_runs(load < least * (1 - _ROUNDING)), time, _JOINED):
-        worst = run.start + int(np.argmin(load[run]))
-        reference, possible = load[worst] / STANDARD_GRAVITY, least / STANDARD_GRAVITY
-        start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
-        stretches.append(Shortfall(start, end, reason, when, float(reference), float(possible), "g", remedy(run)))
+        index = run.start + int(np.argmin(load[run]))
+        reference, possible = load[index] / STANDARD_GRAVITY, least / STANDARD_GRAVITY
+        start, end, worst_time = float(time[run.start]), float(time[run.stop - 1]), float(time[index])
+        stretches.append(Shortfall(start, end, reason, worst_time, float(reference), float(possible), "g", remedy(run)))
     return stretches
 
 
@@ -261,8 +265,8 @@ def _sharp_shortfalls(
     """Stretches, the `runs` of times, in which the load's −ä, `turn`, exceeds what the arm allows, both (t,), m/s⁴."""
     stretches = []
     for run, remedy in zip(runs, remedies, strict=True):
-        worst = run.start + int(np.argmax(turn[run] / allowed[run]))
-        start, end, when = float(time[run.start]), float(time[run.stop - 1]), float(time[worst])
-        reference, possible = float(turn[worst]), float(allowed[worst])
-        stretches.append(Shortfall(start, end, TOO_SHARP, when, reference, possible, "m/s^4", remedy))
+        index = run.start + int(np.argmax(turn[run] / allowed[run]))
+        start, end, worst_time = float(time[run.start]), float(time[run.stop - 1]), float(time[index])
+        reference, possible = float(turn[index]), float(allowed[index])
+        stretches.append(Shortfall(start, end, TOO_SHARP, worst_time, reference, possible, "m/s^4", remedy))
     return stretches

@@ -112,9 +112,9 @@ class Target:
 
     def not_followed(self, t: Any) -> Any:
         """Tell at which times `t` (s, any shape) the target is not the flight's load."""
-        now = as_array(t)
-        xp = namespace(now, self.edges)
-        return xp.searchsorted(xp.asarray(self.edges), now, side="right") % 2 == 1
+        time = as_array(t)
+        xp = namespace(time, self.edges)
+        return xp.searchsorted(xp.asarray(self.edges), time, side="right") % 2 == 1
 
     def episodes(self) -> list[Episode]:
         """Stretches within the span where the load is not the flight's, by start."""
@@ -155,18 +155,22 @@ def gentle(times: Floats, values: Floats, weight: Floats, fixed: Flags, time_sca
     """Replace the values (k,) that are not `fixed` by a smooth path near them, at `times` (k,), s.
 
     It minimises ∫ w (z − values)² + T⁴ z''² dt with the fixed values kept, so that it leaves and meets them without a
-    corner; changes quicker than a period of 2πT are left out. T is `time_scale`. It is shorter beside fixed values that
+    corner. Changes quicker than a period of 2πT are left out. T is `time_scale`. It is shorter beside fixed values that
     change quickly, since the path would go on with their slope and drift away.
     """
     if fixed.all() or times.size < 4:
         return values
     from scipy.linalg import solve_banded  # imported when a path is sought
 
-    before, after = np.diff(times)[:-1], np.diff(times)[1:]
-    stiffness = _time_scales(times, values, fixed, time_scale)[1:-1] ** 2 * np.sqrt((before + after) / 2)
+    steps_before, steps_after = np.diff(times)[:-1], np.diff(times)[1:]
+    stiffness = _time_scales(times, values, fixed, time_scale)[1:-1] ** 2 * np.sqrt((steps_before + steps_after) / 2)
     # Weighted second differences: of each inner knot, by the value before it, at it and after it.
-    both = before + after
-    second = 2 * stiffness * np.stack([1 / (before * both), -1 / (before * after), 1 / (after * both)])
+    two_steps = steps_before + steps_after
+    second = (
+        2
+        * stiffness
+        * np.stack([1 / (steps_before * two_steps), -1 / (steps_before * steps_after), 1 / (steps_after * two_steps)])
+    )
     # The unknowns are, at each knot in turn, the distance z − values and the weighted z''. Normal equations of the
     # distance alone would square z'' and lose all digits where knots are close.
     band, right_side = np.zeros((7, 2 * times.size)), np.zeros(2 * times.size)
@@ -187,10 +191,10 @@ def _time_scales(times: Floats, values: Floats, fixed: Flags, longest: float) ->
     scale = np.full(times.size, longest)
     for run in true_runs(~fixed):
         for edge, inward in ((run.start - 1, -1), (run.stop, 1)):
-            beyond = edge + inward
-            if min(edge, beyond) < 0 or max(edge, beyond) >= times.size:
+            outer_edge = edge + inward
+            if min(edge, outer_edge) < 0 or max(edge, outer_edge) >= times.size:
                 continue
-            slope = abs((values[beyond] - values[edge]) / (times[beyond] - times[edge]))
+            slope = abs((values[outer_edge] - values[edge]) / (times[outer_edge] - times[edge]))
             allowed = _CARRIED / max(slope, _CARRIED / longest) + _WIDENING * np.abs(times[run] - times[edge])
             scale[run] = np.minimum(scale[run], allowed)
     return scale
@@ -210,7 +214,7 @@ class NearestLoad(Profile):
     - Where gravity acts and the load across the beam is below the least that the gimbals make, that part is the least,
       in the direction of the path, and the part along the beam is kept.
 
-    Three times differentiable in size where the load is; the direction goes over to the path's where they agree.
+    Three times differentiable in size where the load is. The direction goes over to the path's where they agree.
     """
 
     flight: Profile  # vector, base axes, m/s², without corners
@@ -225,47 +229,47 @@ class NearestLoad(Profile):
         assign(self, idle=as_array(self.idle), least=as_array(self.least))
 
     def series(self, t: Times, order: int) -> Series:
-        now = as_array(t)
-        flight = self.flight.series(now, order)
-        xp = namespace(now, flight.value, self.idle)
+        time = as_array(t)
+        flight = self.flight.series(time, order)
+        xp = namespace(time, flight.value, self.idle)
         # The load is the flight's own where `free`; it has a part across the beam, with a direction, where `bent`.
         size2, across2 = square(flight), square(flight[..., 1:])
         free = (size2.value >= (_FOLLOWED * self.idle) ** 2) & (across2.value >= (_FREE * self.least) ** 2)
         gate: Any = 1.0
         if self.gate is not None:
             # A straight ramp between 0 and 1 without its corners: eight times differentiable.
-            gate = soft_step(soft_step(self.gate.series(now, order), 0.5, 1.0), 0.5, 1.0)
+            gate = soft_step(soft_step(self.gate.series(time, order), 0.5, 1.0), 0.5, 1.0)
             free = free & (gate.value == 1)
         if not is_traced(free) and free.all():
             return flight
         bent = across2.value > 0
-        across = sqrt(where(bent, across2, 1.0))  # the root has no derivative at zero
-        unit = [flight[..., k] / across for k in (1, 2)]
-        across = where(bent, across, 0.0)
-        along, reached = flight[..., 0], across
-        share: Any = where(bent, 1.0 + 0.0 * across, 0.0)  # of the flight's own direction about the beam
+        lateral = sqrt(where(bent, across2, 1.0))  # the root has no derivative at zero
+        unit = [flight[..., k] / lateral for k in (1, 2)]
+        lateral = where(bent, lateral, 0.0)
+        axial, reached = flight[..., 0], lateral
+        share: Any = where(bent, 1.0 + 0.0 * lateral, 0.0)  # of the flight's own direction about the beam
         if self.has_least:
-            reached = soft_floor(across, self.least, REACH_BAND * self.least)
-            share = share * soft_step(across, (1 + _FREE) / 2 * self.least, (_FREE - 1) * self.least)
-        sine, cosine = sin_cos(self.path.series(now, order))
+            reached = soft_floor(lateral, self.least, REACH_BAND * self.least)
+            share = share * soft_step(lateral, (1 + _FREE) / 2 * self.least, (_FREE - 1) * self.least)
+        sine, cosine = sin_cos(self.path.series(time, order))
         if not self.has_idle:
             direction = _blend(share, unit, [cosine[..., 0], sine[..., 0]])
-            return stack([along, *(reached * component for component in direction)])
+            return stack([axial, *(reached * component for component in direction)])
         size = sqrt(where(size2.value > (self.idle / 2) ** 2, size2, self.idle**2 / 4))
         sized, directed = (
             gate * soft_step(size, (1 + end) / 2 * self.idle, (end - 1) * self.idle) for end in (_SIZED, _FOLLOWED)
         )
-        held = self.idle + gate * (soft_floor(size, self.idle, IDLE_BAND * self.idle) - self.idle)
+        raised_size = self.idle + gate * (soft_floor(size, self.idle, IDLE_BAND * self.idle) - self.idle)
         y, z = _blend(share * directed, unit, [cosine[..., 0], sine[..., 0]])
-        x, yz = _blend(directed, [along / size, across / size], [cosine[..., 1], sine[..., 1]])
+        x, yz = _blend(directed, [axial / size, lateral / size], [cosine[..., 1], sine[..., 1]])
         if self.has_least:
-            full = sqrt(where(bent | (size2.value > 0), along * along + reached * reached, 1.0))
-            held = held + sized * (full - size)
+            full = sqrt(where(bent | (size2.value > 0), axial * axial + reached * reached, 1.0))
+            raised_size = raised_size + sized * (full - size)
             # Idle is above the least across the beam, by little where it is lowest.
             band = xp.minimum(REACH_BAND * self.least, self.idle - self.least)
-            x, yz = _raise_lateral_load(held * x, held * yz, self.least, band)
+            x, yz = _raise_lateral_load(raised_size * x, raised_size * yz, self.least, band)
         else:
-            x, yz = held * x, held * yz
+            x, yz = raised_size * x, raised_size * yz
         load = stack([x, yz * y, yz * z])
         return where(xp.asarray(append_axes(free, 1)), flight, load)
 
@@ -287,13 +291,13 @@ def _blend(share: Series, flight: list[Series], path: list[Series]) -> list[Seri
     return [component / size for component in mixed]
 
 
-def _raise_lateral_load(along: Series, across: Series, least: Any, band: Any) -> tuple[Series, Series]:
+def _raise_lateral_load(axial: Series, lateral: Series, least: Any, band: Any) -> tuple[Series, Series]:
     """Raise the load across the beam smoothly to at least `least`, and reduce the load along the beam
     to keep the size.
     """
-    raised_part = across.value < least + band / 2
-    raised = soft_floor(across, least, band)
+    raised_part = lateral.value < least + band / 2
+    raised = soft_floor(lateral, least, band)
     # Where it is raised the part along the beam is not small: idle is above the least across the beam.
-    along_squared, total = along * along, along * along + across * across
+    along_squared, total = axial * axial, axial * axial + lateral * lateral
     remaining_share = where(raised_part, (total - raised * raised) / where(raised_part, along_squared, 1.0), 1.0)
-    return along * sqrt(remaining_share), where(raised_part, raised, across)
+    return axial * sqrt(remaining_share), where(raised_part, raised, lateral)
