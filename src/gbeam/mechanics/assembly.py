@@ -119,7 +119,7 @@ def assemble(
     # Integrals from the root are a matrix of all nodes to all.
     nodes = len(rule.node)
     refuse_more("section.stations", "nodes of integration", nodes, NODES, 24.0 * nodes, "give fewer, or fewer shapes")
-    refuse_shapeless(beam, model.kind, counts)
+    refuse_shapeless(beam, counts)
     if beam.temperature is not None and not counts[0]:
         fix = "leave it out, or choose FOAM with modes.axial = 1" if not row.axial else "give modes.axial = 1 or more"
         raise InputError("temperature", "stretches the beam, and the model has no shapes along it", fix)
@@ -189,7 +189,7 @@ def hold(
     conditions_and_springs = [*conditions, *yielding]
     # What bends shortens along x: of polynomials of a straight beam the conditions along x alone are of second order.
     bent = beam.line is not None or any(condition.direction == "x" for condition in conditions_and_springs)
-    curved = order is None or (order > 1 and bent)
+    curved = order is None or order > 2 or (order > 1 and bent)
     everywhere, turns = field.sections(slice(None)).jacobians(np.zeros(len(stiffness)))
     slopes, angles = everywhere[first_station:], turns[first_station:]
     places = tuple(

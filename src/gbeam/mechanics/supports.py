@@ -89,13 +89,10 @@ def plus(counts: Counts, added: Counts) -> Counts:
     return axial, y, z, twist, shear_y, shear_z
 
 
-def refuse_shapeless(beam: Beam, kind: str, counts: Counts) -> None:
-    """Raise InputError where a support holds a direction along which a model has no shapes, or its kind knows none."""
+def refuse_shapeless(beam: Beam, counts: Counts) -> None:
+    """Raise InputError where a support holds a direction along which a model has no shapes."""
     for condition in (*rigid_conditions(beam), *yielding_conditions(beam)):
         where, name = f"supports[{condition.support}]", FAMILIES[condition.family]
-        if kind == "fourth-order":
-            fix = 'choose model.kind = "exact", with modes.axial = 1 or more'
-            raise InputError(where, "is not known to fourth-order models", fix)
         if not beam.coupled and not counts[condition.family]:
             problem = f"holds {condition.direction}, in which the model has no shapes"
             raise InputError(where, problem, f"give modes.{name} = 1 or more, or leave {condition.direction} out")

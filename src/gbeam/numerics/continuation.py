@@ -51,7 +51,9 @@ class Curve:
         course: Floats = np.asarray(np.linalg.solve(k, -pull), dtype=float)
         size = self._size(course)
         if not size > 0:
-            raise ComputationError("not converged", "what grows moves nothing: critical-speed says where the equilibrium is lost")
+            raise ComputationError(
+                "not converged", "what grows moves nothing: critical-speed says where the equilibrium is lost"
+            )
         sign = 1.0 if forward else -1.0
         return CurvePoint(y, value, sign * course / size, sign / size, 0.0)
 

@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.fields.products import times
+from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField, Tangents
 from gbeam.mechanics.fields.taylor import Expanded
 from gbeam.mechanics.fields.vectors import NONE, Vector, absent, add, cross, joined, mapped, skew
@@ -258,8 +259,66 @@ def _vector_rates(phi: Array) -> tuple[Array, Any]:
     return np.eye(3) - cross / 2 + c * (cross @ cross), change
 
 
-def measures_of(field: StrainField | Expanded, first: int, conditions: Sequence[tuple[int, int]]) -> Measures:
+@record
+class SeriesMeasures(Measures):
+    """Measures of sections of a field whose places end at an order, with the `turns` of the exact one.
+
+    Places at rest are `rest` (m, 3), one for each measure.
+    """
+
+    sections: SeriesField
+    turns: SectionMeasures
+    rest: Array
+
+    @classmethod
+    def from_stations(cls, field: SeriesField, first: int, conditions: Sequence[tuple[int, int]]) -> SeriesMeasures:
+        """Measures of a field's stations, by their numbers behind its point `first`, each in a direction."""
+        sections = field.sections(first + np.array([station for station, _ in conditions], dtype=int))
+        turns = SectionMeasures.from_stations(field.exact, first, conditions)
+        return cls(sections, turns, sections.positions(np.zeros(field.size)))
+
+    def state(self, q: Array) -> Tangents:
+        """Tangents at the sections."""
+        return self.turns.state(q)
+
+    def values_at(self, state: Tangents, q: Array) -> Array:
+        """Measures (..., m) by the tangents at coordinates (..., n)."""
+        moved = self.sections.positions(q) - self.rest
+        return self._chosen(moved[..., None], self.turns.values_at(state, q)[..., None])[..., 0]
+
+    def rows_at(self, state: Tangents, q: Array) -> Array:
+        """Derivatives (..., m, n) of the measures by the coordinates (..., n)."""
+        return self._chosen(self.sections.slopes(q), self.turns.rows_at(state, q))
+
+    def bent_rows(self, q: Array) -> Array:
+        """Second derivatives (..., m, n, n) of the measures by the coordinates (..., n), where they are real."""
+        size = q.shape[-1]
+        second = np.stack([self.sections.expand(each).second for each in q.reshape(-1, size)])
+        places = second.reshape(*q.shape[:-1], len(self.rest), 3, size * size)
+        turned = self.turns.bent_rows(q)
+        chosen = self._chosen(places, turned.reshape(*turned.shape[:-2], size * size))
+        return chosen.reshape(turned.shape)
+
+    def drift_at(self, state: Tangents, q: Array, qd: Array) -> Array:
+        """Second derivatives (..., m) of the measures with respect to time, at coordinates that do not accelerate."""
+        moved = self.sections.paths(q, qd, 0 * qd)[2]
+        return self._chosen(moved[..., None], self.turns.drift_at(state, q, qd)[..., None])[..., 0]
+
+    def _chosen(self, moved: Array, turned: Array) -> Array:
+        """Components (..., m, n): of displacements (..., m, 3, n), and of what is known of rotations (..., m, n)."""
+        rows = (
+            moved[..., k, direction, :] if direction < 3 else turned[..., k, :]
+            for k, (_, direction) in enumerate(self.turns.which)
+        )
+        return namespace(moved, turned).stack(list(rows), axis=-2)
+
+
+def measures_of(
+    field: StrainField | SeriesField | Expanded, first: int, conditions: Sequence[tuple[int, int]]
+) -> Measures:
     """Measures of a field's stations, by their numbers behind its point `first`, each in a direction from 0 to 5."""
-    kind: Any = PolynomialMeasures if isinstance(field, Expanded) else SectionMeasures
-    measures: Measures = kind.from_stations(field, first, conditions)
-    return measures
+    if isinstance(field, Expanded):
+        return PolynomialMeasures.from_stations(field, first, conditions)
+    if isinstance(field, SeriesField):
+        return SeriesMeasures.from_stations(field, first, conditions)
+    return SectionMeasures.from_stations(field, first, conditions)
