@@ -14,6 +14,7 @@ from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.errors import InputError
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import positive
+from gbeam.guards.quantities import Seconds
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion, notes_on
@@ -27,7 +28,7 @@ from gbeam.results.errors import ErrorEstimate
 def equilibrium_path(
     structure: Structure | System,
     motion: Motion | None = None,
-    time: float = 0.0,
+    time: Seconds = 0.0,
     *,
     vary: Literal["loads", "motion"] = "loads",
     upper: float = 1.0,
