@@ -20,7 +20,7 @@ from gbeam.results.errors import ErrorEstimate
 
 FARTHER = 1.05  # of a path's length, to which richer models are followed
 SEEN = 0.05  # share of its size by which a richer model's path, read by a spline, may bend within a step
-FINE = 16  # points of a richer model's path for each of its path, between which a path is compared with it
+FINE = 16  # parts of each step of a richer model's path, with which a path is compared
 
 
 def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[ErrorEstimate], tuple[str, ...]]:
@@ -35,7 +35,10 @@ def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[Er
     def path_of(system: System) -> Trace:
         """Path of a richer model."""
         other = Loading.of(system, loading.drive, loading.varied)
-        return Trace.of(follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN))
+        other_path = follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN)
+        if other_path.ended:
+            raise ComputationError("not converged", other_path.ended)
+        return Trace.of(other_path)
 
     try:
         path, exact = Trace.of(followed), path_of(richer.exact.model)
@@ -70,7 +73,7 @@ def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[Er
     ]:
         earlier = [factor for factor in other.factors(BRANCH_POINT) if factor < (1 - LIMIT) * first]
         if earlier:
-            doubts.append(f"{model} leaves this path at a factor of {earlier[0]:.4g}, where it buckles sideways")
+            doubts.append(f"{model} leaves this path at a factor of {earlier[0]:.4g}, where it buckles")
             break
     return along, shares, tuple(doubts)
 
