@@ -51,3 +51,7 @@ def test_what_has_no_path_is_told(gbeam: Call) -> None:
     assert answer.status == 2 and "give a value above zero" in answer.err
     answer = gbeam("path", STRIP, "--vary", "acceleration")
     assert answer.status == 2 and "motion" in answer.err
+    answer = gbeam("path", "examples/swing_platform.toml", "--vary", "motion")
+    assert answer.status == 1 and "something is free to move: hold it" in answer.err
+    answer = gbeam("path", STRIP, "--vary", "motion", "--at", "0 s")
+    assert answer.status == 2 and "does nothing at 0 s" in answer.err

@@ -48,11 +48,14 @@ class Curve:
     def begin(self, y: Floats, value: float, *, forward: bool = True) -> CurvePoint:
         """Point at coordinates y, a solution, from which the parameter grows, or falls where not `forward`."""
         _, k, pull = self.equations(y, value)
-        course: Floats = np.asarray(np.linalg.solve(k, -pull), dtype=float)
+        try:
+            course: Floats = np.asarray(np.linalg.solve(k, -pull), dtype=float)
+        except np.linalg.LinAlgError:
+            raise ComputationError("no equilibrium", "something is free to move: hold it") from None
         size = self._size(course)
         if not size > 0:
             raise ComputationError(
-                "not converged", "what grows moves nothing: critical-speed says where the equilibrium is lost"
+                "not converged", "what grows moves nothing: critical-speed says where stability is lost"
             )
         sign = 1.0 if forward else -1.0
         return CurvePoint(y, value, sign * course / size, sign / size, 0.0)

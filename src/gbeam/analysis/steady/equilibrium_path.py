@@ -23,6 +23,8 @@ from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import CriticalPoint, EquilibriumPath
 from gbeam.results.errors import ErrorEstimate
 
+STILL = 1e-9  # m/s², rad/s or rad/s²: less is a profile's rounding
+
 
 @typed
 def equilibrium_path(
@@ -96,6 +98,11 @@ def equilibrium_path(
     if vary == "motion":
         if subject.ground is None:
             raise InputError("motion", "is missing, whose accelerations are varied", "give a flight or a centrifuge")
+        frozen = subject.ground.base(np.asarray(time))
+        if max(np.abs(vector).max() for vector in (frozen.a_WO_B, frozen.w_WB_B, frozen.alpha_WB_B)) < STILL:
+            raise InputError(
+                "motion", f"does nothing at {time:g} s", "give a time at which it accelerates, such as 1 s"
+            )
         loading = Loading.of(system, drive, shaken)
     else:
         acting = drive.inputs(system)
