@@ -13,7 +13,7 @@ from ..files import opened
 
 Call = Callable[..., Any]
 STRIP = "examples/snapping_strip.toml"
-GROWN = "--vary", "motion", "--at", "0.5 s", "--to", "2"
+GROWN = "--vary", "motion", "--at", "0.5 s", "--to", "1.2"
 
 
 def test_a_strip_that_snaps_is_told_drawn_and_kept(gbeam: Call, tmp_path: Path) -> None:

@@ -16,11 +16,13 @@ Floats = np.ndarray
 def turning(bent: float) -> Curve:
     """v = y₁³ − 3 y₁ with y₂ = y₁²: limits at y₁ = ∓1."""
 
-    def equations(y: Floats, value: float) -> tuple[Floats, Floats, Floats]:
-        residual = np.array([y[0] ** 3 - 3 * y[0] - value, y[1] - y[0] ** 2])
-        return residual, np.array([[3 * y[0] ** 2 - 3, 0.0], [-2 * y[0], 1.0]]), np.array([-1.0, 0.0])
+    def residual(y: Floats, value: float) -> Floats:
+        return np.array([y[0] ** 3 - 3 * y[0] - value, y[1] - y[0] ** 2])
 
-    return Curve(equations, np.eye(2), 4.0, bent)
+    def slopes(y: Floats, value: float) -> tuple[Floats, Floats]:
+        return np.array([[3 * y[0] ** 2 - 3, 0.0], [-2 * y[0], 1.0]]), np.array([-1.0, 0.0])
+
+    return Curve(residual, slopes, np.eye(2), 4.0, bent)
 
 
 def followed(bent: float) -> list:

@@ -16,38 +16,41 @@ import numpy as np
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 
-ITERATIONS = 12  # of Newton's method at a point
-CLOSE = 1e-10  # of the curve's size: a smaller correction is none
+ITERATIONS = 24  # of Newton's method at a point
+CLOSE = 1e-8  # of the curve's size: a smaller correction is none
+SHRINKS = 0.2  # of a correction: where the next is larger than that, the slopes are computed anew
 SHORTEST = 1e-6  # of the first step
-LOCATED = 1e-9  # of a step: tolerance of a point that is searched for
+LOCATED = 1e-7  # of a step: tolerance of a point that is searched for
 
 
 class CurvePoint(NamedTuple):
-    """Point of a curve: y (n,) and v, their derivatives by the length along the curve, and this length."""
+    """Point of a curve: y (n,) and v, their derivatives by the length along the curve, this length, and K and ∂r/∂v."""
 
     y: Floats
     value: float
     course: Floats
     rate: float
     length: float
+    slopes: tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Equations r(y, v), which give r (n,), K (n, n) and ∂r/∂v (n,), and the metric W (n, n) of coordinates.
+    """Equations r(y, v) = 0 (n,), their `slopes` K (n, n) and ∂r/∂v (n,), and the metric W (n, n) of coordinates.
 
     `reach` is a value of the parameter that counts as large. A step along the tangent that ends farther from the curve
     than a share `bent` of its size is shortened.
     """
 
-    equations: Callable[[Floats, float], tuple[Floats, Floats, Floats]]
+    residual: Callable[[Floats, float], Floats]
+    slopes: Callable[[Floats, float], tuple[Floats, Floats]]
     metric: Floats
     reach: float
     bent: float
 
     def begin(self, y: Floats, value: float, *, forward: bool = True) -> CurvePoint:
         """Point at coordinates y, a solution, from which the parameter grows, or falls where not `forward`."""
-        _, k, pull = self.equations(y, value)
+        k, pull = self.slopes(y, value)
         try:
             course: Floats = np.asarray(np.linalg.solve(k, -pull), dtype=float)
         except np.linalg.LinAlgError:
@@ -58,29 +61,34 @@ class Curve:
                 "not converged", "what grows moves nothing: critical-speed says where stability is lost"
             )
         sign = 1.0 if forward else -1.0
-        return CurvePoint(y, value, sign * course / size, sign / size, 0.0)
+        return CurvePoint(y, value, sign * course / size, sign / size, 0.0, (k, pull))
 
     def ahead(self, point: CurvePoint, step: float) -> CurvePoint | None:
         """Point of the curve in the plane across its tangent a step ahead; None where there is none nearby."""
         across = self.metric @ point.course
         y, value = point.y + step * point.course, point.value + step * point.rate
+        slopes, before = point.slopes, np.inf
         for _ in range(ITERATIONS):
-            residual, k, pull = self.equations(y, value)
-            bordered = np.block([[k, pull[:, None]], [across, np.zeros(1)]])
             gap = across @ (y - point.y) - step
-            try:
-                both = np.linalg.solve(bordered, np.stack([-np.append(residual, gap), np.append(0 * y, 1.0)], axis=1))
-            except np.linalg.LinAlgError:
-                return None
-            change, tangent = both.T
+            change = _solved(slopes, across, -np.append(self.residual(y, value), gap))
             if not np.isfinite(change).all():
                 return None
-            y, value = y + change[:-1], value + float(change[-1])
-            if self._size(change[:-1]) <= CLOSE * step and abs(change[-1]) <= CLOSE * self.reach:
-                size = self._size(tangent[:-1])
-                length = point.length + self._size(y - point.y)
-                return CurvePoint(y, value, tangent[:-1] / size, float(tangent[-1]) / size, length)
+            size = self._size(change[:-1]) / step
+            if size > SHRINKS * before:
+                slopes, before = self.slopes(y, value), np.inf
+                continue
+            y, value, before = y + change[:-1], value + float(change[-1]), size
+            if size <= CLOSE and abs(change[-1]) <= CLOSE * self.reach:
+                return self._passed(point, across, y, value)
         return None
+
+    def _passed(self, point: CurvePoint, across: Floats, y: Floats, value: float) -> CurvePoint:
+        """Point at coordinates of the curve, behind another one."""
+        slopes = self.slopes(y, value)
+        tangent = _solved(slopes, across, np.append(0 * y, 1.0))
+        size = self._size(tangent[:-1])
+        length = point.length + self._size(y - point.y)
+        return CurvePoint(y, value, tangent[:-1] / size, float(tangent[-1]) / size, length, slopes)
 
     def follow(self, first: CurvePoint, step: float) -> Iterator[CurvePoint]:
         """Points of the curve from the first on, as far apart as its bends let them be; ComputationError where it
@@ -124,7 +132,7 @@ class Curve:
         def at(length: float) -> CurvePoint:
             """Point of the cubic."""
             both, slope = cubic(length), course(length)
-            return CurvePoint(both[:-1], float(both[-1]), slope[:-1], float(slope[-1]), length)
+            return CurvePoint(both[:-1], float(both[-1]), slope[:-1], float(slope[-1]), length, point.slopes)
 
         return at(brentq(lambda length: measure(at(length)), point.length, following.length, rtol=LOCATED))
 
@@ -148,3 +156,13 @@ class Curve:
     def _size(self, y: Floats) -> float:
         """Length of a vector of coordinates (n,)."""
         return float(np.sqrt(y @ self.metric @ y))
+
+
+def _solved(slopes: tuple[Floats, Floats], across: Floats, right: Floats) -> Floats:
+    """Solution (n + 1,) of K and ∂r/∂v with the row `across` (n,) below; NaN where they are singular."""
+    k, pull = slopes
+    try:
+        solution: Floats = np.linalg.solve(np.block([[k, pull[:, None]], [across, np.zeros(1)]]), right)
+    except np.linalg.LinAlgError:
+        return np.nan * right
+    return solution

@@ -18,7 +18,7 @@ from gbeam.mechanics.tree.system import System
 from gbeam.results.equilibrium import BRANCH_POINT
 from gbeam.results.errors import ErrorEstimate
 
-FARTHER = 1.05  # of a path's length, to which richer models are followed
+FARTHER = 1.02  # of a path's length, to which richer models are followed
 SEEN = 0.05  # share of its size by which a richer model's path, read by a spline, may bend within a step
 FINE = 16  # parts of each step of a richer model's path, with which a path is compared
 
@@ -35,7 +35,7 @@ def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[Er
     def path_of(system: System) -> Trace:
         """Path of a richer model."""
         other = Loading.of(system, loading.drive, loading.varied)
-        other_path = follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN)
+        other_path = follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN, beyond=True)
         if other_path.ended:
             raise ComputationError("not converged", other_path.ended)
         return Trace.of(other_path)

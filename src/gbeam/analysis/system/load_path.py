@@ -54,13 +54,17 @@ class Loading:
     def curve(self, reach: float, bent: float) -> Curve:
         """Curve of its equilibria; lengths are those of the masses' motions."""
 
-        def equations(y: Floats, factor: float) -> tuple[Floats, Floats, Floats]:
-            residual, k, _, _ = self.point(y, factor).slopes()
-            sign = 1.0 if factor >= 0 else -1.0
-            other = self.point(y, factor + sign)
-            return residual, k, sign * (other.tree(other.y, other.yd, other.ydd, other.inputs) - residual)
+        def residual(y: Floats, factor: float) -> Floats:
+            """Residual (n,) at rest."""
+            point = self.point(y, factor)
+            return point.tree(point.y, point.yd, point.ydd, point.inputs)
 
-        return Curve(equations, self.start.point.slopes()[3], reach, bent)
+        def slopes(y: Floats, factor: float) -> tuple[Floats, Floats]:
+            """K (n, n), and the derivative (n,) of the residual by the factor."""
+            sign = 1.0 if factor >= 0 else -1.0
+            return self.point(y, factor).slopes()[1], sign * (residual(y, factor + sign) - residual(y, factor))
+
+        return Curve(residual, slopes, self.start.point.slopes()[3], reach, bent)
 
     def state(self, at: CurvePoint) -> SteadySystem:
         """Steady state at a point of its path."""
@@ -98,8 +102,10 @@ def follow(
     left: Callable[[CurvePoint], float],
     report: Callable[[CurvePoint], None],
     bent: float = BENT,
+    *,
+    beyond: bool = False,
 ) -> FollowedPath:
-    """Follow a path of equilibria until nothing is `left` of it, which falls to zero at its end."""
+    """Follow a path of equilibria until nothing is `left` of it, which falls to zero at its end, or a step `beyond`."""
     curve = loading.curve(upper, bent)
     first = curve.begin(loading.start.point.y, 0.0)
     points, margins, critical, ended = [first], [loading.state(first).margin], list[tuple[str, CurvePoint]](), ""
@@ -115,7 +121,7 @@ def follow(
             ended = f"no equilibrium was found beyond a factor of {points[-1].value:.4g}"
             break
         before = points[-1]
-        if left(following) < 0:
+        if left(following) < 0 and not beyond:
             following = curve.between(before, following, left)
         margin = loading.state(following).margin
         critical_point = None
