@@ -109,8 +109,8 @@ def test_progress_true_shows_a_bar_from_the_first_second(monkeypatch: pytest.Mon
 
 LONG = {
     "buckling_acceleration", "campbell", "compare_models", "critical_load", "critical_speed", "critical_speed_map",
-    "fit", "linearize", "modes", "optimise", "place", "plan", "rerun", "sensitivity", "shape_command",
-    "shape_hub_command", "simulate", "simulate_batch", "static", "study", "sweep",
+    "equilibrium_path", "fit", "linearize", "modes", "optimise", "place", "plan", "rerun", "sensitivity",
+    "shape_command", "shape_hub_command", "simulate", "simulate_batch", "static", "study", "sweep",
 }  # fmt: skip
 
 
@@ -125,6 +125,7 @@ def test_whatever_may_take_long_tells_how_far_it_is(tmp_path: Path) -> None:
     for ask in (
         lambda tell: gb.static(specimen, flight, progress=tell),
         lambda tell: gb.modes(specimen, hub, progress=tell),
+        lambda tell: gb.equilibrium_path(specimen, flight, vary="motion", progress=tell),
         lambda tell: gb.linearize(specimen, hub, progress=tell),
         lambda tell: gb.plan("", machine, progress=tell),
         lambda tell: gb.place(

@@ -117,8 +117,7 @@ def equilibrium_path(
     followed = follow(loading, upper, lambda at: 1 - abs(at.value) / upper, report)
     along, shares, doubts = ErrorEstimate(), [ErrorEstimate() for _ in followed.critical], tuple[str, ...]()
     if errors and judged_bodies(system):
-        tell(progress, "errors, by paths of richer models", 0.5)
-        along, shares, doubts = judged(followed, upper)
+        along, shares, doubts = judged(followed, upper, progress)
     _, *moved = loading.moved([followed.points[0], *(at for _, at in followed.critical)])
     return EquilibriumPath(
         motion=name,

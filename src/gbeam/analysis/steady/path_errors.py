@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +16,8 @@ from gbeam.analysis.system.load_path import FollowedPath, Loading, follow
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.tree.system import System
+from gbeam.numerics.continuation import CurvePoint
+from gbeam.progress import Progress, tell
 from gbeam.results.equilibrium import BRANCH_POINT
 from gbeam.results.errors import ErrorEstimate
 
@@ -23,19 +26,27 @@ SEEN = 0.05  # share of its size by which a richer model's path, read by a splin
 FINE = 16  # parts of each step of a richer model's path, with which a path is compared
 
 
-def judged(followed: FollowedPath, upper: float) -> tuple[ErrorEstimate, list[ErrorEstimate], tuple[str, ...]]:
+def judged(
+    followed: FollowedPath, upper: float, progress: Progress = None
+) -> tuple[ErrorEstimate, list[ErrorEstimate], tuple[str, ...]]:
     """Errors of a path and of its critical points by paths of richer models, and warnings where they exceed 1 %.
 
     NaN, with a warning, where a richer model's path was not followed as far.
     """
     loading, unknown = followed.loading, [ErrorEstimate() for _ in followed.critical]
     richer = RicherModels(loading.start, near=False)
-    end = FARTHER * followed.points[-1].length
+    end, count = FARTHER * followed.points[-1].length, 5 if richer.theories else 2
+    number = itertools.count()
 
     def path_of(system: System) -> Trace:
         """Path of a richer model."""
-        other = Loading.of(system, loading.drive, loading.varied)
-        other_path = follow(other, upper, lambda at: 1 - at.length / end, lambda _: None, SEEN, beyond=True)
+        other, done = Loading.of(system, loading.drive, loading.varied), next(number)
+
+        def report(at: CurvePoint) -> None:
+            share = (done + min(at.length / end, 1.0)) / count
+            tell(progress, "errors, by paths of richer models", min((1 + share) / 2, 1.0))
+
+        other_path = follow(other, upper, lambda at: 1 - at.length / end, report, SEEN, beyond=True)
         if other_path.ended:
             raise ComputationError("not converged", other_path.ended)
         return Trace.of(other_path)
