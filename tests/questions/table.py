@@ -129,7 +129,8 @@ def _critical_speed(scenario: Scenario) -> Any:
 
 @asked("path")
 def _path(scenario: Scenario) -> Any:
-    return answer(scenario.alone, "path", vary="motion")
+    case = scenario.alone
+    return answer(case, "path", vary="motion" if case.motions else "loads")
 
 
 @asked("linearize")

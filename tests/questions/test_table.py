@@ -14,7 +14,7 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "questions.md"
 PHYSICS = (
     "is rigid", "is of what deforms", "no beam, whose model could be another", "no angle that turns",
     "no body is a beam or a mesh", "held by nothing that resists a load", "a place is judged by what rests",
-    "no surface to show", "no body deforms",
+    "no surface to show", "no body deforms", "has no load that acts",
 )  # fmt: skip
 _table = cache(asked_all)
 pytestmark = pytest.mark.slow
