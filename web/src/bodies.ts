@@ -14,7 +14,7 @@ import {
 } from "three";
 import { BeamMesh } from "./beam";
 import { interpolate, locate, type Part, view } from "./data";
-import { drawn } from "./supports";
+import { drawn, put } from "./supports";
 import { SurfaceMesh } from "./surface";
 
 export type Colouring = "deflection" | "stress" | "none";
@@ -44,6 +44,7 @@ export class Body {
   private readonly mesh: BeamMesh | null = null;
   private readonly ghost: BeamMesh | null = null;
   private readonly surface: SurfaceMesh | null = null;
+  private readonly supports: Group[];
   private readonly now: Float32Array;
   private readonly shares: Float32Array;
 
@@ -58,12 +59,14 @@ export class Body {
     if (part.beam) {
       this.mesh = new BeamMesh(part.beam, false);
       this.ghost = new BeamMesh(part.beam, true);
-      this.group.add(this.mesh.group, this.ghost.group, drawn(part.beam));
+      this.group.add(this.mesh.group, this.ghost.group);
     }
     if (part.surface) {
       this.surface = new SurfaceMesh(part.surface, numbers);
       this.group.add(this.surface.group);
     }
+    this.supports = (part.supports ?? []).map(drawn);
+    for (const each of this.supports) this.group.add(each);
     if (part.box) this.group.add(box(part.box, 0.012 * size));
     if (part.points?.length) {
       const ends = part.points.flatMap((point) => [...(part.box?.centre ?? [0, 0, 0]), ...point]);
@@ -85,6 +88,10 @@ export class Body {
       this.group.position.set(f[0]! + more * f[7]!, f[1]! + more * f[8]!, f[2]! + more * f[9]!);
       this.group.quaternion.set(f[4]!, f[5]!, f[6]!, f[3]!).normalize();
     }
+    part.supports?.forEach((support, k) => {
+      const moved = interpolate(view(numbers, support.displacement), 3, place, new Float32Array(3));
+      put(this.supports[k]!, support, moved.map((each) => settings.factor * each));
+    });
     if (this.surface) {
       const { colouring, largestStress, largestDeflection } = settings;
       const largest = colouring === "stress" ? largestStress : largestDeflection;

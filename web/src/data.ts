@@ -6,12 +6,21 @@ export interface Ref {
   shape: number[];
 }
 
-/** What holds a beam at a position, m: directions x, y, z, rx, ry, rz, with spaces between. */
+/** What holds a body at a place, in axes of its root: directions x, y, z, rx, ry, rz, with spaces between. */
 export interface Support {
-  at: number;
+  name: string;
   words: string;
   rigid?: string;
   yielding?: string;
+  place: number[];
+  /** Of a beam's section there, m; 0 of other bodies. */
+  extents: number[];
+  /** Along x, y and z, whether it is beyond the body's middle. */
+  beyond: boolean[];
+  /** Of the body, m. */
+  size: number;
+  /** Of the place over time, (t, 3). */
+  displacement: Ref;
 }
 
 export interface Shape {
@@ -20,7 +29,6 @@ export interface Shape {
   thickness: number[];
   round: boolean;
   bodies?: [number, number][];
-  supports?: Support[];
   /** Places of the points at rest and directions of the sections' y, of a beam that is not straight along x. */
   rest?: number[][];
   across?: number[][];
@@ -60,6 +68,7 @@ export interface Part {
   /** Size, centre, and rotation row by row. */
   box?: { size: number[]; centre: number[]; rotation: number[] };
   points?: number[][];
+  supports?: Support[];
   /** Whether the joint that holds it moves, and is drawn. */
   joint?: boolean;
   /** Of the root over time: place, quaternion w, x, y, z, and how far it is carried by the deflection of beams that hold

@@ -1,4 +1,4 @@
-// What holds a beam, as symbols at its place at rest: pyramids and rings where it is rigid, zigzags and spirals where it yields.
+// What holds a body, as symbols that move with its place: pyramids and rings where it is rigid, zigzags and spirals where it yields.
 
 import {
   BufferGeometry,
@@ -13,10 +13,10 @@ import {
   TorusGeometry,
   Vector3,
 } from "three";
-import { locate, type Shape, type Support } from "./data";
+import type { Support } from "./data";
 
 const COLOUR = 0xe69f00; // as joints have
-const TALL = 0.06; // of the beam's length
+const TALL = 0.06; // of the body's size
 const UP = new Vector3(0, 1, 0); // the axis of cones
 const OUT = new Vector3(0, 0, 1); // the axis of rings
 
@@ -36,29 +36,28 @@ export function symbols(support: Support): Sign[] {
   return [...of(support.rigid, "pyramid", "ring"), ...of(support.yielding, "zigzag", "spiral")];
 }
 
-/** All supports of a beam, in axes of its root. */
-export function drawn(beam: Shape): Group {
+/** Symbols of a support around the origin. */
+export function drawn(support: Support): Group {
   const group = new Group();
-  const length = beam.points.at(-1)!;
-  for (const support of beam.supports ?? []) {
-    const [k, f] = locate(beam.points, support.at);
-    const middle = (values: number[]): number => values[k]! + f * (values[k + 1]! - values[k]!);
-    const half = [0, middle(beam.width) / 2, middle(beam.thickness) / 2];
-    const place = new Vector3(support.at, 0, 0);
-    if (beam.rest) place.fromArray(beam.rest[k]!).lerp(new Vector3().fromArray(beam.rest[k + 1]!), f);
-    for (const { kind, axis } of symbols(support)) {
-      const along = new Vector3(...axis);
-      const straight = kind === "pyramid" || kind === "zigzag";
-      const part = shape(kind, TALL * length, 0.5 * TALL * length + Math.max(...half));
-      // What holds it along x stands beyond the nearer end; along y and z below the section.
-      if (straight && axis[0] && support.at > length / 2) along.negate();
-      part.quaternion.setFromUnitVectors(straight ? UP : OUT, along);
-      part.position.copy(place);
-      if (straight) part.position.addScaledVector(along, -Math.abs(along.dot(new Vector3(...half))));
-      group.add(part);
-    }
+  const half = new Vector3().fromArray(support.extents).divideScalar(2);
+  const tall = TALL * support.size;
+  for (const { kind, axis } of symbols(support)) {
+    const along = new Vector3(...axis);
+    const straight = kind === "pyramid" || kind === "zigzag";
+    const part = shape(kind, tall, 0.5 * tall + Math.max(...half.toArray()));
+    // What holds it stands on the side that is nearer, and of the middle below.
+    if (straight && support.beyond[axis.indexOf(1)]) along.negate();
+    part.quaternion.setFromUnitVectors(straight ? UP : OUT, along);
+    if (straight) part.position.addScaledVector(along, -Math.abs(along.dot(half)));
+    group.add(part);
   }
   return group;
+}
+
+/** Put the symbols of a support where a displacement, m, takes its place. */
+export function put(group: Group, support: Support, displacement: ArrayLike<number>): void {
+  const [x, y, z] = support.place.map((rest, i) => rest + displacement[i]!);
+  group.position.set(x!, y!, z!);
 }
 
 /** A symbol whose point, or middle, is the origin. */

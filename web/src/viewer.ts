@@ -242,9 +242,9 @@ export class Viewer {
       bar.style.borderColor = css(shade(0));
       legend.append(element("span", "", `${stress ? "stress" : "deflection"} 0`), bar, element("span", "", end));
     }
-    const supports = this.panels.flatMap((panel) => panel.motion.parts.flatMap((part) => part.beam?.supports ?? []));
+    const supports = this.panels.flatMap((panel) => panel.motion.parts.flatMap((part) => part.supports ?? []));
     if (supports.length) {
-      const each = new Set(supports.map(({ at, words }) => `at ${+(1e3 * at).toPrecision(4)} mm ${words}`));
+      const each = new Set(supports.map(({ name, words }) => `at ${name} ${words}`));
       legend.append(element("span", "", `supports, orange: ${[...each].join("; ")}`));
     }
     if (largestLoad > 0) {

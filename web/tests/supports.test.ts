@@ -1,8 +1,18 @@
 import { describe, expect, it } from "vitest";
-import type { Shape } from "../src/data";
-import { drawn, symbols } from "../src/supports";
+import type { Support } from "../src/data";
+import { drawn, put, symbols } from "../src/supports";
 
-const support = { at: 0.5, words: "holds z, spring y rx", rigid: "z", yielding: "y rx" };
+const support: Support = {
+  name: "500 mm",
+  words: "holds z, spring y rx",
+  rigid: "z",
+  yielding: "y rx",
+  place: [0.5, 0, 0],
+  extents: [0, 0.2, 0.1],
+  beyond: [false, false, false],
+  size: 2,
+  displacement: { at: 0, shape: [1, 3] },
+};
 
 describe("supports", () => {
   it("have one symbol for each direction that they hold", () => {
@@ -11,15 +21,25 @@ describe("supports", () => {
       { kind: "zigzag", axis: [0, 1, 0] },
       { kind: "spiral", axis: [1, 0, 0] },
     ]);
-    expect(symbols({ at: 0, words: "holds ry", rigid: "ry" })).toEqual([{ kind: "ring", axis: [0, 1, 0] }]);
+    expect(symbols({ ...support, rigid: "ry", yielding: "" })).toEqual([{ kind: "ring", axis: [0, 1, 0] }]);
   });
 
-  it("stand below the section that they hold, where it is at rest", () => {
-    const beam: Shape = { points: [0, 1, 2], width: [0.2, 0.2, 0.2], thickness: [0.1, 0.1, 0.1], round: false };
-    const [below, beside, around] = drawn({ ...beam, supports: [support] }).children;
-    expect(below!.position.toArray()).toEqual([0.5, 0, -0.05]);
-    expect(beside!.position.toArray()).toEqual([0.5, -0.1, 0]);
-    expect(around!.position.toArray()).toEqual([0.5, 0, 0]);
-    expect(drawn(beam).children).toEqual([]);
+  it("stand below the section that they hold", () => {
+    const [below, beside, around] = drawn(support).children;
+    expect(below!.position.toArray()).toEqual([0, 0, -0.05]);
+    expect(beside!.position.toArray()).toEqual([0, -0.1, 0]);
+    expect(around!.position.toArray()).toEqual([0, 0, 0]);
+  });
+
+  it("stand on the side that is nearer", () => {
+    const [below, beside] = drawn({ ...support, beyond: [false, false, true] }).children;
+    expect(below!.position.z).toBeCloseTo(0.05);
+    expect(beside!.position.y).toBeCloseTo(-0.1);
+  });
+
+  it("move with the place that they hold", () => {
+    const group = drawn(support);
+    put(group, support, [0, 0.25, -0.5]);
+    expect(group.position.toArray()).toEqual([0.5, 0.25, -0.5]);
   });
 });

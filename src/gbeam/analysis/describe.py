@@ -9,6 +9,7 @@ import numpy as np
 
 from gbeam.analysis.case import Case
 from gbeam.analysis.one_body import points_of
+from gbeam.analysis.outline import labels_of
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of
 from gbeam.mechanics.fields.basis import FAMILIES
@@ -28,6 +29,7 @@ from gbeam.results.description import (
     JointDescription,
     MassOnBeam,
 )
+from gbeam.structure.supports import Label
 
 MODES = 6  # natural frequencies at most
 
@@ -124,8 +126,7 @@ def _body(system: System, name: str) -> BodyDescription:
     frequencies, modes = body.rest
     described |= {"kind": body.kind, "coordinates": body.size}
     described["frequency"] = np.asarray(frequencies)[: min(MODES, body.resolved)] / (2 * np.pi)
-    if body.grip is not None and body.grip.names:
-        described["supports"] = _joined(zip(body.grip.names, body.grip.words, strict=True))
+    described["supports"] = _joined(labels_of(body))
     if body.recovery is not None:
         described["clamps"] = body.recovery.clamps
     if body.source is not None:
@@ -134,7 +135,6 @@ def _body(system: System, name: str) -> BodyDescription:
         groups = np.repeat(FAMILIES, body.counts)
         described |= {
             "length": float(beam.length),
-            "supports": _joined((f"{1e3 * support.place:.4g} mm", support.words) for support in beam.supports),
             "masses": tuple(MassOnBeam(mass.at, mass.mass) for mass in beam.masses),
             "counts": {way: n for way, n in zip(FAMILIES, counts, strict=True) if n or way in FAMILIES[:3]},
             "direction": tuple(str(groups[i]) for i in np.abs(modes[: len(groups)]).argmax(axis=0)[:MODES]),
@@ -142,11 +142,11 @@ def _body(system: System, name: str) -> BodyDescription:
     return BodyDescription(**described)
 
 
-def _joined(supports: Iterable[tuple[str, str]]) -> dict[str, str]:
+def _joined(labels: Iterable[Label]) -> dict[str, str]:
     """Join words on what supports hold by the places of these."""
     words = dict[str, str]()
-    for place, held in supports:
-        words[place] = f"{words[place]}; {held}" if place in words else held
+    for label in labels:
+        words[label.name] = f"{words[label.name]}; {label.words}" if label.name in words else label.words
     return words
 
 

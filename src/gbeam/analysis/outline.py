@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
 from typing import Any
 
 import numpy as np
 
-from gbeam.arrays.types import Complex, Floats
+from gbeam.arrays.types import Complex, Floats, Indices
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.rigid_body import RigidBody
@@ -14,9 +15,9 @@ from gbeam.mechanics.tree.system import System
 from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.samples import attitude
-from gbeam.results.parts import Outline
+from gbeam.results.parts import Outline, Supports
 from gbeam.results.system import Assembly
-from gbeam.structure.beam import Beam
+from gbeam.structure.supports import Label
 
 
 def assembly_of(system: System) -> Assembly:
@@ -107,7 +108,7 @@ def outline_of(
         return None
     beam, chosen = structure.source.beam, _chosen(structure, count)
     outline = structure.field.points(slice(None))[chosen]
-    sampled = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+    sampled = _sampled(time)
     rest = structure.sections.along[chosen]
     moved = np.asarray(outline.positions(q[sampled]) - outline.positions(np.zeros(structure.size)))
     points = np.concatenate([[0.0], rest])
@@ -125,21 +126,74 @@ def outline_of(
         place=place,
         across=None if axes is None else axes[:, :, 1],
         **_carrier(motion),
-        **_supports(beam),
         attitude=_attitude(motion, time, sampled),
     )
 
 
-def _supports(beam: Beam) -> dict[str, Any]:
-    """Positions of a beam's supports and what they hold; nothing without supports."""
-    if not beam.supports:
+def labels_of(structure: Structure) -> tuple[Label, ...]:
+    """Names of the places at which a structure is held, and what holds them there."""
+    if structure.source is not None:
+        return tuple(support.label for support in structure.source.beam.supports)
+    return () if structure.grip is None else structure.grip.labels
+
+
+def supports_of(structure: Structure, outline: Outline | None, time: Floats, q: Floats) -> Supports | None:
+    """Supports of a structure at times (t,) with coordinates `q` (t, n), or None without supports.
+
+    They are where nothing else is: those of a beam move with its `outline`, and have the extents of its section.
+    """
+    labels, grip = labels_of(structure), structure.grip
+    if not labels:
+        return None
+    name, words, rigid, yielding = zip(*map(astuple, labels), strict=True)
+    if outline is None:
+        assert grip is not None and grip.places is not None
+        sampled = _sampled(time)
+        place, extents = np.asarray(grip.places.r0), np.zeros((len(labels), 3))
+        moved = np.asarray(grip.places.positions(q[sampled] @ grip.basis.T))
+        position, time, displacement = place[:, 0], time[sampled], moved - place
+    else:
+        position = _positions_held(structure)
+        straight = outline.points[:, None] * np.eye(3)[0]
+        place = _on_outline(outline, straight if outline.place is None else outline.place, position)
+        sections = np.stack([np.zeros(len(outline.points)), outline.width, outline.thickness], axis=1)
+        extents = _on_outline(outline, sections, position)
+        time, displacement = outline.time, _on_outline(outline, outline.displacement, position)
+    return Supports(name, position, place, extents, words, rigid, yielding, time, displacement)
+
+
+def supports_in_modes(structure: Structure, q: Floats, modes: Complex, shapes: dict[str, Any]) -> dict[str, Any]:
+    """Supports of a structure at coordinates (n,), and the displacement (k, h, 3) of their places in modes (n, k), by
+    the names of fields. Those of a beam move with the `shapes` of its outline. Empty without supports.
+    """
+    outline, grip = shapes.get("outline"), structure.grip
+    supports = supports_of(structure, outline, np.zeros(1), q[None])
+    if supports is None:
         return {}
-    return {
-        "supports": np.array([support.place for support in beam.supports]),
-        "support_words": tuple(support.words for support in beam.supports),
-        "support_rigid": tuple(" ".join(support.rigid) for support in beam.supports),
-        "support_yielding": tuple(" ".join(support.yielding) for support in beam.supports),
-    }
+    if outline is None:
+        assert grip is not None and grip.places is not None
+        shape = np.moveaxis(grip.places.slopes(q @ grip.basis.T) @ (grip.basis @ modes), -1, 0)
+    else:
+        shape = _on_outline(outline, shapes["outline_shape"], supports.position)
+    return {"supports": supports, "support_shape": shape}
+
+
+def _positions_held(structure: Any) -> Floats:
+    """Positions (h,) m of a beam's supports, from the root."""
+    return np.array([support.place for support in structure.source.beam.supports], dtype=float)
+
+
+def _on_outline(outline: Outline, values: Any, positions: Floats) -> Any:
+    """Values (..., h, 3) at positions (h,) m along a beam, linearly between those (..., p, 3) of its outline."""
+    last = len(outline.points) - 2
+    before = np.clip(np.searchsorted(outline.points, positions, side="right") - 1, 0, last)
+    share = ((positions - outline.points[before]) / np.diff(outline.points)[before])[:, None]
+    return (1 - share) * values[..., before, :] + share * values[..., before + 1, :]
+
+
+def _sampled(time: Floats) -> Indices:
+    """Indices of the times at which pictures are drawn."""
+    return np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
 
 
 def _chosen(structure: Any, count: int) -> Any:

@@ -23,9 +23,10 @@ from gbeam.figures.description import (
     scale_of,
     stretches,
     support_lines,
+    support_names,
 )
 from gbeam.results.equilibrium import Rest
-from gbeam.results.parts import Loads, Outline
+from gbeam.results.parts import Loads, Supports
 from gbeam.results.response import Response
 from gbeam.results.result import Floats
 from gbeam.results.solids import SolidStress, SpecimenLoads, place_words
@@ -62,14 +63,13 @@ def supports(response: Response, body: str, title: str = "") -> Figure:
     assert carried is not None
     panels, notes = list[Panel](), list[str]()
     kinds = (("force", "N", carried.support_force), ("moment", "N m", carried.support_moment))
-    scale_along, unit_along = scale_of("m", carried.stations)
-    for k, at in enumerate([] if carried.supports is None else carried.supports):
+    for k, name in enumerate(support_names(carried)):
         for kind, si, histories in kinds:
             values = np.zeros((0, 1, 3)) if histories is None else histories
             if largest_size(values[:, k]) <= ROUNDING * largest_size(values):
                 continue
             scale, unit = scale_of(si, values)
-            place = f"{kind} at {scale_along * at:.4g} {unit_along}"
+            place = f"{kind} at {name}"
             panels.append(components(response.time, scale * values[:, k], "xyz", Panel(f"{place}, {unit}", zero=True)))
             if peaks is not None and (largest := getattr(peaks, f"support_{kind}")) is not None:
                 size = largest.size
@@ -82,12 +82,12 @@ def supports(response: Response, body: str, title: str = "") -> Figure:
     return Figure(title, subject, shaded, ("; ".join(notes), *error_note(errors)), (response.outcome,))
 
 
-def load_panels_along(loads: Loads, outline: Outline | None = None) -> tuple[Panel, ...]:
-    """Loads of the sections at one time, along a beam, whose outline says what holds it."""
+def load_panels_along(loads: Loads, supports: Supports | None = None) -> tuple[Panel, ...]:
+    """Loads of the sections at one time, along a beam, with its supports."""
     scale, unit = scale_of("m", loads.stations)
     stress = (loads.stress_tension[0], loads.stress_compression[0])
     panels = _load_panels(scale * loads.stations, loads.section_force[0], loads.section_moment[0], stress, loads)
-    support_marks, x = support_lines(outline, scale), f"position from the root, {unit}"
+    support_marks, x = support_lines(supports, scale), f"position from the root, {unit}"
     return tuple(replace(panel, x=x, lines=(*panel.lines, *support_marks)) for panel in panels)
 
 

@@ -14,7 +14,7 @@ from gbeam.printable import percent, raised
 from gbeam.results.accounting import Accounting
 from gbeam.results.declared import declarations
 from gbeam.results.machine import AxesResult
-from gbeam.results.parts import Outline
+from gbeam.results.parts import Loads, Supports
 from gbeam.results.result import Flags, Floats
 
 REFERENCE, GREY = 6, 7  # numbers of colours: what others are compared with, what was before
@@ -189,24 +189,29 @@ def imitation_look(index: int) -> dict[str, Any]:
 FLIGHT: dict[str, Any] = {"colour": 5, "broad": True}
 
 
-def support_lines(outline: Outline | None, scale: float, direction: str = "") -> tuple[Line, ...]:
-    """Symbols, along a beam's axis in a unit of `scale` a metre, of its supports: of all, or of those that hold a
+def support_lines(supports: Supports | None, scale: float, direction: str = "") -> tuple[Line, ...]:
+    """Symbols, along a body's axis in a unit of `scale` a metre, of its supports: of all, or of those that hold a
     direction.
     """
-    supports = () if outline is None else outline.holding(direction)
-    positions = scale * np.array([place for place, _ in supports])
+    positions = np.zeros(0) if supports is None else scale * supports.positions(direction)
     if not len(positions):
         return ()
     return (Line(positions, np.zeros(len(positions)), "supports", colour=REFERENCE, marks="supports"),)
 
 
-def support_note(outline: Outline | None, name: str = "") -> tuple[str, ...]:
-    """Note on what the supports of a beam hold; none without supports."""
-    if outline is None or outline.supports is None:
+def support_note(supports: Supports | None, name: str = "") -> tuple[str, ...]:
+    """Note on what the supports of a body hold; none without supports."""
+    if supports is None:
         return ()
-    scale, unit = scale_of("m", outline.points)
-    words = [f"at {scale * place:.4g} {unit} {directions}" for place, directions in outline.holding()]
+    words = [f"at {place} {held}" for place, held in zip(supports.name, supports.words, strict=True)]
     return (f"supports{f' of {name}' if name else ''}: {'; '.join(words)}",)
+
+
+def support_names(loads: Loads) -> Sequence[str]:
+    """Names of the supports whose loads these are, or their positions along a beam; none without supports."""
+    positions = () if loads.supports is None else loads.supports
+    scale, unit = scale_of("m", loads.stations)
+    return loads.support_names or [f"{scale * position:.4g} {unit}" for position in positions]
 
 
 def limit_levels(allowed: float, values: Floats, label: str = "limit") -> tuple[Level, ...]:

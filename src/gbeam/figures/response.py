@@ -31,6 +31,7 @@ from gbeam.figures.description import (
     of_motion,
     scale_of,
     stretches,
+    support_names,
     words_and_unit,
 )
 from gbeam.printable import MOST_TURNS, raised
@@ -184,12 +185,11 @@ def _on_supports(loads: Sequence[Any]) -> list[Size]:
     """Sizes of force and moment of every support of one body, in runs of it, that are not zero in all of them."""
     if not loads or loads[0].supports is None:
         return []
-    scale, unit = scale_of("m", loads[0].stations)
     sizes = list[Size]()
-    for k, place in enumerate(loads[0].supports):
+    for k, place in enumerate(support_names(loads[0])):
         for kind, si in (("force", "N"), ("moment", "N m")):
             if any(getattr(carried, f"support_{kind}")[:, k].any() for carried in loads):
-                sizes.append((f"support {kind} at {scale * place:.4g} {unit}", si, partial(_on_support, k, kind)))
+                sizes.append((f"support {kind} at {place}", si, partial(_on_support, k, kind)))
     return sizes
 
 

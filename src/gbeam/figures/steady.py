@@ -64,7 +64,6 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
         moved = [_deflection(body) for body in bodies]
         axes = moving_axes(*(shape for _, shape in moved))
         notes += not_drawn(axes, *(shape for _, shape in moved))
-        notes += support_note(first.bodies[name].outline, name if len(bending) > 1 else "")
         x_scale, x_unit = scale_of("m", *(points for points, _ in moved))
         for i in axes:
             scale, unit = scale_of(words_and_unit(BodyRest, "displacement")[1], *(shape[:, i] for _, shape in moved))
@@ -72,11 +71,13 @@ def static(rests: Sequence[Rest], title: str = "") -> Figure:
                 Line(x_scale * points, scale * shape[:, i], rest.motion, marks=_marks(points), **look)
                 for rest, (points, shape), look in zip(rests, moved, looks, strict=True)
             )
-            lines += support_lines(first.bodies[name].outline, x_scale, "xyz"[i])
+            lines += support_lines(first.bodies[name].supports, x_scale, "xyz"[i])
             quantity = f"{name} {'xyz'[i]}" if len(bending) > 1 else "xyz"[i]
             x = f"position from the root, {x_unit}"
             legend = len(rests) > 1 and not panels
             panels.append(Panel(f"{quantity}, {unit}", lines, x=x, zero=True, named=legend))
+    several = len(first.bodies) > 1
+    notes += [note for name, body in first.bodies.items() for note in support_note(body.supports, name * several)]
     relative = "displacement at rest relative to the base" if bending else "displacement at rest"
     for rest in rests:
         if rest.several or not bending:
@@ -112,9 +113,9 @@ def loads_at_rest(rest: Rest, body: str, title: str = "") -> Figure:
     assert carried is not None
     owner = f" of {body}" if len(rest.bodies) > 1 else ""
     subject = of_motion(rest.motion, f"internal loads at rest{owner}, {rest.bodies[body].model}, t = {rest.time:.4g} s")
-    outline = rest.bodies[body].outline
-    notes = *support_note(outline), *error_notes(rest, body, carried)
-    return Figure(title, subject, load_panels_along(carried, outline), notes)
+    supports = rest.bodies[body].supports
+    notes = *support_note(supports), *error_notes(rest, body, carried)
+    return Figure(title, subject, load_panels_along(carried, supports), notes)
 
 
 def modes(result: Modes, title: str = "") -> Figure:
@@ -130,7 +131,7 @@ def modes(result: Modes, title: str = "") -> Figure:
     subject = ", ".join((f"modes about the equilibrium at {result.time:.4g} s", *_models(result)))
     errors = {"": math.nan if result.errors is None else result.errors.largest}
     several = len(result.bodies) > 1
-    notes = [note for name, body in result.bodies.items() for note in support_note(body.outline, name * several)]
+    notes = [note for name, body in result.bodies.items() for note in support_note(body.supports, name * several)]
     return Figure(title, of_motion(result.motion, subject), tuple(panels), (*notes, *error_note(errors)))
 
 
@@ -149,7 +150,7 @@ def _shapes(result: Modes, name: str) -> Panel:
         if np.abs(moved.imag).max() > SMALL:
             lines.append(replace(real, y=moved.imag, label=f"{label}, a quarter later", dash="dotted", marks=""))
     words = f"{name if len(result.bodies) > 1 else 'displacement'}, largest component 1"
-    lines += support_lines(body.outline, x_scale)
+    lines += support_lines(body.supports, x_scale)
     return Panel(words, tuple(lines), x=f"position from the root, {x_unit}", height=2.0)
 
 

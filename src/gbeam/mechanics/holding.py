@@ -145,8 +145,7 @@ class Holding:
             dependents=tuple(range(n, count)),
             held=tuple(self.taken),
             sprung=tuple(self.sprung),
-            names=tuple(place.support.name for place in self.places),
-            words=tuple(place.support.words for place in self.places),
+            labels=tuple(place.support.label for place in self.places),
             places=Places(
                 np.array([held.centre for held in self.places]),
                 np.stack([np.asarray(held.moved @ motions) for held in self.places]),

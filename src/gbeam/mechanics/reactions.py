@@ -120,4 +120,5 @@ def _by_station(grip: Grip, stations: Any, q: Array, sizes: Array) -> Reactions:
         unit[k, np.searchsorted(places, station), direction] = 1.0
     wrench = xp.einsum("tm,mkd->tkd", sizes, unit)
     station_indices = stations[places] if grip.places is None else grip.places[places]
-    return Reactions(places, station_indices.positions(q), wrench[..., :3], wrench[..., 3:], grip.names)
+    names = tuple(label.name for label in grip.labels)
+    return Reactions(places, station_indices.positions(q), wrench[..., :3], wrench[..., 3:], names)

@@ -30,6 +30,7 @@ from gbeam.mechanics.recovery import Recovery, Sections, Source
 from gbeam.numerics.eigen import positive_definite
 from gbeam.numerics.series import STEP
 from gbeam.results.parts import judged_point
+from gbeam.structure.supports import Label
 
 
 @record
@@ -39,8 +40,8 @@ class Grip:
     Its coordinates q (m,) are `basis` (m, n) times those of the structure. Conditions are zero, `rows` (k, m) times q,
     by which the `dependents` of q follow. They are `curved` where the rows change with q. Springs and dampers act along
     `yielding` (j, m) rows. All act on stations in the directions, 0 to 5, of `held` and `sprung`. Where supports have
-    `names`, and `words` on what they hold, on these at their `places`. What is not `rooted` has no other hold. What
-    bends beside what is held pulls on conditions by ½ q · `second` (k, m, m) q.
+    `labels`, on these at their `places`. What is not `rooted` has no other hold. What bends beside what is held pulls
+    on conditions by ½ q · `second` (k, m, m) q.
     """
 
     free: Structure
@@ -53,8 +54,7 @@ class Grip:
     held: tuple[tuple[int, int], ...] = static()
     sprung: tuple[tuple[int, int], ...] = static()
     curved: bool = static(default=False)
-    names: tuple[str, ...] = static(default=())
-    words: tuple[str, ...] = static(default=())
+    labels: tuple[Label, ...] = static(default=())
     places: Places | None = None
     second: Array | None = None
     rooted: bool = static(default=True)

@@ -14,7 +14,7 @@ from gbeam.constants import BY_STRAINS
 from gbeam.errors import InputError
 from gbeam.guards.checks import index_of
 from gbeam.results.declared import INSIDE, declared, fact, internal, part, quantity
-from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, VectorPeaks, judged_point
+from gbeam.results.parts import Base, Influence, Loads, Outline, Peaks, Supports, VectorPeaks, judged_point
 from gbeam.results.result import Floats, Part
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 
@@ -66,6 +66,10 @@ class BodyResponse(Part):
     outline: Outline | None = part(
         "shape of a beam at some of the times, and what carries it", key=None, note="None of other bodies", default=None
     )
+    supports: Supports | None = part(
+        "places at which the body is held, for pictures", name="holder_", key=None, note="None without supports",
+        default=None,
+    )  # fmt: skip
     solid: SolidStress | None = part("stress of a solid", name="solid_", key="solid", optional=True, default=None)
     surface: Surface | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
     specimen: SpecimenLoads | None = part(

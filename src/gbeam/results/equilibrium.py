@@ -28,7 +28,7 @@ from gbeam.results.errors import (
 )
 from gbeam.results.facts import at_place
 from gbeam.results.one_body import RestingBody
-from gbeam.results.parts import Base, Loads, Outline
+from gbeam.results.parts import Base, Loads, Outline, Supports
 from gbeam.results.result import Decided, Figured, Flags, Floats, Part, brief
 from gbeam.results.solids import SolidStress, SpecimenLoads, Surface
 from gbeam.results.system import Assembly, Placed, most_moved
@@ -58,6 +58,10 @@ class BodyRest(Part):
         "loads of a rigid specimen, of one time", name=None, optional=True, default=None
     )
     outline: Outline | None = part("shape of a beam, for pictures", name=INSIDE, key=None, default=None)
+    supports: Supports | None = part(
+        "places at which the body is held, for pictures", name="holder_", key=None, note="None without supports",
+        default=None,
+    )  # fmt: skip
 
     @declared("", "forces, moments and stresses of the sections", role="part", key="loads", optional=True)
     def carried(self) -> Loads | None:

@@ -26,7 +26,7 @@ from gbeam.results.errors import (
     totals,
 )
 from gbeam.results.one_body import ShapedBody
-from gbeam.results.parts import Base, Outline
+from gbeam.results.parts import Base, Outline, Supports
 from gbeam.results.result import Complex, Decided, Figured, Floats, Part
 from gbeam.results.solids import SurfaceModes
 from gbeam.results.system import Assembly
@@ -68,6 +68,13 @@ class BodyModes(Part):
         "rad/m", "angle of the beam's section about its axis, for shapes in m", "mode point", key=None, default=None,
         note="None of a model without twist",
     )  # fmt: skip
+    supports: Supports | None = part(
+        "places at which the body is held, for pictures", name="holder_", key=None, note="None without supports",
+        default=None,
+    )  # fmt: skip
+    support_shape: Complex | None = quantity(
+        "", "displacement of the place that is held", "mode holder axis", name="holder_shape", key=None, default=None
+    )
     surface: SurfaceModes | None = part("surface of a solid, for pictures", name="surface_", key=None, default=None)
 
     def moved(self, k: int) -> tuple[Floats, Complex]:

@@ -73,19 +73,6 @@ class Outline(Part):
     R_HB: Floats = quantity(
         "", "rotation from base axes to hub axes", "hub_axis axis", name=None, default_factory=lambda: np.eye(3)
     )
-    supports: Floats | None = quantity(
-        "m", "position of what holds the beam, from the root", "holder", name="outline_support",
-        note="the root where a support says what it holds; None without supports", default=None,
-    )  # fmt: skip
-    support_words: tuple[str, ...] = quantity(
-        "", "directions that are held, and by what", "holder", name="outline_support_words", default=()
-    )
-    support_rigid: tuple[str, ...] = quantity(
-        "", "directions that are held rigidly", "holder", name="outline_support_rigid", default=()
-    )
-    support_yielding: tuple[str, ...] = quantity(
-        "", "directions that springs and dampers hold", "holder", name="outline_support_yielding", default=()
-    )
     attitude: Floats | None = quantity(
         "",
         "rotation (w, x, y, z) of the base axes since the first time, by the angular velocity given",
@@ -93,15 +80,6 @@ class Outline(Part):
         note="None without rates",
         default=None,
     )
-
-    def holding(self, direction: str = "") -> tuple[tuple[float, str], ...]:
-        """Positions, m, ascending, and words of the supports: of all, or of those that hold a direction."""
-        if self.supports is None:
-            return ()
-        supports = zip(self.support_rigid, self.support_yielding, strict=True)
-        chosen = [not direction or direction in f"{rigid} {yielding}".split() for rigid, yielding in supports]
-        places = zip(self.supports.tolist(), self.support_words, chosen, strict=True)
-        return tuple(sorted((place, words) for place, words, axes in places if axes))
 
     @declared("m", "position of the body from the root", "body")
     def body_position(self) -> Floats:
@@ -115,6 +93,28 @@ class Outline(Part):
     def hub_mounting(self) -> Floats | None:
         """Rotation from base to hub axes, (3, 3), or None without a hub."""
         return self.R_HB if np.isfinite(self.radius) else None
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Supports(Part):
+    """Places at which a body is held, for pictures: their names, what they hold, and how they move over time."""
+
+    name: tuple[str, ...] = quantity("", "name of the place that is held, or its position along a beam", "holder")
+    position: Floats = quantity("m", "position of the place along the body, from the root", "holder")
+    place: Floats = quantity(
+        "m", "the place at rest, base axes", "holder axis", note="the middle of the nodes that are held"
+    )
+    extents: Floats = quantity("m", "extents of a beam's section there", "holder axis", note="0 of other bodies")
+    words: tuple[str, ...] = quantity("", "directions that are held, and by what", "holder")
+    rigid: tuple[str, ...] = quantity("", "directions that are held rigidly", "holder")
+    yielding: tuple[str, ...] = quantity("", "directions that springs and dampers hold", "holder")
+    time: Floats = quantity("s", "some of the times", "holder_time", role="coordinate")
+    displacement: Floats = quantity("m", "displacement of the place", "holder_time holder axis")
+
+    def positions(self, direction: str = "") -> Floats:
+        """Positions, m, ascending, of all supports, or of those that hold a direction."""
+        ways = [f"{rigid} {yielding}".split() for rigid, yielding in zip(self.rigid, self.yielding, strict=True)]
+        return np.sort(self.position[[not direction or direction in held for held in ways]])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -32,7 +32,7 @@ class HeldPlace(Value):
     @property
     def name(self) -> str:
         """Name of the group, point, interface or link."""
-        return str(self.support.at)
+        return self.support.name
 
     def arms(self, points: Floats) -> Floats:
         """Places (g, 3) of the nodes from the centre, from those (k, 3) of the mesh's points; one of zero of an

@@ -24,6 +24,16 @@ ROOT: dict[Direction, str] = {
 }
 
 
+@dataclass(frozen=True)
+class Label:
+    """Name of a place that is held, and what holds it: in words, and by its directions with spaces between."""
+
+    name: str
+    words: str
+    rigid: str
+    yielding: str
+
+
 @typed
 @dataclass(frozen=True, eq=False)
 class Support(Value):
@@ -93,8 +103,10 @@ class Support(Value):
 
     @property
     def name(self) -> str:
-        """Name of the place, of one on a mesh or matrices; of a position its number, which is no name there."""
-        return str(self.at)
+        """Name of the place, of one on a mesh or matrices. Of a position it is that in mm, or from 1 m on in m."""
+        if isinstance(self.at, str):
+            return self.at
+        return f"{self.at:.4g} m" if self.at >= 1 else f"{1e3 * self.at:.4g} mm"
 
     @property
     def rigid(self) -> tuple[Direction, ...]:
@@ -112,6 +124,11 @@ class Support(Value):
         kinds = {"holds": self.rigid, "spring": (*self.stiffness,), "damper": (*self.damping,)}
         ordered = {kind: [each for each in DIRECTIONS if each in held] for kind, held in kinds.items()}
         return ", ".join(f"{kind} {' '.join(held)}" for kind, held in ordered.items() if held)
+
+    @property
+    def label(self) -> Label:
+        """The place and what is held, for lists and pictures."""
+        return Label(self.name, self.words, " ".join(self.rigid), " ".join(self.yielding))
 
 
 def root_held(support: Support) -> Root:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading
-from gbeam.analysis.outline import assembly_of, ends_of, outline_of
+from gbeam.analysis.outline import assembly_of, ends_of, outline_of, supports_of
 from gbeam.analysis.response.outcome import ending_of, inaccuracies, integrator_advice, stressed_and_bent
 from gbeam.analysis.response.peaks import displacement_peaks, half_ranges, load_peaks, maxima_of
 from gbeam.analysis.response.posed import begun_in_words
@@ -133,6 +133,7 @@ class Histories:
         straight = structure.recovery is None and (source is None or source.beam.line is None)
         drawn = settings.loads and not traced
         time = self.time[self.recorded]
+        outline = outline_of(structure, motion, time, recorded.q) if drawn else None
         return BodyResponse(
             model=structure.kind,
             base=recorded.base,
@@ -149,7 +150,8 @@ class Histories:
             damping_ratio=structure.damping_ratio,
             shapes=None if source is None else dict(zip(FAMILIES, structure.counts, strict=True)),
             influence=influence(structure) if isinstance(motion, Centrifuge) and straight and not traced else None,
-            outline=outline_of(structure, motion, time, recorded.q) if drawn else None,
+            outline=outline,
+            supports=supports_of(structure, outline, time, recorded.q) if drawn else None,
             **(self._recovered(name, state, peaks) if drawn else {}),
         )
 

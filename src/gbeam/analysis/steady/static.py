@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity
 from gbeam.analysis.accuracy.estimate import LIMIT, not_known
-from gbeam.analysis.outline import assembly_of, outline_of
+from gbeam.analysis.outline import assembly_of, outline_of, supports_of
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.accuracy import FAR, doubts, system_errors
 from gbeam.analysis.system.drive import Drive
@@ -196,6 +196,7 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
         recovery = structure.recovery
         causes = causes_of(structure, q, loads_at(structure, time))
         parts = {} if recovery is None else recovery.parts(time, base, causes, **names)
+        outline = outline_of(structure, None, time, q)
         bodies[body] = BodyRest(
             model=structure.kind,
             base=each_leaf(itemgetter(0), base),
@@ -204,7 +205,8 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
             q=q[0],
             strain_energy=float(structure.strain_energy(q[0])),
             loads=loads,
-            outline=outline_of(structure, None, time, q),
+            outline=outline,
+            supports=supports_of(structure, outline, time, q),
             **{key: parts[key] for key in ("solid", "surface", "specimen") if key in parts},
         )
     return bodies

@@ -23,13 +23,9 @@ MESH = ("shapes", "sizes_real", "sizes_imag")  # of a surface in modes
 GROUND = "ground_root_acceleration"
 _PLACED = ("place", "attitude", GROUND)  # of points, and of the ground
 LINE = (("rest", "place"), ("across", "across"))  # of a beam that is not straight, and where an outline has it
-SUPPORT = {
-    "at": "support",
-    "words": "support_words",
-    "rigid": "support_rigid",
-    "yielding": "support_yielding",
-}
+SUPPORT = ("name", "words", "rigid", "yielding", "place", "extents")
 BASE = np.array([0.0, 0, 0, 1, 0, 0, 0, 0, 0, 0])  # frame of a body whose root is the origin and does not turn
+NEAR = 1e-6  # of a body's size: what is nearer to its middle is on neither side of it
 FAR = 4  # times their own size: bodies that go farther are followed
 AMPLITUDE, TURN = 0.15, 0.6  # of a mode: of the length, of the largest displacement; rad, the largest rotation
 PERIOD = 2.0  # s, in which a mode is shown
@@ -111,9 +107,6 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
         else np.column_stack([get("body_position"), get("body_mass")]).tolist(),
         "displacement": numbers.add(get("outline")),
     }
-    if get("outline_support") is not None:
-        columns = {key: get(f"outline_{name}").tolist() for key, name in SUPPORT.items()}
-        header["supports"] = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     if get("outline_twist") is not None:
         header["twist"] = numbers.add(get("outline_twist"))
     stress = get("stress")
@@ -121,6 +114,19 @@ def _beam(variables: Variables, index: Any, numbers: Numbers) -> dict[str, Any]:
         largest = float(np.max(stress))
         header["stress"] = {"at": get("section").tolist(), "values": numbers.add(stress[index]), "largest": largest}
     return header
+
+
+def _supports(held: Variables, around: Floats, times: Floats, numbers: Numbers) -> list[dict[str, Any]]:
+    """Headers of the supports of a body, which has points `around` (p, 3), and how they move at some times."""
+    low, high = around.min(axis=0), around.max(axis=0)
+    columns: dict[str, Any] = {key: held[key].tolist() for key in SUPPORT}
+    size = float(np.linalg.norm(high - low))
+    columns["beyond"] = (held["place"] - (low + high) / 2 > NEAR * size).tolist()
+    moved = held["displacement"].reshape(len(held["time"]), -1)
+    displacement = np.stack([np.interp(times, held["time"], component) for component in moved.T], axis=1)
+    by_support = np.moveaxis(displacement.reshape(len(times), -1, 3), 1, 0)
+    columns["displacement"] = [numbers.add(values) for values in by_support]
+    return [{**dict(zip(columns, row, strict=True)), "size": size} for row in zip(*columns.values(), strict=True)]
 
 
 def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple[dict[str, Any], Floats, Floats]:
@@ -178,6 +184,11 @@ def motion(name: str, environment: str, v: Variables, numbers: Numbers) -> tuple
                 size, centre, rotation = (v[key][k] for key in ("box", "box_centre", "box_rotation"))
                 part["box"] = _box(size, centre, rotation)
                 reach = centre + (SIGNS * size / 2) @ rotation.T
+        held = variables_under("holder_", inner)
+        if held:
+            along = [[x, 0.0, 0.0] for x in part["beam"]["points"]] if body in beams else part.get("points", [])
+            around = reach if len(reach) else np.array([[0.0, 0.0, 0.0], *along])
+            part["supports"] = _supports(held, around, times, numbers)
         corners += [origin[:, None] + turn.apply(place_on_body)[:, None] for place_on_body in reach]
         parts.append(part | ({"joint": True} if v["joint_kind"][k] not in ("fixed", "free") else {}))
     middle, radius = _view(np.concatenate([place, *corners], axis=1))
@@ -298,6 +309,11 @@ def shapes(facts: Mapping[str, Any], v: Variables, numbers: Numbers) -> dict[str
         for body in beams:
             modes[f"{body}_outline_time"] = PHASES
             modes[f"{body}_outline"] = v[f"{body}_outline"] + amplitude * _swung(of_mode(f"{body}_outline_shape", k))
+        for body in v["body"]:
+            if f"{body}_holder_place" in v:
+                modes[f"{body}_holder_time"] = PHASES
+                moved = _swung(of_mode(f"{body}_holder_shape", k))
+                modes[f"{body}_holder_displacement"] = v[f"{body}_holder_displacement"] + amplitude * moved
         for body, twist in twists.items():
             modes[f"{body}_outline_twist"] = amplitude * _swung(twist)
         for body, mesh in meshes.items():
