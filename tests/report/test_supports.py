@@ -133,6 +133,23 @@ def test_places_held_move_by_what_their_springs_carry(kind: str, first: str) -> 
         assert note.startswith(f"supports: at {first} {word}")
 
 
+def test_a_box_on_springs_is_drawn_as_it_moves() -> None:
+    """Its farthest corner is its tip; the triangles of its faces point outwards, around its volume."""
+    structure = on_springs("box")
+    rest, modes = gb.static(structure, acceleration=(3.0, 2.0, 80.0)), gb.modes(structure)
+    surface = rest.body.surface
+    assert surface is not None and not surface.judged.any()
+    faces = surface.vertices[surface.triangles]
+    assert np.linalg.det(faces).sum() / 6 == pytest.approx(0.3 * 0.2 * 0.1)
+    moved = np.einsum("ts,sva->tva", surface.sizes, surface.shapes)[0]
+    tip = np.linalg.norm(surface.vertices - structure.station_places.r0[-1], axis=1).argmin()
+    np.testing.assert_allclose(moved[tip], rest.tip, atol=1e-2 * np.abs(rest.tip).max())
+    in_modes: Any = modes.body.surface
+    shape = np.einsum("ks,sa->ka", in_modes.sizes, in_modes.shapes[:, tip])
+    np.testing.assert_allclose(shape, modes.shape[:, -1], atol=1e-9)
+    assert gb.static(on_springs("matrices")).body.surface is None
+
+
 def test_a_box_that_stands_rigidly_has_them_where_they_are() -> None:
     feet = {"a": (-0.15, -0.1, 0), "b": (0.15, -0.1, 0), "c": (0.0, 0.1, 0)}
     held = [gb.Support(name, ways) for name, ways in zip(feet, (["x", "y", "z"], ["y", "z"], ["z"]), strict=True)]  # type: ignore[arg-type]
@@ -142,6 +159,8 @@ def test_a_box_that_stands_rigidly_has_them_where_they_are() -> None:
     assert supports is not None and supports.name == ("a", "b", "c")
     np.testing.assert_allclose(supports.place, list(feet.values()), atol=1e-15)
     assert not supports.displacement.any()
+    (part,) = header_of(report_of(gb.static(box.structure)))["scene"]["motions"][0]["parts"]  # type: ignore[index]
+    assert {"surface", "supports"} <= part.keys()
 
 
 @pytest.mark.parametrize("kind", ["mesh", "matrices", "box"])

@@ -48,7 +48,7 @@ export class Viewer {
       factor: motions.every((each) => each.relative) ? 1 : visible(largest, motions[0]!.length),
       ghost: true,
       loads: true,
-      colouring: stresses.length ? "stress" : beams.length ? "deflection" : "none",
+      colouring: stresses.some((each) => each.largest > 0) ? "stress" : stresses.length + beams.length ? "deflection" : "none",
       largestDeflection: largest,
       largestStress: Math.max(0, ...stresses.map((each) => each.largest)),
       largestLoad: most((each) => each.largestLoad),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.arrays.types import Complex, Floats, Indices
+from gbeam.mechanics.fields.taylor import Places
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.joints import GROUND
 from gbeam.mechanics.tree.rigid_body import RigidBody
@@ -16,6 +17,7 @@ from gbeam.motion.flight import Flight
 from gbeam.motion.protocol import Motion
 from gbeam.numerics.samples import attitude
 from gbeam.results.parts import Outline, Supports
+from gbeam.results.solids import Surface, SurfaceModes
 from gbeam.results.system import Assembly
 from gbeam.structure.supports import Label
 
@@ -96,6 +98,11 @@ def _box(body: object) -> tuple[Floats, Floats, Floats]:
 POINTS = 16  # along a straight beam, at most; twice as many along a line
 OF_MODES = 65  # of the shapes of modes, likewise
 TIMES = 1500
+# Triangles of a box whose corners are at the low and high ends of x, y and z, z the first to change.
+BOX = np.array(
+    [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+     (1, 5, 7), (1, 7, 3)]
+)  # fmt: skip
 
 
 def outline_of(
@@ -176,6 +183,37 @@ def supports_in_modes(structure: Structure, q: Floats, modes: Complex, shapes: d
     else:
         shape = _on_outline(outline, shapes["outline_shape"], supports.position)
     return {"supports": supports, "support_shape": shape}
+
+
+def box_of(structure: Structure, time: Floats, q: Floats) -> dict[str, Surface]:
+    """Surface of the box around a rigid body on supports at times (t,) with coordinates `q` (t, n), by the name of its
+    field. Empty for other bodies.
+    """
+    grip = structure.grip
+    if grip is None or grip.free.corners is None:
+        return {}
+    sampled = _sampled(time)
+    return {"surface": Surface(**_box_skin(grip.free.corners), time=time[sampled], sizes=q[sampled] @ grip.basis.T)}
+
+
+def box_in_modes(structure: Structure, modes: Complex) -> SurfaceModes | None:
+    """Surface of the box around a rigid body on supports in modes (n, k), or None for other bodies."""
+    grip = structure.grip
+    if grip is None or grip.free.corners is None:
+        return None
+    return SurfaceModes(**_box_skin(grip.free.corners), sizes=(grip.basis @ modes).T)
+
+
+def _box_skin(corners: Places) -> dict[str, Any]:
+    """Fields of the surface of a box with corners (8,), which moves by their slopes and has no stress."""
+    shapes = np.moveaxis(np.asarray(corners.first), -1, 0)
+    return {
+        "vertices": np.asarray(corners.r0),
+        "triangles": BOX,
+        "shapes": shapes,
+        "stress": np.zeros((*shapes.shape[:2], 6)),
+        "judged": np.zeros(len(corners.r0), dtype=bool),
+    }
 
 
 def _positions_held(structure: Any) -> Floats:

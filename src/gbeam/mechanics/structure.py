@@ -141,6 +141,8 @@ class Structure:
         Whether the stress of loads is left out of the stiffness of a structure of particles.
     recovery : Recovery or None
         What responses of a solid or a rigid specimen have besides.
+    corners : Places or None
+        Of the box around a rigid body that supports hold, for pictures.
     bending : Bending or None
         Of a solid, forces of higher order where it bends far; only the equations of `bent` have them.
     richer : Structure or None
@@ -188,6 +190,7 @@ class Structure:
     turns: Array | None = None
     unstiffened: bool = static(default=False)
     recovery: Recovery | None = static(default=None)
+    corners: Places | None = None
     modes: int | None = static(default=None)
     grip: Grip | None = None
     bending: Bending | None = static(default=None)
@@ -407,9 +410,11 @@ class Structure:
         turns = None if self.turns is None else self.turns @ basis
         grip = self.grip and replace(self.grip, basis=self.grip.basis @ basis)
         places, stations = self.places.turned(basis), self.station_places.turned(basis)
+        corners = self.corners and self.corners.turned(basis)
         return replace(
-            self, coefficients=c, places=places, station_places=stations, turns=turns, grip=grip, recovery=None
-        )
+            self, coefficients=c, places=places, station_places=stations, turns=turns, grip=grip, corners=corners,
+            recovery=None,
+        )  # fmt: skip
 
     @property
     def particles(self) -> StrainField | SeriesField | HeldField | Places:

@@ -279,7 +279,9 @@ class RigidSpecimen(Value):
             choice(f"supports[{i}].at", support.name, body.points)
         rows = [levers(np.zeros((1, 3)), way) @ about(known[name]) for name, way in elastic]
         refuse_free("supports", np.concatenate([np.zeros((0, 6)), *rows]), np.asarray(self.corners))
-        return held_at_points(body, self.supports, rooted=False)
+        ends = np.array([*product(*zip(self.envelope.min(axis=0), self.envelope.max(axis=0), strict=True))])
+        corners = Places(ends, *_rigid_motions(ends - np.asarray(self.centre)))
+        return held_at_points(replace(body, corners=corners), self.supports, rooted=False)
 
     def _stations(self) -> tuple[dict[str, Floats], Floats]:
         """Places of the named points, and of the tip, m."""

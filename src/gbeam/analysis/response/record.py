@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.accuracy.correction import PLACE, Quantity, Reading
-from gbeam.analysis.outline import assembly_of, ends_of, outline_of, supports_of
+from gbeam.analysis.outline import assembly_of, box_of, ends_of, outline_of, supports_of
 from gbeam.analysis.response.outcome import ending_of, inaccuracies, integrator_advice, stressed_and_bent
 from gbeam.analysis.response.peaks import displacement_peaks, half_ranges, load_peaks, maxima_of
 from gbeam.analysis.response.posed import begun_in_words
@@ -152,7 +152,7 @@ class Histories:
             influence=influence(structure) if isinstance(motion, Centrifuge) and straight and not traced else None,
             outline=outline,
             supports=supports_of(structure, outline, time, recorded.q) if drawn else None,
-            **(self._recovered(name, state, peaks) if drawn else {}),
+            **(box_of(structure, time, recorded.q) | self._recovered(name, state, peaks) if drawn else {}),
         )
 
     def reading(self, bodies: Mapping[str, BodyResponse]) -> Reading | None:

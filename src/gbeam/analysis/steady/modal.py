@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gbeam.analysis.accuracy.estimate import not_known
-from gbeam.analysis.outline import assembly_of, outline_in_modes, supports_in_modes
+from gbeam.analysis.outline import assembly_of, box_in_modes, outline_in_modes, supports_in_modes
 from gbeam.analysis.steady.frequency_errors import BY_RICHER, RicherModels, doubtful, unknown_errors
 from gbeam.analysis.steady.subject import Subject, directions_of, edges_of, subject_of
 from gbeam.analysis.system.linear import framed, instabilities, largest_component
@@ -106,6 +106,7 @@ def _in_modes(
     moves = np.abs(scaled).max(axis=0, initial=0.0) > STILL * np.abs(scaled).max(initial=0.0)
     ways = zip(directions_of(structure, q, scaled), moves, strict=True)
     outlines = outline_in_modes(structure, q, scaled)
+    surface = box_in_modes(structure, scaled) if recovery is None else recovery.in_modes(scaled.T)
     return BodyModes(
         model=structure.kind,
         base=state.base_of(name),
@@ -116,7 +117,7 @@ def _in_modes(
         shape=shape,
         equilibrium=np.asarray(structure.displacement(q)),
         twist=None if twist is None else (twist @ scaled).T,
-        surface=None if recovery is None or not modes.size else recovery.in_modes(scaled.T),
+        surface=surface if modes.size else None,
         **outlines,
         **supports_in_modes(structure, q, scaled, outlines),
     )

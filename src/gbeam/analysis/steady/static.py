@@ -11,7 +11,7 @@ import numpy as np
 
 from gbeam.analysis.accuracy.correction import DEFLECTION, LOADS, PLACE, Quantity
 from gbeam.analysis.accuracy.estimate import LIMIT, not_known
-from gbeam.analysis.outline import assembly_of, outline_of, supports_of
+from gbeam.analysis.outline import assembly_of, box_of, outline_of, supports_of
 from gbeam.analysis.steady.subject import Subject, subject_of
 from gbeam.analysis.system.accuracy import FAR, doubts, system_errors
 from gbeam.analysis.system.drive import Drive
@@ -195,7 +195,9 @@ def _bodies_at_rest(subject: Subject, state: SteadySystem, name: str) -> dict[st
         names = {"motion": name, "model": structure.kind, "environment": environment}
         recovery = structure.recovery
         causes = causes_of(structure, q, loads_at(structure, time))
-        parts = {} if recovery is None else recovery.parts(time, base, causes, **names)
+        parts: dict[str, Any] = {**box_of(structure, time, q)}
+        if recovery is not None:
+            parts |= recovery.parts(time, base, causes, **names)
         outline = outline_of(structure, None, time, q)
         bodies[body] = BodyRest(
             model=structure.kind,
