@@ -430,3 +430,17 @@ def test_a_rod_that_only_stretches_is_held_at_both_ends(kind: str) -> None:
     loads = gb.static(rod, acceleration=(100.0, 0.0, 0.0)).loads
     assert loads is not None and loads.support_force is not None
     assert loads.support_force[0, 0, 0] == pytest.approx(100.0 * LINE_MASS * LENGTH / 2, rel=1e-6)
+
+
+def test_a_strip_over_three_supports_bends_far() -> None:
+    """Springs count where dependent coordinates are chosen: without them it was lost at 0.81 of the load."""
+    supports = [
+        gb.Support(0.412, ["z"], stiffness={"ry": 7.6}),
+        gb.Support(0.607, ["z"]),
+        gb.Support(0.622, ["z"], stiffness={"z": 207.0, "ry": 1.14}),
+    ]
+    strip = gb.Section.rectangle(0.0111, 0.00244)
+    mass = gb.PointMass(0.6215, 0.0258)
+    beam = gb.Beam(0.622, strip, gb.Material(2700, 70e9), [mass], supports=supports, rotary_inertia=False)
+    rest = gb.static(gb.assemble(beam, "exact", axial=2, z=3), acceleration=(0, 0, 287.1))
+    assert rest.stable and 0 < np.linalg.norm(rest.tip) < 1e-3

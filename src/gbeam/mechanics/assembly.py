@@ -207,7 +207,9 @@ def hold(
     stiffness = stiffness + sprung_rows.T @ (spring[:, None] * sprung_rows)
     dashpots = sprung_rows.T @ (damper[:, None] * sprung_rows) + root_dashpots(beam, len(stiffness))
     if dependents is None:
-        sizes = strain_sizes(beam, rule, everywhere, turns)
+        # On a straight beam what is held along x at rest is the stretch alone, and energies choose what is soft.
+        by_strains = beam.line is not None or is_jax(stiffness)
+        sizes = strain_sizes(beam, rule, everywhere, turns) if by_strains else np.diag(stiffness)
         dependents = chosen_dependents(conditions, held_rows, sizes, shapes)
     basis = null_basis(held_rows, dependents)
     in_fewer = _held_field(field, basis, dependents, parted[0], first_station, curved=curved)

@@ -249,8 +249,8 @@ def strain_sizes(beam: Beam, rule: Quadrature, slopes: Floats, angles: Floats) -
 def chosen_dependents(conditions: list[Condition], rows: Floats, sizes: Floats, shapes: int) -> tuple[int, ...]:
     """Indices of coordinates that conditions with rows (m, n) make dependent: those that reach farthest for their size.
 
-    `sizes` (n,) are those of :func:`strain_sizes`. The first `shapes` of the coordinates are of shapes. Raise
-    InputError where a condition says nothing that those before do not say.
+    `sizes` (n,) are stiffnesses, or those of :func:`strain_sizes`. The first `shapes` of the coordinates are of shapes.
+    Raise InputError where a condition says nothing that those before do not say.
     """
     scaled = rows[:, :shapes] / np.sqrt(sizes[:shapes])
     for k, condition in enumerate(conditions):
