@@ -159,10 +159,10 @@ class Beam(Value):
         at_root = [i for i, support in enumerate(self.supports) if support.place == 0]
         if len(at_root) > 1:
             raise InputError(f"supports[{at_root[1]}].at", "is 0 a second time", "say in one what the root holds")
-        where = "root"
+        place = "root"
         if at_root:
-            where = f"supports[{at_root[0]}]"
-            with placing_within(where):
+            place = f"supports[{at_root[0]}]"
+            with placing_within(place):
                 root = root_held(self.supports[at_root[0]])
             if self.root.springs not in ({}, root.springs):
                 raise InputError("root", "and a support at 0 both say what the root holds", "keep one of them")
@@ -170,18 +170,18 @@ class Beam(Value):
         springs = self.root.springs
         for names, slides, turns in _PLANES:
             loose = [name for name in names if name in springs and not is_jax(springs[name]) and springs[name] == 0]
-            held = list[list[float]]()  # displacements of rigid motions of what is loose, along what is held
+            held_motions = list[list[float]]()  # displacements of rigid motions of what is loose, along what is held
             for support in self.held_places.values():
                 grip = {*support.rigid, *support.stiffness}
-                moved = {names[0]: 1.0, names[-1]: support.place if turns else 1.0}
+                motion = {names[0]: 1.0, names[-1]: support.place if turns else 1.0}
                 if slides in grip:
-                    held.append([moved[name] for name in loose])
+                    held_motions.append([motion[name] for name in loose])
                 if turns in grip:
-                    held.append([float(name == names[-1]) for name in loose])
-            if loose and (not held or np.linalg.matrix_rank(held) < len(loose)):
-                words = " and ".join(_adrift(loose, np.array(held).reshape(-1, len(loose))))
+                    held_motions.append([float(name == names[-1]) for name in loose])
+            if loose and (not held_motions or np.linalg.matrix_rank(held_motions) < len(loose)):
+                words = " and ".join(_adrift(loose, np.array(held_motions).reshape(-1, len(loose))))
                 fix = f"give the root a stiffness, or hold {slides}{f' or {turns}' if turns else ''} at one more place"
-                raise InputError(where, f"leaves the beam free to {words}, as a whole", fix)
+                raise InputError(place, f"leaves the beam free to {words}, as a whole", fix)
 
     def _place_by_names(self) -> None:
         """Put loads and supports that name a point where it is. Raise InputError if there is no such point."""
@@ -189,11 +189,11 @@ class Beam(Value):
         named = self._points | {TIP: self.length}
         for kind in ("loads", "supports"):
             placed = list[Any]()
-            for i, each in enumerate(getattr(self, kind)):
-                if isinstance(each.at, str):
-                    choice(f"{kind}[{i}].at", each.at, named)
-                    each = replace(each, at=named[each.at])
-                placed.append(each)
+            for i, attachment in enumerate(getattr(self, kind)):
+                if isinstance(attachment.at, str):
+                    choice(f"{kind}[{i}].at", attachment.at, named)
+                    attachment = replace(attachment, at=named[attachment.at])
+                placed.append(attachment)
             object.__setattr__(self, kind, tuple(placed))
 
     @property
@@ -213,7 +213,7 @@ class Beam(Value):
     def named_points(self) -> dict[str, float]:
         """Positions of the named points, bodies and middles of spans among them, and of the tip, from the root, m."""
         named = self._points
-        spans = {name: at for name, at in self._spans.items() if name not in named}
+        spans = {name: position for name, position in self._spans.items() if name not in named}
         return named | spans | {TIP: self.length}
 
     @property
@@ -299,13 +299,13 @@ class Beam(Value):
         return axial, *in_shear, shear * self.section.torsion_constant(x), about_y, about_z
 
 
-def _adrift(loose: Sequence[str], held: Floats) -> Iterator[str]:
-    """Yield words for the rigid motions of the `loose` ones of a root's motions that `held` rows of them leave."""
-    if not held.any():
+def _adrift(loose: Sequence[str], held_motions: Floats) -> Iterator[str]:
+    """Yield words for the rigid motions that `held_motions` leave, rows of the `loose` ones of a root's motions."""
+    if not held_motions.any():
         for motion, axis in (name.split("_") for name in loose):
             yield f"move along {axis}" if motion == "translation" else f"turn about {axis}"
         return
-    slide, turn = np.linalg.svd(held)[2][-1]  # of two: one is held
+    slide, turn = np.linalg.svd(held_motions)[2][-1]  # of two: one is held
     axis = loose[-1][-1]
     yield f"turn about {axis} at {-1e3 * slide / turn:.4g} mm" if abs(turn) > 1e-9 else f"move along {loose[0][-1]}"
 
@@ -340,6 +340,6 @@ def names_at(beam: Beam, stations: ArrayLike) -> tuple[str, ...]:
     """Names of the points at positions (s,), m; a position without a point is named by itself, such as 100 mm."""
     slack, names = 1e-9 * beam.length, []
     for x in np.asarray(stations, dtype=float):
-        near = (name for name, at in beam.named_points.items() if abs(at - x) <= slack)
-        names.append(next(near, f"{1e3 * x:g} mm"))
+        point_names = (name for name, position in beam.named_points.items() if abs(position - x) <= slack)
+        names.append(next(point_names, f"{1e3 * x:g} mm"))
     return tuple(names)

@@ -88,15 +88,15 @@ class Line(Value):
     def __post_init__(self) -> None:
         """Check the corners and breaks, and try the curvature at 64 positions."""
         length = float(positive("length", self.length, "m"))
-        corners = tuple(float(at) for at in self.corners)
+        corners = tuple(float(corner) for corner in self.corners)
         turns = np.asarray(self.turns, dtype=float)
         if turns.shape != (len(corners), 3) and (corners or turns.size):
             raise InputError("turns", f"are an array {turns.shape}", f"give ({len(corners)}, 3), a vector per corner")
         if not np.isfinite(turns).all():
             raise InputError("turns", "are not finite", "give finite angles, rad")
-        for i, at in enumerate(corners):
-            if not 0 <= at < length:
-                raise InputError(f"corners[{i}]", f"is at {at:g} m", f"give a place from 0 to before {length:g} m")
+        for i, corner in enumerate(corners):
+            if not 0 <= corner < length:
+                raise InputError(f"corners[{i}]", f"is at {corner:g} m", f"give a place from 0 to before {length:g} m")
         breaks = tuple(sorted({float(position) for position in self.breaks} | {*corners}))
         if breaks and not (breaks[0] >= 0 and breaks[-1] <= length * (1 + NEAR)):
             raise InputError("breaks", f"reach from {breaks[0]:g} to {breaks[-1]:g} m", f"give 0 to {length:g} m")
@@ -112,8 +112,8 @@ class Line(Value):
         if values.shape != (64, 3) or not np.isfinite(values).all():
             problem = f"gives an array {values.shape} at 64 positions" if values.shape != (64, 3) else "is not finite"
             raise InputError("curvature", problem, "return (p, 3): twist and curvatures about y and z, 1/m")
-        if (turned := float(np.linalg.norm(values, axis=1).mean()) * length) > MOST:
-            raise InputError("curvature", f"turns the line by {turned:.3g} rad", f"give {MOST:g} rad at most")
+        if (angle := float(np.linalg.norm(values, axis=1).mean()) * length) > MOST:
+            raise InputError("curvature", f"turns the line by {angle:.3g} rad", f"give {MOST:g} rad at most")
 
     @classmethod
     @typed
@@ -196,34 +196,36 @@ class Line(Value):
         >>> swept.length, swept.places([1.0])[0].round(4)
         (1.0, array([[0.866, 0.5  , 0.   ]]))
         """
-        at = np.asarray(points, dtype=float)
-        if at.ndim != 2 or at.shape[1] != 3 or len(at) < 2 or not np.isfinite(at).all():
-            raise InputError("points", f"are an array {at.shape}", "give two or more finite places of three numbers, m")
-        if at[0].any():
-            raise InputError("points[0]", f"is {at[0].tolist()} m", "begin at the root, the origin: [0, 0, 0]")
-        size = np.linalg.norm(np.diff(at, axis=0), axis=1)
+        places = np.asarray(points, dtype=float)
+        if places.ndim != 2 or places.shape[1] != 3 or len(places) < 2 or not np.isfinite(places).all():
+            raise InputError(
+                "points", f"are an array {places.shape}", "give two or more finite places of three numbers, m"
+            )
+        if places[0].any():
+            raise InputError("points[0]", f"is {places[0].tolist()} m", "begin at the root, the origin: [0, 0, 0]")
+        size = np.linalg.norm(np.diff(places, axis=0), axis=1)
         if not (size > NEAR * size.sum()).all():
             i = int(np.argmin(size))
             raise InputError(f"points[{i + 1}]", f"is where points[{i}] is", "leave one of them out")
         angles = np.asarray(twist, dtype=float)
-        if angles.shape not in ((), (len(at),)) or not np.isfinite(angles).all():
-            raise InputError("twist", f"is an array {angles.shape}", f"give one finite angle, or {len(at)}, rad")
-        angles = np.broadcast_to(angles, len(at))
-        directions = np.diff(at, axis=0) / size[:, None]
+        if angles.shape not in ((), (len(places),)) or not np.isfinite(angles).all():
+            raise InputError("twist", f"is an array {angles.shape}", f"give one finite angle, or {len(places)}, rad")
+        angles = np.broadcast_to(angles, len(places))
+        directions = np.diff(places, axis=0) / size[:, None]
         reversals = np.flatnonzero(np.linalg.norm(directions[1:] + directions[:-1], axis=1) < _BACK)
         if reversals.size:
             raise InputError(f"points[{reversals[0] + 2}]", "turns the line back onto itself", "give a point beside it")
-        if smooth and len(at) > 2:
-            return _curve(at, size, angles)
+        if smooth and len(places) > 2:
+            return _curve(places, size, angles)
         from scipy.spatial.transform import Rotation
 
         axes, lengths, turns = Rotation.identity(), [], []
         for i, (direction, length) in enumerate(zip(directions, size, strict=True)):
             corner = _shortest(f"points[{i + 1}]", directions[i - 1] if i else np.array([1.0, 0.0, 0.0]), direction)
-            turned = corner * axes * (Rotation.from_rotvec([angles[0], 0, 0]) if i == 0 else Rotation.identity())
+            section_axes = corner * axes * (Rotation.from_rotvec([angles[0], 0, 0]) if i == 0 else Rotation.identity())
             lengths += [0.0, length]
-            turns += [(axes.inv() * turned).as_rotvec(), np.array([angles[i + 1] - angles[i], 0.0, 0.0])]
-            axes = turned * Rotation.from_rotvec(turns[-1])
+            turns += [(axes.inv() * section_axes).as_rotvec(), np.array([angles[i + 1] - angles[i], 0.0, 0.0])]
+            axes = section_axes * Rotation.from_rotvec(turns[-1])
         twists, about_y, about_z = np.array(turns).T
         return cls.of_pieces(lengths, twist=twists, turn_y=about_y, turn_z=about_z)
 
@@ -351,7 +353,7 @@ def _curve(points: Floats, chords: Floats, twist: Floats) -> Line:
         state, s = states[-1], states[:, 0]
         rate = (end - start) / (s[-1] - s[0])
         angle = start + rate * (s - s[0])
-        bends = [axes.reshape(3, 3).T @ tangent(at)[2] for axes, at in zip(states[:, 1:], u, strict=True)]
+        bends = [axes.reshape(3, 3).T @ tangent(parameter)[2] for axes, parameter in zip(states[:, 1:], u, strict=True)]
         _, y, z = np.array(bends).T
         c, n = np.cos(angle), np.sin(angle)
         spline: Any = make_interp_spline(s, np.stack([rate + 0 * s, c * y + n * z, c * z - n * y], axis=1), _DEGREE)

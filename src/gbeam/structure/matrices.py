@@ -225,8 +225,8 @@ def read_matrices(path: str | os.PathLike[str], length_unit: str, mass_unit: str
 
 def _rows(lines: list[str], title: str) -> list[list[float]]:
     """Six rows of six numbers, or fewer, below the first line that begins with a title."""
-    at = next((k for k, line in enumerate(lines) if line.strip().startswith(title)), None)
-    return [] if at is None else list(_matrix(lines[at + 1 : at + 12]))
+    start = next((k for k, line in enumerate(lines) if line.strip().startswith(title)), None)
+    return [] if start is None else list(_matrix(lines[start + 1 : start + 12]))
 
 
 def _matrix(lines: list[str]) -> Iterator[list[float]]:
@@ -318,14 +318,14 @@ def matrices_of(
 
 def _moved(y: float, z: float) -> Floats:
     """Matrix (6, 6) of the strains at the place (y, z), m, by those at the section's origin."""
-    moved = np.eye(6)
-    moved[:3, 3:] = [[0, z, -y], [-z, 0, 0], [y, 0, 0]]
-    return moved
+    strain_map = np.eye(6)
+    strain_map[:3, 3:] = [[0, z, -y], [-z, 0, 0], [y, 0, 0]]
+    return strain_map
 
 
 def _corners(where: str, corners: Any) -> Floats:
     """Corners (k, 2) m; InputError unless there are three or more finite ones."""
-    at = array(where, corners)
-    if at.ndim != 2 or at.shape[1] != 2 or len(at) < 3 or not np.isfinite(at).all():
-        raise InputError(where, f"is an array {at.shape}", "give three corners [y, z] or more, m")
-    return at
+    places = array(where, corners)
+    if places.ndim != 2 or places.shape[1] != 2 or len(places) < 3 or not np.isfinite(places).all():
+        raise InputError(where, f"is an array {places.shape}", "give three corners [y, z] or more, m")
+    return places

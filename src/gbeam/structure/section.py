@@ -192,7 +192,7 @@ class Section(Value):
     @property
     def arguments(self) -> dict[str, Any]:
         """Arguments of :meth:`of` by their names: of a constant section the dimensions as numbers."""
-        values = {name: each[0] if len(each) == 1 else each for name, each in self.dimensions.items()}
+        values = {name: size[0] if len(size) == 1 else size for name, size in self.dimensions.items()}
         return {"shape": self.shape, "stations": self.stations, "plate": self.plate, **values}
 
     def altered(self, **changes: Any) -> Section:
@@ -404,15 +404,15 @@ class SectionValues:
     extreme_fibre_z: Floats
     round: bool = static(default=False)
 
-    def __getitem__(self, chosen: Any) -> SectionValues:
+    def __getitem__(self, index: Any) -> SectionValues:
         """The properties of some of the sections."""
-        names = [each.name for each in fields(self) if each.name != "round"]
-        return replace(self, **{name: getattr(self, name)[chosen] for name in names})
+        names = [quantity.name for quantity in fields(self) if quantity.name != "round"]
+        return replace(self, **{name: getattr(self, name)[index] for name in names})
 
     def extents(self) -> tuple[Floats, Floats]:
         """Extents along y and z, m; without extreme fibres those of the rectangle with the same second moments."""
         xp = namespace(self.area, self.inertia_y, self.inertia_z)
-        rectangle = [xp.sqrt(12 * each / self.area) for each in (self.inertia_z, self.inertia_y)]
+        rectangle = [xp.sqrt(12 * inertia / self.area) for inertia in (self.inertia_z, self.inertia_y)]
         fibres = (2 * self.extreme_fibre_y, 2 * self.extreme_fibre_z)
         width, thickness = (xp.where(xp.isfinite(a), a, b) for a, b in zip(fibres, rectangle, strict=True))
         return width, thickness

@@ -122,8 +122,8 @@ class Support(Value):
     def words(self) -> str:
         """Directions that are held, rigidly, by springs and by dampers: ``holds y z, spring ry``."""
         kinds = {"holds": self.rigid, "spring": (*self.stiffness,), "damper": (*self.damping,)}
-        ordered = {kind: [each for each in DIRECTIONS if each in held] for kind, held in kinds.items()}
-        return ", ".join(f"{kind} {' '.join(held)}" for kind, held in ordered.items() if held)
+        ordered = {kind: [way for way in DIRECTIONS if way in ways] for kind, ways in kinds.items()}
+        return ", ".join(f"{kind} {' '.join(ways)}" for kind, ways in ordered.items() if ways)
 
     @property
     def label(self) -> Label:
