@@ -43,15 +43,15 @@ def bending(
     reached = squares <= REACH**2 * squares[modes - 1]
     squares, basis = squares[reached], basis[:, reached]
     count, r, b = len(mesh.points), len(squares), min(SOFT, len(squares))
-    moved = linked.displacements(shapes @ basis)[:count]
-    forces, quartic = _higher_order_terms(mesh, moved, b)
+    displacements = linked.displacements(shapes @ basis)[:count]
+    forces, quartic = _higher_order_terms(mesh, displacements, b)
     loads = linked.condensed(forces.reshape(3 * count, b * r))
     answers = -solve(loads)
     condensed = (loads.T @ answers).reshape(b, r, b, r).swapaxes(1, 2)
     displaced = linked.displacements(answers)[:count].reshape(count, 3, b, r)
     # Displacements of the modes that bend the solid, then those of second order to each pair of these.
-    static = np.concatenate([moved[..., :b], displaced[..., :b].reshape(count, 3, b * b)], axis=2)
-    halves = geometric_stiffness(mesh.points, mesh.blocks, static, moved)
+    static = np.concatenate([displacements[..., :b], displaced[..., :b].reshape(count, 3, b * b)], axis=2)
+    halves = geometric_stiffness(mesh.points, mesh.blocks, static, displacements)
     halves = halves + halves.swapaxes(2, 3)
     linear, of_second = np.split(halves.sum(axis=0), [b])
     close = nearby_modes(squares)
@@ -60,52 +60,52 @@ def bending(
     by_modes = np.einsum("kim,lmj->klmij", linear, linear)
     by_first = np.einsum("kim,lmj->klmij", first, first)
     # The first modes while all others follow statically.
-    held = alone + ((by_modes + by_first / 2)[:, :, :b] / squares[:b, None, None]).sum(axis=2)
-    drawn, bent = (first - linear / 2)[:, :b, :b], held[..., :b, :b] / 3
+    by_bend = alone + ((by_modes + by_first / 2)[:, :, :b] / squares[:b, None, None]).sum(axis=2)
+    drawn, cubic = (first - linear / 2)[:, :b, :b], by_bend[..., :b, :b] / 3
     drawn = (drawn + np.transpose(drawn, (2, 1, 0))) / 2
-    bent = sum(np.transpose(bent, axes) for axes in ((0, 1, 2, 3), (0, 3, 2, 1), (3, 1, 2, 0))) / 3
+    cubic = sum(np.transpose(cubic, axes) for axes in ((0, 1, 2, 3), (0, 3, 2, 1), (3, 1, 2, 0))) / 3
     # All modes, moved by others as these vibrate with them.
     with np.errstate(divide="ignore"):
         answer = np.where(close, 0.0, 1 / (squares[:, None] - squares))
     vibrating = (by_first * (answer[:, :, None] + answer[:, None]) / 2).sum(axis=2)
     second = (alone + (by_modes / squares[:, None, None]).sum(axis=2) - vibrating) * close
-    at_rest = stations(moved)
+    at_rest = stations(displacements)
     places = stations(displaced[..., :b].reshape(count, 3, b * b)).reshape(*at_rest.shape[:2], b, b)
     places = places + np.einsum("sam,kmi->saki", at_rest[..., :b] / squares[:b], linear[:, :b, :b])
-    return Bending(basis, drawn, bent, second, places)
+    return Bending(basis, drawn, cubic, second, places)
 
 
-def _higher_order_terms(mesh: Mesh, moved: Floats, b: int) -> tuple[Floats, Floats]:
+def _higher_order_terms(mesh: Mesh, displacements: Floats, b: int) -> tuple[Floats, Floats]:
     """Forces of second order on the nodes, (k, 3, b, r), and stiffness of fourth degree, (b, b, r, r).
 
     The solid moves in shapes (k, 3, r) while the first b of them bend it. The stiffness is that by the strains of
     second order.
     """
-    count, _, r = moved.shape
+    count, _, r = displacements.shape
     forces, quartic, of_bend = np.zeros((count, b, 3, r)), np.zeros((b * r, b * r)), np.zeros((b, b, r, r))
     # Of each point the bends k, axes x and y, components c and shapes i, in this order.
     for part in chunks(mesh.points, mesh.blocks, "stiffness", FEW):
-        of_elements, volume = part.slopes(moved), part.volume.ravel()[:, None, None, None, None]
-        stress = part.stress(moved, of_elements)[:, :, TENSOR].reshape(-1, 3, 3, r)
+        of_elements, volume = part.slopes(displacements), part.volume.ravel()[:, None, None, None, None]
+        stress = part.stress(displacements, of_elements)[:, :, TENSOR].reshape(-1, 3, 3, r)
         slopes = of_elements.reshape(-1, 3, 3, r)
-        bent, wide = np.moveaxis(slopes[..., :b], 3, 1), slopes.reshape(-1, 1, 3, 3 * r)
+        bend_slopes, wide = np.moveaxis(slopes[..., :b], 3, 1), slopes.reshape(-1, 1, 3, 3 * r)
         shape = (len(slopes), b, 3, 3, r)
-        products = (bent @ np.swapaxes(slopes, 1, 2).reshape(-1, 1, 3, 3 * r)).reshape(shape)
+        products = (bend_slopes @ np.swapaxes(slopes, 1, 2).reshape(-1, 1, 3, 3 * r)).reshape(shape)
         strain = products[:, :, ROWS, COLUMNS]
         strain[:, :, 3:] += products[:, :, COLUMNS[3:], ROWS[3:]]
         stretched = part.elasticity @ strain * volume[..., 0]
         # The stress of the bend in the slopes of the shapes, and that of the shapes in the slopes of the bend.
         pull = (np.moveaxis(stress[..., :b], 3, 1) @ wide).reshape(shape)
-        pull += np.swapaxes((bent.swapaxes(2, 3) @ stress.reshape(-1, 1, 3, 3 * r)).reshape(shape), 2, 3)
+        pull += np.swapaxes((bend_slopes.swapaxes(2, 3) @ stress.reshape(-1, 1, 3, 3 * r)).reshape(shape), 2, 3)
         pull = pull * volume + stretched[:, :, TENSOR]
         e, q, n, _ = part.gradients.shape
-        along = part.gradients.swapaxes(1, 2).reshape(e, n, 3 * q)
-        at_nodes = along @ pull.swapaxes(1, 2).reshape(e, 3 * q, 3 * b * r)
+        gradients = part.gradients.swapaxes(1, 2).reshape(e, n, 3 * q)
+        at_nodes = gradients @ pull.swapaxes(1, 2).reshape(e, 3 * q, 3 * b * r)
         add_to_rows(forces, part.nodes.ravel(), at_nodes.reshape(-1, b, 3, r))
         tall_strain = np.moveaxis(strain, 2, 1).reshape(-1, b * r)
         tall_stress = np.moveaxis(stretched, 2, 1).reshape(-1, b * r)
         quartic += tall_strain.T @ tall_stress
         for k, l in np.ndindex(b, b):
-            turned = stretched[:, k, :, l][:, TENSOR] @ wide[:, 0]
-            of_bend[k, l] += slopes.reshape(-1, r).T @ turned.reshape(-1, r) / 2
+            pull_by_slopes = stretched[:, k, :, l][:, TENSOR] @ wide[:, 0]
+            of_bend[k, l] += slopes.reshape(-1, r).T @ pull_by_slopes.reshape(-1, r) / 2
     return np.swapaxes(forces, 1, 2), quartic.reshape(b, r, b, r).swapaxes(1, 2) + of_bend

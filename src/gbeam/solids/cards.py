@@ -157,9 +157,9 @@ class _Nastran(_Reader):
         self.rigid[name] = int(row[1]), *(int(field) for field in row[3:] if isinstance(field, int))
 
     def _rbar(self, name: str, row: list[Any]) -> None:
-        held = [str(components or "") for components in row[3:5]]
-        if sorted(held) != ["", "123456"]:
-            raise refused(name, f"holds the components {' and '.join(filter(None, held))} of its ends")
+        components = [str(cell or "") for cell in row[3:5]]
+        if sorted(components) != ["", "123456"]:
+            raise refused(name, f"holds the components {' and '.join(filter(None, components))} of its ends")
         self.rigid[name] = int(row[1]), int(row[2])
 
     def _rbe3(self, name: str, row: list[Any]) -> None:
@@ -223,12 +223,12 @@ def _numbers(values: list[Any]) -> Floats:
 
 def _joined(rigid: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
     """Join rigid links that share a node into one, which has the name of the first."""
-    joined = dict[str, tuple[int, ...]]()
+    groups = dict[str, tuple[int, ...]]()
     for name, nodes in rigid.items():
-        sharing = [other for other, held in joined.items() if set(nodes) & set(held)]
-        before = [number for other in sharing for number in joined.pop(other)]
-        joined[sharing[0] if sharing else name] = tuple(dict.fromkeys([*before, *nodes]))
-    return joined
+        sharing = [other for other, members in groups.items() if set(nodes) & set(members)]
+        before = [number for other in sharing for number in groups.pop(other)]
+        groups[sharing[0] if sharing else name] = tuple(dict.fromkeys([*before, *nodes]))
+    return groups
 
 
 class _Abaqus(_Reader):
@@ -286,13 +286,13 @@ class _Abaqus(_Reader):
     def _kinematic(self, _: str, __: Options, rows: Rows, ___: Nodes) -> None:
         """Add a kinematic coupling: a rigid link of the nodes of a surface to the reference node."""
         name, node, weights = self._surface()
-        held = set[int]()
+        components = set[int]()
         for row in rows:  # first and last component, or one alone
             span = [int(cell) for cell in row if cell]
             if span:
-                held |= {*range(span[0], span[min(1, len(span) - 1)] + 1)}
-        if held and not held >= {1, 2, 3}:
-            raise refused(name, f"holds the components {', '.join(map(str, sorted(held)))} alone")
+                components |= {*range(span[0], span[min(1, len(span) - 1)] + 1)}
+        if components and not components >= {1, 2, 3}:
+            raise refused(name, f"holds the components {', '.join(map(str, sorted(components)))} alone")
         self.rigid[name] = node, *sorted({*weights} - {node})
 
     def _distributing(self, *_: Any) -> None:

@@ -34,28 +34,30 @@ def _held_edges(mesh: Mesh) -> Flags:
     such edge there.
     """
     flags = np.zeros(len(mesh.points), dtype=bool)
-    rigid = [nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1]
-    every = np.eye(3)
-    sets = [(nodes, every, False) for nodes in (np.flatnonzero(mesh.clamped), *rigid)]
+    linked_sets = [
+        nodes for name, nodes in mesh.links.nodes.items() if name not in mesh.links.weights and len(nodes) > 1
+    ]
+    all_axes = np.eye(3)
+    sets = [(nodes, all_axes, False) for nodes in (np.flatnonzero(mesh.clamped), *linked_sets)]
     for place in mesh.supports:
         ways = [DIRECTIONS.index(way) for way in place.support.rigid if way in "xyz"]
         if place.kind == "nodes" and ways:
-            sets.append((place.points, every[ways], True))
+            sets.append((place.points, all_axes[ways], True))
     for nodes, directions, by_support in sets:
-        held, whole, outer = np.zeros_like(flags), np.zeros_like(flags), np.zeros_like(flags)
-        held[nodes] = True
+        is_held, on_whole_face, is_outer = np.zeros_like(flags), np.zeros_like(flags), np.zeros_like(flags)
+        is_held[nodes] = True
         for block, face, elements in outer_faces(mesh):
-            on = block.nodes[elements][:, face_nodes(block.kind, face)]  # nodes of each face
-            whole[on[held[on].all(axis=1)]] = True
-            corners = mesh.points[on[:, :3]]
+            face_points = block.nodes[elements][:, face_nodes(block.kind, face)]  # nodes of each face
+            on_whole_face[face_points[is_held[face_points].all(axis=1)]] = True
+            corners = mesh.points[face_points[:, :3]]
             normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
             normal /= np.linalg.norm(normal, axis=1, keepdims=True)
             pressed = np.abs(normal @ directions.T).max(axis=1) > ACROSS
-            part = held[on] & ~held[on].all(axis=1, keepdims=True)
-            flags[on[part & pressed[:, None]]] = True
-            outer[on] = True
+            part = is_held[face_points] & ~is_held[face_points].all(axis=1, keepdims=True)
+            flags[face_points[part & pressed[:, None]]] = True
+            is_outer[face_points] = True
         if by_support:  # where points and lines are held alone
-            flags |= held & outer & ~whole
+            flags |= is_held & is_outer & ~on_whole_face
     return flags
 
 
@@ -68,10 +70,10 @@ def _re_entrant(mesh: Mesh) -> Flags:
     _, first, count = np.unique(ends[:, :2], axis=0, return_index=True, return_counts=True)
     one = first[count == 2]
     other = one + 1  # equal edges follow one another
-    sharp = (normals[one] * normals[other]).sum(axis=2).max(axis=1) < SHARP
+    is_sharp = (normals[one] * normals[other]).sum(axis=2).max(axis=1) < SHARP
     # At a re-entrant edge the other face lies on the side to which the normal of the one points.
     away = centres[other] - mesh.points[ends[one, :2]].mean(axis=1)
-    met = one[sharp & ((away * normals[one].mean(axis=1)).sum(axis=1) > 0)]
+    met = one[is_sharp & ((away * normals[one].mean(axis=1)).sum(axis=1) > 0)]
     flags = np.zeros(len(mesh.points), dtype=bool)
     flags[ends[met]] = True
     return flags
@@ -83,9 +85,9 @@ def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> t
     Returns the nodes (m, 3) at their ends, ascending, and in their middle, or at an end once more; the outward normals
     at both ends, (m, 2, 3); and the middle of the face, (m, 3).
     """
-    on, places = face_nodes(block.kind, face), reference(block.kind)
+    face_points, places = face_nodes(block.kind, face), reference(block.kind)
     count = len(FACES[corners_of(block.kind)][face])
-    corners = on[:count]
+    corners = face_points[:count]
     # The outward normal in the reference element, which maps to places by the inverse of the Jacobian.
     normal = np.cross(places[corners[1]] - places[corners[0]], places[corners[2]] - places[corners[0]])
     normal *= np.sign(normal @ (places[corners[0]] - places[: corners_of(block.kind)].mean(axis=0)))
@@ -94,7 +96,7 @@ def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> t
     normals = np.einsum("c,eqcd->eqd", normal, np.linalg.inv(maps))
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     start, end = np.arange(count), np.roll(np.arange(count), -1)
-    middles = on[count : 2 * count] if len(on) >= 2 * count else corners
+    middles = face_points[count : 2 * count] if len(face_points) >= 2 * count else corners
     ends = np.stack([nodes[:, corners[start]], nodes[:, corners[end]]], axis=2).reshape(-1, 2)
     of_ends = np.stack([normals[:, start], normals[:, end]], axis=2).reshape(-1, 2, 3)
     order = np.argsort(ends, axis=1)

@@ -41,7 +41,7 @@ class HeldPlace(Value):
         if self.kind != "nodes":
             return np.zeros((1, 3))
         count = np.bincount(self.node)
-        places = np.stack([np.bincount(self.node, at) / count for at in points[self.points].T], axis=1)
+        places = np.stack([np.bincount(self.node, component) / count for component in points[self.points].T], axis=1)
         return places - self.centre
 
     def levers(self, points: Floats, direction: Direction) -> Floats:
@@ -59,9 +59,9 @@ def levers(arms: Floats, direction: Direction) -> Floats:
 
 def about(places: Floats) -> Floats:
     """Maps (..., 6, 6) from forces and moments about places (..., 3), in rows, to those about the origin."""
-    moved = np.broadcast_to(np.eye(6), (*places.shape[:-1], 6, 6)).copy()
-    moved[..., :3, 3:] = np.cross(places[..., None, :], np.eye(3))
-    return moved
+    maps = np.broadcast_to(np.eye(6), (*places.shape[:-1], 6, 6)).copy()
+    maps[..., :3, 3:] = np.cross(places[..., None, :], np.eye(3))
+    return maps
 
 
 def refuse_free(where: str, held: Floats, points: Floats) -> None:
@@ -70,13 +70,13 @@ def refuse_free(where: str, held: Floats, points: Floats) -> None:
     """
     middle, size = points.mean(axis=0), float(np.linalg.norm(np.ptp(points, axis=0)))
     # About the middle, with rotations in lengths of the body's size.
-    moved = held @ about(-middle) / np.repeat([1.0, size], 3)
-    _, values, motions = np.linalg.svd(moved)
+    scaled_rows = held @ about(-middle) / np.repeat([1.0, size], 3)
+    _, values, motions = np.linalg.svd(scaled_rows)
     values = np.pad(values, (0, 6 - len(values)))
     if values[5] > FREE * values[0]:
         return
     motion = motions[values <= FREE * values[0]]
     names = [f"along {axis}" for axis in "xyz"] + [f"about {axis}" for axis in "xyz"]
-    free = [name for name, share in zip(names, np.linalg.norm(motion, axis=0), strict=True) if share > 0.5]
+    free_ways = [name for name, share in zip(names, np.linalg.norm(motion, axis=0), strict=True) if share > 0.5]
     fix = "hold that at one more place"
-    raise InputError(where, f"leave the body free to move {' and '.join(free)}", fix)
+    raise InputError(where, f"leave the body free to move {' and '.join(free_ways)}", fix)

@@ -345,11 +345,11 @@ class ImportedModel(Value):
     def _node(self, where: str, number: int) -> int:
         """Index of the node with a number. InputError about `where` if there is none."""
         numbers = np.asarray(self.numbers)
-        which = np.flatnonzero(numbers == number)
-        if not which.size:
-            known = f"from {numbers.min()} to {numbers.max()}"
-            raise InputError(where, f"is {number}, which is no node", f"give the number of one, {known}")
-        return int(which[0])
+        index = np.flatnonzero(numbers == number)
+        if not index.size:
+            range_words = f"from {numbers.min()} to {numbers.max()}"
+            raise InputError(where, f"is {number}, which is no node", f"give the number of one, {range_words}")
+        return int(index[0])
 
     def _number(self, node: int) -> int:
         return int(np.asarray(self.numbers)[node])

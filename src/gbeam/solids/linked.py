@@ -54,55 +54,57 @@ class Linked:
         for name, body in links.bodies.items():
             for place, mass in zip(*six_particles(body), strict=True):
                 add(name, named[self._number[name]] + place, mass)
-        for between, _, spring_place in links.springs.values():
-            place = named[self._number[between[0]]] if spring_place is None else spring_place
-            self._ends.append(tuple(add(name, place, 0.0) for name in between))
+        for ends_by_name, _, spring_place in links.springs.values():
+            place = named[self._number[ends_by_name[0]]] if spring_place is None else spring_place
+            self._ends.append(tuple(add(name, place, 0.0) for name in ends_by_name))
         self.points, self.masses = np.array(points), np.array(masses)
         of_link = np.full(len(points), -1)  # of each point, named links first, then nodes of shells
         for name, linked in members.items():
             of_link[linked] = self._number[name]
-        _, node, shared = np.unique(mesh.numbers, return_inverse=True, return_counts=True)
-        of_shell = (shared[node] > 1) & ~mesh.clamped & (of_link[: self.count] < 0)
-        within = np.unique(node[of_shell], return_inverse=True)[1]
-        of_link[np.flatnonzero(of_shell)] = len(named) + within
+        _, node, point_counts = np.unique(mesh.numbers, return_inverse=True, return_counts=True)
+        of_shell = (point_counts[node] > 1) & ~mesh.clamped & (of_link[: self.count] < 0)
+        shell_number = np.unique(node[of_shell], return_inverse=True)[1]
+        of_link[np.flatnonzero(of_shell)] = len(named) + shell_number
         self._tied = np.flatnonzero(of_link >= 0)
-        self._of = of = of_link[self._tied]  # the link of each tied point
-        count = np.bincount(of, minlength=len(named))
-        sums = [np.bincount(of, x, minlength=len(named)) for x in self.points[self._tied].T]
+        self._of = link_of_tied = of_link[self._tied]  # the link of each tied point
+        count = np.bincount(link_of_tied, minlength=len(named))
+        sums = [np.bincount(link_of_tied, x, minlength=len(named)) for x in self.points[self._tied].T]
         middles = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
         middles[: len(named)] = named
         for name, weights in links.weights.items():
             middles[self._number[name]] = coupling("", mesh.points[links.nodes[name]], weights)[0]
-        self._arms = self.points[self._tied] - middles[of]
+        self._arms = self.points[self._tied] - middles[link_of_tied]
         second = np.zeros((len(middles), 3, 3))
         on_mesh = self._tied < self.count
-        np.add.at(second, of[on_mesh], (self._arms[:, :, None] * self._arms[:, None])[on_mesh])
+        np.add.at(second, link_of_tied[on_mesh], (self._arms[:, :, None] * self._arms[:, None])[on_mesh])
         size, axes = np.linalg.eigh(second)
         on_line = (size[:, 1] <= ON_A_LINE * size[:, 2]) & (size[:, 2] > 0)
         self._axes = np.where(on_line[:, None, None], axes, np.eye(3))
         turning = np.stack([np.ones_like(on_line), np.ones_like(on_line), ~on_line], axis=1)
-        untied, moving = np.flatnonzero(of_link < 0), np.ones((len(middles), 6), dtype=bool)
+        untied, may_move = np.flatnonzero(of_link < 0), np.ones((len(middles), 6), dtype=bool)
         for name, i in self._number.items():
-            moving[i] = links.moving(name)
-        unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
-        unknown[[self._number[name] for name in links.weights]] = False
-        free = np.concatenate([np.repeat(~mesh.clamped[untied], 3), moving[unknown]])
+            may_move[i] = links.moving(name)
+        is_unknown = np.concatenate([np.ones_like(turning), turning], axis=1)
+        is_unknown[[self._number[name] for name in links.weights]] = False
+        is_free = np.concatenate([np.repeat(~mesh.clamped[untied], 3), may_move[is_unknown]])
         # Of links' displacements and rotations (l, 6) numbers among the unknowns, −1 of none, and those of tied points.
-        numbers = np.where(unknown, 3 * len(untied) + np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
-        move = np.concatenate([np.tile(np.eye(3), (len(of), 1, 1)), self._turn_displacements(self._arms)], axis=2)
-        used = np.broadcast_to((numbers[of] >= 0)[:, None], move.shape)
+        numbers = np.where(is_unknown, 3 * len(untied) + np.cumsum(is_unknown).reshape(is_unknown.shape) - 1, -1)
+        move = np.concatenate(
+            [np.tile(np.eye(3), (len(link_of_tied), 1, 1)), self._turn_displacements(self._arms)], axis=2
+        )
+        used = np.broadcast_to((numbers[link_of_tied] >= 0)[:, None], move.shape)
         row = np.broadcast_to((3 * self._tied[:, None] + np.arange(3))[..., None], move.shape)[used]
-        column = np.broadcast_to(numbers[of][:, None], move.shape)[used]
+        column = np.broadcast_to(numbers[link_of_tied][:, None], move.shape)[used]
         untied_rows = (3 * untied[:, None] + np.arange(3)).ravel()
         self._map = coo_array(
             (
                 np.concatenate([np.ones(len(untied_rows)), move[used]]),
                 (np.concatenate([untied_rows, row]), np.concatenate([np.arange(len(untied_rows)), column])),
             ),
-            shape=(3 * len(points), len(free)),
-        ).tocsr()[:, free]
-        self._kept, self._selected = np.flatnonzero(free), not len(self._tied)
-        number = np.where((numbers >= 0) & free[numbers], np.cumsum(free)[numbers] - 1, -1)[:, None, 3:]
+            shape=(3 * len(points), len(is_free)),
+        ).tocsr()[:, is_free]
+        self._kept, self._selected = np.flatnonzero(is_free), not len(self._tied)
+        number = np.where((numbers >= 0) & is_free[numbers], np.cumsum(is_free)[numbers] - 1, -1)[:, None, 3:]
         turns = np.broadcast_to(number >= 0, self._axes.shape)
         row = np.broadcast_to(np.arange(3 * len(middles)).reshape(-1, 3, 1), turns.shape)[turns]
         entries = self._axes[turns], (row, np.broadcast_to(number, turns.shape)[turns])
@@ -117,7 +119,7 @@ class Linked:
         centre, mean = coupling("", self.points[nodes], weights)
         mean = mean.reshape(6, -1)
         arms = np.einsum("pb,abc->pca", self.points[members] - centre, CROSS)
-        moved = mean[:3] + np.einsum("pca,ak->pck", arms, mean[3:])
+        motions = mean[:3] + np.einsum("pca,ak->pck", arms, mean[3:])
         sources, points = (3 * nodes[:, None] + np.arange(3)).ravel(), 3 * len(self.points)
 
         def on_unknowns(rows: Indices, values: Floats, count: int) -> Any:
@@ -127,35 +129,37 @@ class Linked:
 
         self._turn = self._turn + on_unknowns(3 * link + np.arange(3), mean[3:], self._turn.shape[0])
         rows = (3 * np.array(members)[:, None] + np.arange(3)).ravel()
-        self._map = self._map + on_unknowns(rows, moved, points)
+        self._map = self._map + on_unknowns(rows, motions, points)
 
     def held(self, i: int, place: HeldPlace) -> Held:
         """Motions of the nodes of a place that the support of number `i` holds, by the unknowns."""
         from scipy.sparse import csr_array, vstack
 
         points, count = place.points, len(place.points)
-        each = self._map[(3 * points[:, None] + np.arange(3)).ravel()]
+        point_rows = self._map[(3 * points[:, None] + np.arange(3)).ravel()]
         if place.kind == "interface":
             mean = coupling(place.name, self.points[points])[1].reshape(6, -1)
-            rows = [csr_array(mean[axis : axis + 1]) @ each for axis in range(6)]
+            rows = [csr_array(mean[axis : axis + 1]) @ point_rows for axis in range(6)]
         else:
-            shared = np.bincount(place.node)
-            sums = csr_array((1 / shared[place.node], (place.node, np.arange(count))), shape=(len(shared), count))
+            point_counts = np.bincount(place.node)
+            sums = csr_array(
+                (1 / point_counts[place.node], (place.node, np.arange(count))), shape=(len(point_counts), count)
+            )
             if place.kind == "link":
                 sums = csr_array(np.full((1, count), 1 / count))
-            rows = [sums @ each[axis::3] for axis in range(3)]
+            rows = [sums @ point_rows[axis::3] for axis in range(3)]
             rows += self._turns(i, place)
         motions = {
             way: (vstack([rows[DIRECTIONS.index(way)]], format="csr"), place.levers(self.points, way))
             for way in (*place.support.rigid, *place.support.yielding)
         }
-        moved = [csr_array(np.full((1, row.shape[0]), 1 / row.shape[0])) @ row for row in rows[:3]]
-        return Held(place.support, place.centre, motions, vstack(moved, format="csr"))
+        mean_rows = [csr_array(np.full((1, row.shape[0]), 1 / row.shape[0])) @ row for row in rows[:3]]
+        return Held(place.support, place.centre, motions, vstack(mean_rows, format="csr"))
 
     def _turns(self, i: int, place: HeldPlace) -> list[Any]:
         """Rotations of a place's nodes about x, y and z by the unknowns, where its support, number `i`, holds any."""
-        wanted = [way for way in (*place.support.rigid, *place.support.yielding) if way.startswith("r")]
-        if not wanted:
+        rotations = [way for way in (*place.support.rigid, *place.support.yielding) if way.startswith("r")]
+        if not rotations:
             return []
         first = place.points[np.unique(place.node, return_index=True)[1]]
         of_point = np.full(len(self.points), -1)
@@ -163,15 +167,15 @@ class Linked:
         links = np.array([self._number[place.name]]) if place.kind == "link" else of_point[first]
         if (links < 0).any():
             fix = "hold its displacements, or name its group in interfaces and hold the interface, by its mean"
-            problem = f"holds {wanted[0]} at {place.name}, where nodes of solid elements have no rotations"
+            problem = f"holds {rotations[0]} at {place.name}, where nodes of solid elements have no rotations"
             raise InputError(f"supports[{i}]", problem, fix)
         return [self._turn[3 * links + axis] for axis in range(3)]
 
     def narrowed(self, basis: Any) -> Linked:
         """Return the same in fewer unknowns, of which sparse columns of `basis` (u, f) are motions."""
-        left = copy(self)
-        left._map, left._turn, left._selected = self._map @ basis, self._turn @ basis, False
-        return left
+        linked = copy(self)
+        linked._map, linked._turn, linked._selected = self._map @ basis, self._turn @ basis, False
+        return linked
 
     def _turn_displacements(self, arms: Floats) -> Floats:
         """Displacements (p, 3, 3) of tied points by unit rotations about their links' axes, in columns."""
@@ -217,9 +221,9 @@ class Linked:
         from scipy.sparse import diags_array
 
         total = self.condensed(matrix)
-        for between, stiffness, _ in self._links.springs.values():
+        for names, stiffness, _ in self._links.springs.values():
             # The rotation of the first link relative to the second one, or to the base.
-            turn, *second = (self._turn[3 * self._number[name] :][:3] for name in between)
+            turn, *second = (self._turn[3 * self._number[name] :][:3] for name in names)
             turn = turn - second[0] if second else turn
             total = total + turn.T @ diags_array(stiffness[3:]) @ turn
         return total
@@ -262,17 +266,17 @@ class Linked:
         halves = np.zeros((2, loads.shape[-1], count, count))
         if not len(self._tied):
             return halves
-        static_moved, moved = self._map @ static, self._map @ shapes
-        inertia = (mass @ moved.reshape(len(self.points), -1)).reshape(moved.shape) @ reduced.stiffness
+        static_moved, displacements = self._map @ static, self._map @ shapes
+        inertia = (mass @ displacements.reshape(len(self.points), -1)).reshape(displacements.shape) @ reduced.stiffness
         # Forces that the links take up: of the loads' answers, and of the shapes.
         pulling = self._moments(held @ static_moved - loads[self._rows])
-        holding = self._moments(held @ moved - inertia[self._rows])
+        holding = self._moments(held @ displacements - inertia[self._rows])
         holding += np.swapaxes(holding, 1, 2)
-        turn, turned = np.concatenate([self.rotations(shapes), lifted], axis=2), self.rotations(static)
+        turn, static_turns = np.concatenate([self.rotations(shapes), lifted], axis=2), self.rotations(static)
         for load in range(loads.shape[-1]):
             flat = turn.reshape(-1, count)
             halves[0, load] = flat.T @ np.matmul(pulling[..., load], turn).reshape(flat.shape) / 2
-            pulled = np.einsum("lb,lbcn->lcn", turned[..., load], holding).reshape(-1, n)
+            pulled = np.einsum("lb,lbcn->lcn", static_turns[..., load], holding).reshape(-1, n)
             halves[1, load, :n, :n] = pulled.T @ flat[:, :n] / 2
         return halves
 
@@ -283,6 +287,6 @@ class Linked:
         points of a link.
         """
         moments = np.zeros((len(self._axes), 3, 3, forces.shape[-1]))
-        tied = forces.reshape(len(self._tied), 1, 3, -1)
-        np.add.at(moments, self._of, self._arms[:, :, None, None] * tied)
+        tied_forces = forces.reshape(len(self._tied), 1, 3, -1)
+        np.add.at(moments, self._of, self._arms[:, :, None, None] * tied_forces)
         return moments - np.einsum("lbbm,ac->lacm", moments, np.eye(3))

@@ -54,7 +54,7 @@ def _kinds_of_points(arguments: Mapping[str, Any]) -> Kinds:
     """Kinds of places by name, some of which are names of groups."""
     points = arguments.get("points")
     places = points.items() if isinstance(points, Mapping) else ()
-    return {name: "length" for name, at in places if not isinstance(at, str)}
+    return {name: "length" for name, place in places if not isinstance(place, str)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,8 +234,8 @@ class SolidMesh(Mesh):
             counts[block.kind] = counts.get(block.kind, 0) + len(block.nodes)
         elements = ", ".join(f"{count} {kind}" for kind, count in counts.items())
         counts = self.clamps | {place.name: len(np.unique(place.node)) for place in self.supports}
-        held = ", ".join(f"{name} holds {count}" for name, count in counts.items())
-        return f"SolidMesh({len(np.unique(self.numbers))} nodes, {elements}, {self.mass:.4g} kg, {held})"
+        count_words = ", ".join(f"{name} holds {count}" for name, count in counts.items())
+        return f"SolidMesh({len(np.unique(self.numbers))} nodes, {elements}, {self.mass:.4g} kg, {count_words})"
 
     @typed
     def reduced(
@@ -295,21 +295,21 @@ class SolidMesh(Mesh):
         holding = Holding(places, stiffness.shape[0])
         if holding.sprung:
             stiffness = stiffness + holding.stiffness
-        left = linked.narrowed(holding.basis) if holding.taken else linked
+        free_links = linked.narrowed(holding.basis) if holding.taken else linked
         reduced = reduce(
             holding.condense(stiffness),
-            left.condensed(kron(mass, eye_array(3), format="csr")),
-            np.concatenate([left.condensed(loads), holding.condense(holding.yielding.T.toarray())], axis=1),
+            free_links.condensed(kron(mass, eye_array(3), format="csr")),
+            np.concatenate([free_links.condensed(loads), holding.condense(holding.yielding.T.toarray())], axis=1),
             modes,
             # Links would have to turn by more than their linear map.
-            None if linked.tied else partial(bending, self, left, modes, named.displacements),
+            None if linked.tied else partial(bending, self, free_links, modes, named.displacements),
             holding.static_loads(stiffness),
         )
         motions = holding.expand(reduced.shapes, reduced.apart)
         total = len(reduced.stiffness)
         lifting = motions[:, total:].T @ (stiffness @ motions[:, total:])
         del stiffness
-        everywhere, static = linked.displacements(motions), left.displacements(reduced.static)
+        everywhere, static = linked.displacements(motions), free_links.displacements(reduced.static)
         shapes = everywhere[:count, :, :total]
         # Of moments on interfaces the stress is left out.
         pushed = [12 + 6 * i + axis for i in range(len(named.centres)) for axis in range(3)]
@@ -321,11 +321,11 @@ class SolidMesh(Mesh):
         lifted, pulls = everywhere[:count, :, total:], None
         if lifted.size:
             # Along these the stress of the coordinates is in `pulls`: loads add none, and a rise what is beside them.
-            beside = heat.geometric_stiffness(self, 0 * static[:count, :, hot], everywhere[:count])[0]
-            beside = np.concatenate([np.zeros_like(by_loads[0]), beside])
-            halves[0, :, total:], halves[0, ..., total:] = beside[:, total:], beside[..., total:]
+            by_expansion = heat.geometric_stiffness(self, 0 * static[:count, :, hot], everywhere[:count])[0]
+            by_expansion = np.concatenate([np.zeros_like(by_loads[0]), by_expansion])
+            halves[0, :, total:], halves[0, ..., total:] = by_expansion[:, total:], by_expansion[..., total:]
             pulls = geometric_stiffness(self.points, self.blocks, lifted, shapes, strained=False).sum(axis=0)
-        halves += left.geometric_stiffness(
+        halves += free_links.geometric_stiffness(
             tied, mass, loads[:, stressed], reduced.static[:, stressed], reduced, linked.rotations(motions[:, total:])
         )
         frequency = np.sqrt(np.diagonal(reduced.stiffness)[:modes]) / (2 * np.pi)
@@ -335,13 +335,13 @@ class SolidMesh(Mesh):
         length = float(np.linalg.norm(linked.points, axis=1).max())
         heated = motions.T @ linked.condensed(heating)
 
-        def moving(chosen: Any, stiffness: Floats, fields: Floats, damping_ratio: Any) -> Structure:
+        def moving(columns: Any, stiffness: Floats, fields: Floats, damping_ratio: Any) -> Structure:
             """Structure in the chosen of all motions, with its geometric stiffness by the loads' `fields`."""
-            masses, *paths = particles_of(linked.points, everywhere[..., chosen], mass)
+            masses, *paths = particles_of(linked.points, everywhere[..., columns], mass)
             inertial = fields[:12].reshape(3, 4, *stiffness.shape)
             stress = geometric_of(inertial[:, 0], inertial[:, 1:].swapaxes(0, 1))
-            stations, turns = named.expansion(everywhere[:count, :, chosen], fields[12:by_heat])
-            terms = heat.terms(heated[chosen], fields[by_heat:])
+            stations, turns = named.expansion(everywhere[:count, :, columns], fields[12:by_heat])
+            terms = heat.terms(heated[columns], fields[by_heat:])
             return linear_structure(
                 coefficients(masses, Places(*paths), stiffness, geometric=stress, loads=terms),
                 masses,
@@ -364,13 +364,14 @@ class SolidMesh(Mesh):
             structure = replace(heat.apply(structure), recovery=replace(nodal, size=n))
             if not holding.places:
                 return structure
-            chosen = np.r_[:n, total : everywhere.shape[2]]
-            first = halves[0][:, chosen[:, None], chosen]
-            every = first + first.swapaxes(1, 2)  # of the lifted motions as of stiff modes, which no soft ones turn
-            every[:, :n, :n] = fields
-            free = moving(chosen, block_diag(stiffness, lifting), every, 0.0)
+            columns = np.r_[:n, total : everywhere.shape[2]]
+            first = halves[0][:, columns[:, None], columns]
+            # Those of the lifted motions are as of stiff modes, which no soft ones turn.
+            fields_of_all = first + first.swapaxes(1, 2)
+            fields_of_all[:, :n, :n] = fields
+            free_structure = moving(columns, block_diag(stiffness, lifting), fields_of_all, 0.0)
             second = None if pulls is None else pulls[:, :n, :n] + pulls[:, :n, :n].swapaxes(1, 2)
-            return holding.hold(structure, free, motions[:, chosen], second, rooted=bool(self.clamps))
+            return holding.hold(structure, free_structure, motions[:, columns], second, rooted=bool(self.clamps))
 
         structure = reduced.structure(build, damping_ratio)
         if coarser is not None:

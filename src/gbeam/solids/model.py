@@ -62,11 +62,11 @@ class SolidModel(Value):
         return np.asarray(np.abs(rough / self.frequency - 1))
 
     def __repr__(self) -> str:
-        shown = ", ".join(f"{frequency:.4g}" for frequency in self.frequency[:6])
-        known = np.isfinite(self.mesh_error)
+        frequencies = ", ".join(f"{frequency:.4g}" for frequency in self.frequency[:6])
+        is_known = np.isfinite(self.mesh_error)
         cure = "its elements lock" if locking(self.mesh) else "give a coarser mesh"
-        error = f"up to {100 * self.mesh_error[known].max():.2g} %" if known.any() else f"unknown, {cure}"
-        return f"SolidModel({self.structure.size} coordinates; {shown} Hz; error of the mesh {error})"
+        error = f"up to {100 * self.mesh_error[is_known].max():.2g} %" if is_known.any() else f"unknown, {cure}"
+        return f"SolidModel({self.structure.size} coordinates; {frequencies} Hz; error of the mesh {error})"
 
     @property
     def shapes(self) -> Floats:

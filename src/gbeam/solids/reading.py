@@ -113,12 +113,12 @@ def _spread(placed: Placed, stations: Mapping[str, int], point_masses: Mapping[s
 
 def _free_tip(placed: Placed, clamped: Flags, places: Sequence[HeldPlace]) -> int:
     """Point farthest from the root that nothing holds, or that the clamp does not where supports hold all others."""
-    free = ~clamped
+    is_free = ~clamped
     for place in places:
         if place.support.rigid and place.kind == "nodes":
-            free[place.points] = False
-    free = free if free.any() else ~clamped
-    return int(np.argmax(np.linalg.norm(placed.middles, axis=1) * free))
+            is_free[place.points] = False
+    is_free = is_free if is_free.any() else ~clamped
+    return int(np.argmax(np.linalg.norm(placed.middles, axis=1) * is_free))
 
 
 def held_places(

@@ -41,16 +41,16 @@ TYING = {
 }
 
 
-def _tied(kind: str, at: Floats) -> tuple[Floats, Floats]:
-    """Points (p, 2) of the middle surface from which transverse shear is interpolated, and its interpolation to points
-    `at` (q, 2).
+def _tied(kind: str, places: Floats) -> tuple[Floats, Floats]:
+    """Points (p, 2) of the middle surface from which transverse shear is interpolated, and its interpolation to
+    `places` (q, 2).
 
     The latter are the shares (q, 2, p, 2) of the two components at the first points in those at the second.
     """
-    x, y = at.T
+    x, y = places.T
     if kind not in TYING:
-        return at, np.einsum("qp,ab->qapb", np.eye(len(at)), np.eye(2))
-    share = np.zeros((len(at), 2, len(TYING[kind]), 2))
+        return places, np.einsum("qp,ab->qapb", np.eye(len(places)), np.eye(2))
+    share = np.zeros((len(places), 2, len(TYING[kind]), 2))
     if kind == "quad":
         share[:, 0, 0, 0], share[:, 0, 1, 0], share[:, 1, 2, 1], share[:, 1, 3, 1] = 1 - y, y, 1 - x, x
     else:
@@ -83,9 +83,9 @@ def _cartesian(dual: Floats, pair: tuple[int, int]) -> Floats:
 
 def plane_stress(elasticity: Floats, normal: Floats) -> Floats:
     """Elasticity (..., 6, 6) of plane stress: without stress along unit normals (..., 3)."""
-    across = _cartesian(normal[..., None], (0, 0))
-    stress = across @ elasticity
-    return elasticity - stress[..., :, None] * stress[..., None, :] / (across * stress).sum(axis=-1)[..., None, None]
+    stretch = _cartesian(normal[..., None], (0, 0))
+    stress = stretch @ elasticity
+    return elasticity - stress[..., :, None] * stress[..., None, :] / (stretch * stress).sum(axis=-1)[..., None, None]
 
 
 def shell_strains(
@@ -96,27 +96,27 @@ def shell_strains(
 
     Transverse shear is multiplied by `shear`.
     """
-    at, weights, _, slopes = shape_functions(kind, degree)
+    places, weights, _, slopes = shape_functions(kind, degree)
     base = jacobians(points, nodes, slopes).swapaxes(2, 3)
     dual = np.asarray(np.linalg.inv(base), dtype=float)
     normal = dual[..., 2] / np.linalg.norm(dual[..., 2], axis=-1, keepdims=True)
     law = plane_stress(elasticity, normal)
     parts = [_covariant(base, slopes, pair) for pair in PAIRS[:3]]
-    tying, share = _tied(kind, at[:, :2])
+    tying, share = _tied(kind, places[:, :2])
     middle = shapes_at(kind, np.insert(tying, 2, 0.5, axis=1))[1]
     at_ties = jacobians(points, nodes, middle).swapaxes(2, 3)
-    tied = np.stack([_covariant(at_ties, middle, pair) for pair in PAIRS[3:]], axis=2)
+    tie_strains = np.stack([_covariant(at_ties, middle, pair) for pair in PAIRS[3:]], axis=2)
     if kind in SOFTER:
         first, second = base[..., 0, :], base[..., 1, :]
         sides = (first, second, first - second) if KINDS[kind].shell == 3 else (first, second)
         slenderness = (dual[..., 2] ** 2).sum(axis=-1) * np.max([(side**2).sum(axis=-1) for side in sides], axis=0)
         shear = shear / np.sqrt(1 + SOFTER[kind] * slenderness)[..., None, None]
-    across = shear * np.einsum("qapb,epbkc->aeqkc", share, tied, optimize=True)
-    along = np.stack([_cartesian(dual, pair) for pair in PAIRS], axis=-1)
-    strain = np.einsum("eqvp,peqkc->eqvkc", along, np.stack([*parts, *across]), optimize=True)
+    shear_strains = shear * np.einsum("qapb,epbkc->aeqkc", share, tie_strains, optimize=True)
+    components = np.stack([_cartesian(dual, pair) for pair in PAIRS], axis=-1)
+    strain = np.einsum("eqvp,peqkc->eqvkc", components, np.stack([*parts, *shear_strains]), optimize=True)
     if kind == "quad":
         volume = np.linalg.det(base)
-        enhanced = _enhanced(points, nodes, kind, at, volume)
+        enhanced = _enhanced(points, nodes, kind, places, volume)
         pulled = np.einsum("eqvw,eqwa,eq->eqva", law, enhanced, volume * weights, optimize=True)
         stiffness = np.einsum("eqva,eqvb->eab", pulled, enhanced, optimize=True)
         forces = np.einsum("eqva,eqvkc->eakc", pulled, strain, optimize=True)
@@ -125,16 +125,17 @@ def shell_strains(
     return strain, law
 
 
-def _enhanced(points: Floats, nodes: Indices, kind: str, at: Floats, volume: Floats) -> Floats:
-    """Enhanced strains (e, q, 6, 4) of quadrilaterals at points `at` (q, 3), where the Jacobian has the determinant
-    `volume` (e, q): linear there, and turned to the axes by the base vectors in the middle.
+def _enhanced(points: Floats, nodes: Indices, kind: str, places: Floats, volume: Floats) -> Floats:
+    """Enhanced strains (e, q, 6, 4) of quadrilaterals at `places` (q, 3), linear in these.
+
+    They are turned to the axes by the base vectors in the middle. The Jacobian has the determinant `volume` (e, q).
     """
     middle = jacobians(points, nodes, shapes_at(kind, np.full((1, 3), 0.5))[1]).swapaxes(2, 3)
     dual = np.asarray(np.linalg.inv(middle), dtype=float)
     ratio = np.linalg.det(middle) / volume
     strains = []
     for pair, i in ENHANCED:
-        size = ratio * (2 * at[:, i] - 1)
+        size = ratio * (2 * places[:, i] - 1)
         strains.append(_cartesian(dual, PAIRS[pair]) * size[..., None])
     return np.stack(strains, axis=-1)
 

@@ -66,24 +66,26 @@ class NodalStress(Value):
         """
         count, names, n = len(mesh.points), _materials(mesh), shapes.shape[-1]
         pairs = [names.index(block.material) * count + np.unique(block.nodes) for block in mesh.blocks]
-        known = np.unique(np.concatenate(pairs))
-        no_flags, swelling = np.zeros(len(known), dtype=bool), np.zeros((count, 3, 0)) if swelling is None else swelling
-        nothing = np.empty((0, 6, n))
-        empty = cls(mesh, shapes, hull(mesh.points), known, nothing, n, known[:0], no_flags, swelling, nothing)
+        known_pairs = np.unique(np.concatenate(pairs))
+        no_flags, nothing = np.zeros(len(known_pairs), dtype=bool), np.empty((0, 6, n))
+        swelling = np.zeros((count, 3, 0)) if swelling is None else swelling
+        empty = cls(
+            mesh, shapes, hull(mesh.points), known_pairs, nothing, n, known_pairs[:0], no_flags, swelling, nothing
+        )
         causes = n + swelling.shape[-1]
-        total, shared = np.zeros((len(known), 6, causes)), np.zeros(len(known))
+        total, element_counts = np.zeros((len(known_pairs), 6, causes)), np.zeros(len(known_pairs))
         for element_pairs, stresses in empty.elements(mesh.blocks):
             pair, stress = element_pairs.ravel(), stresses.reshape(-1, 6, causes)
             add_to_rows(total, pair, stress)
-            add_to_rows(shared, pair, np.ones(len(pair)))
-        every_table, heat = np.split(total / shared[:, None, None], [n], axis=-1)
-        whole = replace(empty, every_table=every_table, heat=heat)
-        return replace(whole, felt_at=whole.most_stressed(np.arange(len(known))))
+            add_to_rows(element_counts, pair, np.ones(len(pair)))
+        every_table, heat = np.split(total / element_counts[:, None, None], [n], axis=-1)
+        averaged_stress = replace(empty, every_table=every_table, heat=heat)
+        return replace(averaged_stress, felt_at=averaged_stress.most_stressed(np.arange(len(known_pairs))))
 
     def most_stressed(self, pairs: Indices) -> Indices:
         """Pairs, among `pairs`, at which the von Mises stress of some coordinate, or by heat, is largest."""
-        every = np.concatenate([self.every_table[pairs], self.heat[pairs]], axis=-1)
-        sizes = von_mises(np.moveaxis(every, 1, 2))
+        tables = np.concatenate([self.every_table[pairs], self.heat[pairs]], axis=-1)
+        sizes = von_mises(np.moveaxis(tables, 1, 2))
         return np.asarray(pairs[np.unique(sizes.argmax(axis=0))])
 
     @property
@@ -114,7 +116,7 @@ class NodalStress(Value):
     def clamps(self) -> dict[str, str]:
         """Nodes that each group of the clamp holds, in words, by its name."""
         count = len(np.unique(self.mesh.numbers))
-        return {name: f"{held:,} of {count:,} nodes" for name, held in self.mesh.clamps.items()}
+        return {name: f"{number:,} of {count:,} nodes" for name, number in self.mesh.clamps.items()}
 
     @property
     def material(self) -> list[str]:
@@ -157,9 +159,9 @@ class NodalStress(Value):
         self, time: Floats, base: Any, causes: Floats, *, motion: str, model: str, environment: str
     ) -> dict[str, Any]:
         """Fields of a response by causes (t, n + h): the stress, and the surface in motion at some of the times."""
-        shown = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
-        skin, sizes = self._skin(causes[shown])
-        surface = Surface(**skin, time=time[shown], sizes=sizes)
+        samples = np.unique(np.linspace(0, len(time) - 1, TIMES).round().astype(int))
+        skin, sizes = self._skin(causes[samples])
+        surface = Surface(**skin, time=time[samples], sizes=sizes)
         return {"solid": solid_stress(self, time, causes, motion=motion, model=model), "surface": surface}
 
     def in_modes(self, modes: Complex) -> SurfaceModes:
@@ -177,29 +179,29 @@ class NodalStress(Value):
         # At a vertex of two materials the first.
         first = np.full(count, -1)
         first[self.node[::-1]] = np.arange(len(self.known))[::-1]
-        stress, moved = self.stresses(first[vertices]), self.moved[vertices]
+        stress, displacements = self.stresses(first[vertices]), self.moved[vertices]
         size = np.sqrt((stress**2).sum(axis=(0, 1)))
-        left, sizes, right = np.linalg.svd(q * size, full_matrices=False)
-        kept = max(1, int((sizes > ENOUGH * sizes[0]).sum()))
-        mixed = (right[:kept] / np.where(size > 0, size, np.inf)).T  # causes of unit shapes
+        size_vectors, sizes, cause_vectors = np.linalg.svd(q * size, full_matrices=False)
+        shape_count = max(1, int((sizes > ENOUGH * sizes[0]).sum()))
+        mixed = (cause_vectors[:shape_count] / np.where(size > 0, size, np.inf)).T  # causes of unit shapes
         skin = {
             "vertices": self.mesh.points[vertices],
             "triangles": triangles,
-            "shapes": np.moveaxis(moved @ mixed, -1, 0),
+            "shapes": np.moveaxis(displacements @ mixed, -1, 0),
             "stress": np.moveaxis(stress @ mixed, -1, 0),
             "judged": ~self.singular[first[vertices]],
         }
-        return skin, left[:, :kept] * sizes[:kept]
+        return skin, size_vectors[:, :shape_count] * sizes[:shape_count]
 
     def elements(self, blocks: Any) -> Iterator[tuple[Indices, Floats]]:
         """Yield pairs (e, k) at the nodes of some blocks' elements, and stresses there by a unit of each cause, (e, k,
         6, n + h).
         """
-        names, count, moved = _materials(self.mesh), len(self.mesh.points), self.moved
-        rise = np.repeat([0.0, 1.0], [self.size, moved.shape[-1] - self.size])
+        names, count, displacements = _materials(self.mesh), len(self.mesh.points), self.moved
+        rise = np.repeat([0.0, 1.0], [self.size, displacements.shape[-1] - self.size])
         for part in chunks(self.mesh.points, blocks, "stress"):
             pair = np.searchsorted(self.known, names.index(part.block.material) * count + part.nodes)
-            outward, stress = extrapolation(part.block.kind), part.stress(moved, rise=rise)
+            outward, stress = extrapolation(part.block.kind), part.stress(displacements, rise=rise)
             yield pair, np.einsum("kq,eqvn->ekvn", outward, stress, optimize=True)
 
     def spread(self, pair: int, q: Floats) -> float:
@@ -208,12 +210,12 @@ class NodalStress(Value):
         """
         number, node = divmod(int(self.known[pair]), len(self.mesh.points))
         material = _materials(self.mesh)[number]
-        around = [
+        blocks_there = [
             replace(block, nodes=block.nodes[(block.nodes == node).any(axis=1)])
             for block in self.mesh.blocks
             if block.material == material
         ]
-        parts = [stress[pairs == pair] @ q for pairs, stress in self.elements(around)]
+        parts = [stress[pairs == pair] @ q for pairs, stress in self.elements(blocks_there)]
         mean = float(von_mises(self.stresses(pair) @ q))
         return float(np.ptp(von_mises(np.concatenate(parts)))) / mean if mean > 0 else 0.0
 
@@ -225,14 +227,15 @@ class NodalStress(Value):
         """Largest von Mises stress of every pair over time, (p,), the time at which, (p,), and the largest of all pairs
         that are not singular at each time, (t,).
         """
-        table, size, when = deviatoric(self.table), np.zeros(len(self.known)), np.zeros(len(self.known), dtype=int)
+        table, count = deviatoric(self.table), len(self.known)
+        size, steps = np.zeros(count), np.zeros(count, dtype=int)
         if self.singular.any():
             largest = LargestNorms(table[:, self.singular], q)
-            size[self.singular], when[self.singular] = largest.size, largest.when
+            size[self.singular], steps[self.singular] = largest.size, largest.when
             table = table[:, ~self.singular]
         largest = LargestNorms(table, q)
-        size[~self.singular], when[~self.singular] = largest.size, largest.when
-        return size, when, largest.over
+        size[~self.singular], steps[~self.singular] = largest.size, largest.when
+        return size, steps, largest.over
 
 
 def _materials(mesh: Any) -> list[str]:
