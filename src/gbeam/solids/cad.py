@@ -28,7 +28,7 @@ FINEST = 10  # how much shorter than the given size edges may be there
 
 def mesh_of(source: Any, unit: str | None, element_size: float | None, *, cards: bool = False) -> tuple[Any, float]:
     """Return a mesh with meshio's fields and the size of its unit, m. The source is a file, read with its `cards` or
-    without, or the mesh itself; a file of STEP is meshed by elements of a size.
+    without, or the mesh itself. A file of STEP is meshed by elements of a size.
     """
     path = Path(source) if isinstance(source, (str, os.PathLike)) else None
     if path is not None and path.suffix.lower() in ENDINGS:
@@ -63,7 +63,7 @@ def meshed(path: Path, size: float) -> FileMesh:
 
 
 def _mesh_into(path: str, size: float, out: str) -> dict[str, Any]:
-    """Mesh the solids of a file into another one, `out`; return its parts, and the places of its groups in words."""
+    """Mesh the solids of a file into another one, `out`. Return its parts, and the places of its groups in words."""
     try:
         import gmsh
     except ModuleNotFoundError:

@@ -54,7 +54,7 @@ def with_cards(
         owner.update(dict.fromkeys(numbers, name))
 
     def owner_of(name: str, number: int) -> str:
-        """Name of the link that moves a node; a node that has none becomes one of its own."""
+        """Name of the link that moves a node. A node that has none becomes a link."""
         if number not in owner:
             link(f"node {number}" if number in solid_of else name, (number,))
         return owner[number]

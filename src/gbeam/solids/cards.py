@@ -71,7 +71,7 @@ class Cards:
 
     @classmethod
     def from_parts(cls, nodes: Any, parts: Mapping[str, Any]) -> Cards:
-        """Make the statements of what :meth:`parts` returned; there are none for a mesh of another kind of file."""
+        """Make the statements of what :meth:`parts` returned. There are none for a mesh of another kind of file."""
         if not parts:
             return cls(nodes)
         mean: dict[str, tuple[int, Mapping[int, float]]] = {

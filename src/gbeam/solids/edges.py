@@ -82,8 +82,8 @@ def _re_entrant(mesh: Mesh) -> Flags:
 def _edges_of_faces(mesh: Mesh, block: Block, face: int, elements: Indices) -> tuple[Indices, Floats, Floats]:
     """Edges of one face, by its number, of some elements.
 
-    Returns the nodes (m, 3) at their ends, ascending, and in their middle, or at an end once more; the outward normals
-    at both ends, (m, 2, 3); and the middle of the face, (m, 3).
+    Returns the nodes (m, 3) at their ends, ascending, and in their middle, or at an end once more. Then it returns the
+    outward normals at both ends, (m, 2, 3), and the middle of the face, (m, 3).
     """
     face_points, places = face_nodes(block.kind, face), reference(block.kind)
     count = len(FACES[corners_of(block.kind)][face])

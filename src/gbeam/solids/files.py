@@ -79,7 +79,7 @@ class FileMesh:
 
 
 def read_mesh(source: str | os.PathLike[str] | Any, *, cards: bool = False) -> Any:
-    """Read the mesh in a file, and with `cards` its masses, links and springs; return a mesh of meshio as it is."""
+    """Read the mesh in a file, and with `cards` its masses, links and springs. A mesh of meshio stays as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return source
     path = os.fspath(source)
@@ -108,7 +108,7 @@ def _refuse_unread(path: str) -> None:
 
 
 def parts_of(path: str, cards: bool) -> dict[str, Any]:
-    """Return the parts of the mesh in a file, plain values and arrays; InputError whatever is wrong with it."""
+    """Return the parts of the mesh in a file, plain values and arrays. InputError whatever is wrong with it."""
     printed = io.StringIO()
     try:
         # meshio prints what fails and exits.
@@ -220,7 +220,7 @@ def _adapt_med(mesh: Any) -> Any:
     """Give a mesh of MED its groups by their names, and its elements the order of nodes of VTK.
 
     In MED elements and nodes belong to families, and a family belongs to any number of groups. Elements of negative
-    volume are in MED's order; meshio writes others in VTK's.
+    volume are in MED's order. Meshio writes others in VTK's.
     """
     for block in mesh.cells:
         if block.type in MED_ORDER and len(block.data):

@@ -159,7 +159,7 @@ def group_names(mesh: Any) -> list[str]:
 
 
 def elements_in(mesh: Any, where: str, name: str, dims: Collection[int] = tuple(_OF_DIM)) -> list[Indices] | None:
-    """Elements of a group in each block of the mesh; None where no elements have this group.
+    """Elements of a group in each block of the mesh, or None where no elements have this group.
 
     A group without a name is its number, such as "3", or its kind and number, such as "surface 3". A number that both
     surfaces and volumes have, among those in `dims`, is refused by an InputError about what `where` names.
@@ -190,7 +190,7 @@ def _set(mesh: Any, name: str) -> list[Indices]:
 
 
 def _numbered(mesh: Any, number: str) -> list[Indices] | None:
-    """Elements of each block in a group with this number; None if there is no such group."""
+    """Elements of each block in a group with this number, or None if there is no such group."""
     if number in mesh.cell_sets:
         return _set(mesh, number)
     for values in _tags(mesh):
@@ -218,7 +218,7 @@ def nodes_in(mesh: Any, where: str, name: str) -> Indices:
 
 
 def no_group(mesh: Any, where: str, name: str) -> InputError:
-    """Error that a group is not in the mesh; it lists the groups that are, and their places where these are known."""
+    """Error that a group is not in the mesh. It lists the groups that are, and their places where these are known."""
     if mesh.info:
         listed = shortened("; ".join(f"{group}, {place}" for group, place in mesh.info.items()), 2000)
     else:

@@ -20,7 +20,7 @@ FREE = 1e-6  # of the motion that is held best: a rigid motion that is free
 class HeldPlace(Value):
     """A place that a support holds: points (p,) of the mesh, which stand for nodes of numbers (p,) in `node`, from 0.
 
-    Of a group or a node each node is held; of an interface or a rigid link, its motion at its `centre`, (3,) m.
+    Of a group or a node each node is held. Of an interface or a rigid link it is the motion at its `centre`, (3,) m.
     """
 
     support: Support

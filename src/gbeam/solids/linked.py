@@ -23,7 +23,7 @@ for _a, _b, _c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
 
 class Linked:
     """Displacements of all points as linear maps of the independent unknowns. The points are those of a mesh, of its
-    bodies and of the ends of springs; the unknowns are displacements of free nodes, and displacement and rotation of
+    bodies and of the ends of springs. The unknowns are displacements of free nodes, and displacement and rotation of
     each link.
 
     A node of a shell is a link of its points, which does not turn about the line on which they are. Tied points are
@@ -45,7 +45,7 @@ class Linked:
         points, masses, self._ends = [*mesh.points], [*mesh.point_masses], list[tuple[int, ...]]()
 
         def add(name: str, place: Floats, mass: float) -> int:
-            """Add a point to a link; return its number."""
+            """Add a point to a link, and return its number."""
             members[name].append(len(points))
             points.append(place)
             masses.append(mass)
@@ -253,12 +253,14 @@ class Linked:
     def geometric_stiffness(
         self, held: Any, mass: Any, loads: Floats, static: Floats, reduced: Reduced, lifted: Floats
     ) -> Floats:
-        """Two halves (2, m, n + s, n + s) of what links add to :func:`gbeam.solids.elements.geometric_stiffness`: the
-        work of the forces that hold tied points on a link, in the displacements θ × (θ × r)/2 as it turns by θ.
+        """Two halves (2, m, n + s, n + s) of what links add to :func:`gbeam.solids.elements.geometric_stiffness`.
+
+        They are the work of the forces that hold tied points on a link, in the displacements θ × (θ × r)/2 as it turns
+        by θ.
 
         In the first half the forces are those under loads (points · 3, m), whose answers are `static` (u, m), and two
-        coordinates turn the links; in the second the forces are a coordinate's, and a load and another coordinate turn
-        them. `held` are the tied points' rows of the stiffness; `lifted` (l, 3, s) turn the links besides, in the first
+        coordinates turn the links. In the second the forces are a coordinate's, and a load and another coordinate turn
+        them. `held` are the tied points' rows of the stiffness. `lifted` (l, 3, s) turn the links besides, in the first
         half alone.
         """
         shapes = reduced.shapes

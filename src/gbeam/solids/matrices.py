@@ -156,7 +156,7 @@ def with_tip(points: dict[str, int], places: Floats, held: Sequence[int] = ()) -
 
 
 def turned(unknowns: Indices, node: int) -> Indices | None:
-    """Rows (6,) of a node's displacements and rotations; None where it lacks some."""
+    """Rows (6,) of a node's displacements and rotations, or None where it lacks some."""
     which = np.flatnonzero((unknowns[:, 0] == node) & (unknowns[:, 1] != OWN))
     order = which[np.argsort(unknowns[which, 1])]
     return order if len(order) == 6 else None
