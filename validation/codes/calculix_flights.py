@@ -108,5 +108,5 @@ def points_of(model: gb.SolidModel, q: np.ndarray, chosen: int | None = None) ->
         which = which if chosen is None else which[which + first == chosen]
         first += len(part.nodes)
         if len(which):
-            parts.append(von_mises(np.moveaxis(part.of(which).stress(model.shapes) @ q.T, 2, -1)))
+            parts.append(von_mises(np.moveaxis(part.stress(model.shapes)[which] @ q.T, 2, -1)))
     return np.concatenate(parts)

@@ -18,9 +18,9 @@ import numpy as np
 import gbeam as gb
 from gbeam.results import von_mises
 from gbeam.solids import chunks
+from validation.codes.calculix_frames import CASES, HEIGHT, SIDE, portal
 from validation.codes.calculix_solid import Specimen, printed_frequencies, run
 from validation.codes.calculix_specimens import ALUMINIUM, STEEL, grid
-from validation.codes.calculix_supports import HEIGHT, SIDE, SUPPORTS, portal
 from validation.table import Row
 
 TITLE = "CalculiX: a heated frame on supports, and a laminate"
@@ -36,7 +36,7 @@ METALS = {
 BOARD = gb.Orthotropic(
     1900.0, (22e9, 19e9, 8e9), (0.15, 0.3, 0.3), (4e9, 2.5e9, 2.5e9), ((2, 1, 0), (-1, 2, 0)), (14e-6, 17e-6, 60e-6)
 )
-WORDS = {"fixed": "the other foot fixed", "sliding": "the other foot slides along x"}
+WORDS = {name: CASES[name].words for name in ("fixed", "sliding")}
 
 
 def heated(rise: float) -> gb.Temperature:
@@ -52,7 +52,7 @@ def frame(name: str, rise: float) -> gb.SolidMesh:
     parts = {"aluminium": [np.flatnonzero(above)], "steel": [np.flatnonzero(~above)]}
     mesh = meshio.Mesh(mesh.points, mesh.cells, point_sets=mesh.point_sets, cell_sets=parts)
     return gb.SolidMesh.read(
-        mesh, materials=METALS, clamp="left", unit="mm", supports=[SUPPORTS[name]], points={"corner": "corner"},
+        mesh, materials=METALS, clamp="left", unit="mm", supports=[CASES[name].support], points={"corner": "corner"},
         temperature=heated(rise),
     )  # fmt: skip
 

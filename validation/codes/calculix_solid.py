@@ -150,13 +150,18 @@ def moved(
     ])  # fmt: skip
     text = run(steps, "dat")
     rows = np.array(re.findall(r"displ.*time +(\S+)\s+\d+ +(\S+) +(\S+) +(\S+)", text), dtype=float)
-    printed = re.findall(r"stresses.*time.*\n\n((?: +\d+ +\d+ .*\n)+)", text)
-    points = np.array([[line.split()[2:] for line in table.splitlines()] for table in printed], dtype=float)
-    stress = points[..., [0, 1, 2, 5, 4, 3]]  # xy, xz, yz there
+    stress = stresses(text)
     rows = np.concatenate([rows, stress.reshape(len(rows), -1)], axis=1)
     rows = np.concatenate([np.zeros_like(rows[:1]), rows])
     over = np.stack([np.interp(time, rows[:, 0], each) for each in rows[:, 1:].T], axis=1)
     return over[:, :3], over[:, 3:].reshape(len(time), -1, 6)
+
+
+def stresses(text: str) -> np.ndarray:
+    """Stresses xx, yy, zz, yz, xz, xy (t, k, 6) at points of elements, Pa, that a .dat file has at every increment."""
+    printed = re.findall(r"stresses.*time.*\n\n((?: +\d+ +\d+ .*\n)+)", text)
+    points = np.array([[line.split()[2:] for line in table.splitlines()] for table in printed], dtype=float)
+    return points[..., [0, 1, 2, 5, 4, 3]]  # xy, xz, yz there
 
 
 def static(load: str, specimen: Specimen = BRACKET) -> tuple[np.ndarray, float]:
