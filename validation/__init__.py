@@ -19,6 +19,7 @@ MODULES: tuple[str, ...] = (
     "codes.calculix_flights",
     "codes.calculix_fillet",
     "codes.calculix_bent",
+    "codes.calculix_paths",
     "codes.calculix_links",
     "codes.calculix_supports",
     "codes.calculix_heat",
