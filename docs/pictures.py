@@ -82,11 +82,11 @@ def snapping() -> Figure:
         (slice(second, None), "-"),
     ):
         axes.plot(sunk[part], load[part], dash, color=MACHINE, lw=1.6)
-    for k, words in ((first, "snaps at"), (second, "snaps back at")):
+    for k, words, above in ((first, "snaps at", 7), (second, "snaps back at", 26)):
         axes.annotate(
             f"{words} {load[k]:.1f} g",
             (sunk[k], load[k]),
-            xytext=(0, 7),
+            xytext=(0, above),
             textcoords="offset points",
             ha="center",
         )
