@@ -8,7 +8,7 @@ import numpy as np
 
 from gbeam.analysis.steady.path_errors import judged
 from gbeam.analysis.steady.subject import subject_of
-from gbeam.analysis.system.drive import loaded, shaken
+from gbeam.analysis.system.drive import any_load, loaded, shaken
 from gbeam.analysis.system.load_path import Loading, follow
 from gbeam.analysis.system.richer import judged_bodies, left_unjudged
 from gbeam.errors import InputError
@@ -105,8 +105,7 @@ def equilibrium_path(
             )
         loading = Loading.of(system, drive, shaken)
     else:
-        acting = drive.inputs(system)
-        if not any(load is not None and np.any(load) for load in (*acting.loads, acting.wrenches)):
+        if not any_load(drive.inputs(system)):
             fix = "add one, give a time at which one acts, or vary the motion"
             raise InputError("beam.loads" if subject.body else "forces", "has no load that acts", fix)
         loading = Loading.of(system, drive, loaded)
@@ -118,7 +117,6 @@ def equilibrium_path(
     along, shares, doubts = ErrorEstimate(), [ErrorEstimate() for _ in followed.critical], tuple[str, ...]()
     if errors and judged_bodies(system):
         along, shares, doubts = judged(followed, upper, progress)
-    _, *moved = loading.moved([followed.points[0], *(at for _, at in followed.critical)])
     return EquilibriumPath(
         motion=name,
         time=drive.time,
@@ -127,12 +125,12 @@ def equilibrium_path(
         searched_to=upper,
         points=system.points,
         factor=np.array([at.value for at in followed.points]),
-        displacement=loading.moved(followed.points),
+        displacement=followed.moved,
         q=np.stack([at.y for at in followed.points]),
         stable=np.array(followed.stable),
         critical=tuple(
-            CriticalPoint(kind, at.value, places, share)
-            for (kind, at), places, share in zip(followed.critical, moved, shares, strict=True)
+            CriticalPoint(kind, followed.points[k].value, followed.moved[k], share)
+            for (kind, k), share in zip(followed.critical, shares, strict=True)
         ),
         errors=along,
         error_note=left_unjudged(system),

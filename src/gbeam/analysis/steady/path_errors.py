@@ -102,10 +102,10 @@ class Trace:
     @classmethod
     def of(cls, followed: FollowedPath) -> Trace:
         """Values along a path."""
-        factor, moved = [at.value for at in followed.points], followed.loading.moved(followed.points)
-        values = np.column_stack([factor, moved.reshape(len(moved), -1)])
-        length = np.array([at.length for at in followed.points])
-        return cls(values, length, tuple((kind, at.value) for kind, at in followed.critical))
+        factor = [at.value for at in followed.points]
+        length = [at.length for at in followed.points]
+        values = np.column_stack([factor, followed.moved.reshape(len(factor), -1)])
+        return cls(values, np.array(length), tuple((kind, factor[k]) for kind, k in followed.critical))
 
     def distance(self, other: Trace) -> float:
         """Largest distance of its points from another path, as a share of its largest factor or displacement."""

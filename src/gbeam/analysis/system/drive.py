@@ -66,6 +66,11 @@ class Drive:
         return replace(inputs, prescribed=prescribed if prescribed.size else None)
 
 
+def any_load(inputs: Inputs) -> bool:
+    """True if a load on a body, or a wrench on a point, acts."""
+    return any(load is not None and bool(np.any(load)) for load in (*inputs.loads, inputs.wrenches))
+
+
 def turning_of(system: System, motion: Motion | None, turning: str | None) -> str:
     """Name of the coordinate that turns: `turning`, the only prescribed angle, or the only angle, or "" for a hub."""
     angles = [

@@ -62,7 +62,8 @@ class Loading:
         def slopes(y: Floats, factor: float) -> tuple[Floats, Floats]:
             """K (n, n), and the derivative (n,) of the residual by the factor."""
             sign = 1.0 if factor >= 0 else -1.0
-            return self.point(y, factor).slopes()[1], sign * (residual(y, factor + sign) - residual(y, factor))
+            remaining, k, _, _ = self.point(y, factor).slopes()
+            return k, sign * (residual(y, factor + sign) - remaining)
 
         return Curve(residual, slopes, self.start.point.slopes()[3], reach, bent)
 
@@ -87,12 +88,15 @@ class Loading:
 
 @dataclass(frozen=True)
 class FollowedPath:
-    """A path that was followed: its points, and the points where stability is lost or regained, by their kinds."""
+    """A path that was followed: its points, displacements (s, p, 3) m along it, and the kinds and indices of the points
+    where stability is lost or regained.
+    """
 
     loading: Loading
     points: tuple[CurvePoint, ...]
+    moved: Floats
     stable: tuple[bool, ...]
-    critical: tuple[tuple[str, CurvePoint], ...]
+    critical: tuple[tuple[str, int], ...]
     ended: str = ""  # why it ends before what was asked for
 
 
@@ -108,7 +112,7 @@ def follow(
     """Follow a path of equilibria until nothing is `left` of it, which falls to zero at its end, or a step `beyond`."""
     curve = loading.curve(upper, bent)
     first = curve.begin(loading.start.point.y, 0.0)
-    points, margins, critical, ended = [first], [loading.state(first).margin], list[tuple[str, CurvePoint]](), ""
+    points, margins, critical, ended = [first], [loading.state(first).margin], list[tuple[str, int]](), ""
     steps = curve.follow(first, FIRST * upper / first.rate)
     next(steps)
     while left(points[-1]) > END:
@@ -130,10 +134,12 @@ def follow(
         elif margins[-1] * margin < 0:
             critical_point = BRANCH_POINT, curve.interpolated(before, following, lambda at: loading.state(at).margin)
         if critical_point is not None:
-            critical.append(critical_point)
-            points.append(critical_point[1])
+            kind, at = critical_point
+            critical.append((kind, len(points)))
+            points.append(at)
             margins.append(0.0)
         points.append(following)
         margins.append(margin)
         report(following)
-    return FollowedPath(loading, tuple(points), tuple(margin > 0 for margin in margins), tuple(critical), ended)
+    stable = tuple(margin > 0 for margin in margins)
+    return FollowedPath(loading, tuple(points), loading.moved(points), stable, tuple(critical), ended)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gbeam.analysis.system.drive import Drive
+from gbeam.analysis.system.drive import Drive, any_load
 from gbeam.analysis.system.rest import held_tree, steady_state
 from gbeam.analysis.system.search import solve_rests
 from gbeam.analysis.system.steady import SteadySystem, release
@@ -113,8 +113,7 @@ def share_of_loads(path: Path, system: System) -> float:
 
     The path is that of :func:`loaded` drives.
     """
-    inputs = path.drive.inputs(system)
-    if not any(load is not None and np.any(load) for load in (*inputs.loads, inputs.wrenches)):
+    if not any_load(path.drive.inputs(system)):
         return 0.0  # which the differences below are not, by rounding
     rest, slight = path(system, 0.0), path(system, SLIGHT)
     square, modes = symmetric_modes(symmetric(rest.linear.stiffness), symmetric(rest.linear.mass))
