@@ -101,9 +101,10 @@ class Verdict:
 
     @property
     def stuck_steps(self) -> Flags:
-        """Flags (t,) of steps that many corrections have not made to shrink."""
-        size, _, count, *_ = self.corrections
-        flags: Flags = (count >= STUCK) & ~(size <= SLOW * self.previous_sizes)
+        """Flags (t,) of steps whose corrections do not shrink: many, or small ones."""
+        size, share, count, *_ = self.corrections
+        may_be_rounding = (count >= STUCK) | ((count > 1) & (share <= ROUNDING))
+        flags: Flags = may_be_rounding & ~(size <= SLOW * self.previous_sizes)
         return flags
 
     @property

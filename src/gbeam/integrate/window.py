@@ -19,7 +19,7 @@ from gbeam.integrate.linear import recurrence
 from gbeam.integrate.sampled import HeldCommands, Sampling
 from gbeam.integrate.schemes import Scheme, Tableau
 from gbeam.integrate.steps import Steps
-from gbeam.integrate.verdict import CANCELLED, ROUNDING
+from gbeam.integrate.verdict import ROUNDING
 
 # Speed: factors by which corrections of 14 runs become more if a number is half or twice as large (mean, and most).
 FIRST = 100  # steps in a window at first; speed: 1.12, 0.88 (most 2.0)
@@ -28,6 +28,8 @@ LONGEST = 1000  # steps in a window where one state's derivatives serve all; spe
 AHEAD = 400  # steps whose drives are evaluated at once; it changes no correction and no answer
 FEW = 64  # steps under way, up to which more follow: of many, a call costs little beside its sums; speed: 1.07, 0.95
 HALVINGS = 8  # of a correction of a single step
+# Change of states and inputs that shows rounding: of a smooth force the second difference is less than that
+SHARE, EPSILON = 1e-9, float(np.finfo(float).eps)
 
 
 class Window:
@@ -152,15 +154,23 @@ class Window:
             self._shorten(inverse, by_state, change)
         return np.asarray(np.abs(change).max(axis=(1, 2)))
 
-    def loads(self, states: Array) -> Array:
-        """Sizes (t, s n) of the loads: the change of the forces if every component of an input changed by its largest
-        one.
+    def loads(self, stages: Stages) -> Array:
+        """Sizes (t, s n) of the loads and of the forces that cancel within bodies, by two residuals near the last one.
 
-        So a weight counts even where it acts only across what a joint lets move.
+        The first difference of the three is that of the loads, if every component of an input changed by its largest
+        one: so a weight counts even where it acts only across what a joint lets move. The second difference is
+        rounding, and shows how large the forces are of which it is left. Rounding of a step stays in the following
+        ones.
         """
-        shifted = each_leaf(lambda leaf: leaf + CANCELLED * np.abs(leaf).max(initial=0.0), self.inputs)
-        change = self.residual(*states, shifted) - self.residual(*states, self.inputs)
-        return np.asarray(np.abs(change).reshape(len(self), -1) / CANCELLED)
+
+        def near(share: float) -> Array:
+            """Residuals where inputs change by a share of their largest, and states by the opposite one."""
+            inputs = each_leaf(lambda leaf: leaf + share * np.abs(leaf).max(initial=0.0), stages.inputs)
+            return np.asarray(self.residual(*((1 - share) * stages.states), inputs).reshape(len(self), -1))
+
+        before, after = near(-SHARE), near(SHARE)
+        rounding: Array = np.maximum.accumulate(np.abs(after - 2 * self.residuals + before)) / EPSILON
+        return np.asarray(np.abs(after - before) / (2 * SHARE) + rounding)
 
     @property
     def _commands(self) -> HeldCommands | None:

@@ -126,7 +126,7 @@ class _Solver:
         # The rounding of loads is computed only where corrections do not shrink: it costs two more residuals.
         loads, by_loads = 0 * forces, np.float64(0.0)
         if verdict.stuck_steps.any():
-            loads = window.loads(stages.states)
+            loads = window.loads(stages)
             by_loads = derivatives.accelerations(loads)
         in_balance = balanced_steps(window.residuals, forces, loads)
         judgement = verdict.judge(by_loads, in_balance, fresh=fresh, trusted=trusted)
