@@ -31,7 +31,8 @@ def contracted(system: gb.System, *, rests: bool) -> Tree:
 
 def counts(of: Tree) -> list[int]:
     """Numbers of features by which the bodies are told that are contracted."""
-    constants = [getattr(link.body, "contraction", None) for link in of.links]
+    equations = [getattr(link.body, "equations", link.body) for link in of.links]
+    constants = [getattr(getattr(each, "free", each), "contraction", None) for each in equations]
     return [len(each.features) for each in constants if each is not None]
 
 

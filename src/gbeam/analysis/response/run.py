@@ -28,7 +28,7 @@ from gbeam.arrays.types import Floats, Indices
 from gbeam.integrate.equations import Trajectory, masses
 from gbeam.mechanics.causes import causes_of, loads_at
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.bodies import LinearBody
+from gbeam.mechanics.tree.bodies import moments_of
 from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.linear import is_linear
 from gbeam.mechanics.tree.signal_names import local_names
@@ -293,7 +293,7 @@ class Run:
         system, run = self.posed.system, self.trajectory
         if self.traced or is_linear(system.tree):  # whose M is that of the start
             return None
-        if not any(isinstance(link.body, LinearBody) for link in system.tree.links):
+        if all(moments_of(link.body) is None for link in system.tree.links):
             return None
         steps = np.unique(np.linspace(0, len(run.time) - 1, LOOKS).astype(int))
         q, qd, zeros = run.q[steps], run.qd[steps], np.zeros_like(run.q[steps])

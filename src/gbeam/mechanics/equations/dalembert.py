@@ -7,9 +7,11 @@ steps, over many they are NumPy's.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Self
 
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
+from gbeam.mechanics.equations.contraction import Reach
 from gbeam.mechanics.equations.inertia import Inertia
 from gbeam.mechanics.equations.virtual_work import LoadWork
 
@@ -31,6 +33,10 @@ class Demanding:
     ) -> Array:
         """Residual (..., n) under a base's acceleration (specific force), angular rate and acceleration (..., 3)."""
         return self.demanded(q, qd, qdd, a_WO_B, w_WB_B, alpha_WB_B, load_values)[0]
+
+    def contracted(self, reach: Reach) -> Self:
+        """Return the same equations with fewer sums, where what the root can do allows any: else these."""
+        return self
 
 
 @record

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gbeam.arrays.namespace import Array
 from gbeam.arrays.tree import record
+from gbeam.mechanics.equations.contraction import Reach
 from gbeam.mechanics.equations.dalembert import Complete, Demanding
 from gbeam.mechanics.equations.inertia import Inertia, inertia_of
 from gbeam.mechanics.equations.linear import Geometric, geometric_by, geometric_of
@@ -132,6 +135,11 @@ class HeldComplete(Demanding):
         coordinates, rate, change, basis = self.conditions.moving(q, qd, qdd)
         generalised, force, moment = self.whole(coordinates, rate, change, a, w, alpha, loads)
         return projection(basis, generalised), force, moment
+
+    def contracted(self, reach: Reach) -> HeldComplete:
+        """Contract the free model's equations with what the root can do; return these where that is no faster."""
+        free = self.free.contracted(reach)
+        return self if free is self.free else replace(self, free=free)
 
     def whole(
         self, q: Array, qd: Array, qdd: Array, a: Array, w: Array, alpha: Array, loads: Array | None

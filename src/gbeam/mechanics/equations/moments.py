@@ -7,10 +7,13 @@ Lagrange's equations of these energies keep momentum and energy.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gbeam.arrays.namespace import Array, is_traced, namespace
 from gbeam.arrays.tree import record, static
+from gbeam.mechanics.equations.contraction import Contraction, Reach, contraction
 from gbeam.mechanics.equations.dalembert import Demanding
 from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.fields.products import cross, times, turned, turned_back
@@ -29,12 +32,15 @@ class Moments(Demanding):
     ½ q̇ᵀ(CᵀR⁻¹C − C0ᵀR0⁻¹C0) q̇ more, which is of third order in q and q̇. It is then that of the rigid motion with all
     momentum and of vibration about it, and positive wherever R is.
 
+    By a `contraction` the wrench at the root has those components alone that a tree asks for.
+
     Without `hub_force` the root does not feel the rates of the coordinates: so is SFOAM as printed, 2009 (32), which
     conserves nothing.
     """
 
     coefficients: Coefficients
     carried: Array | None = None
+    contraction: Contraction | None = None
     hub_force: bool = static(default=True)
 
     @property
@@ -60,6 +66,8 @@ class Moments(Demanding):
         """Forces that a motion demands, less those of the loads: on the coordinates (..., n), and force, N, and moment,
         N m, at the root (..., 3).
         """
+        if self.contraction is not None:
+            return self._contracted_forces(self.contraction, q, qd, qdd, a, w, alpha, loads)
         c = self.coefficients
         # Force at the root: d/dt of the momentum m v + ω × S + Ṡ; moment: d/dt of J ω + h, about the moving root.
         S, Si, Sd, J, Ji, h, hi = self._moments(q, qd)
@@ -93,6 +101,35 @@ class Moments(Demanding):
         if not self.hub_force and np.any(qd):
             return generalised, *self.demanded(q, 0 * qd, qdd, a, w, alpha, loads)[1:]
         return generalised, force, moment
+
+    def contracted(self, reach: Reach) -> Moments:
+        """Contract the coefficients with what the root can do; return these equations where that is no faster."""
+        if self.carried is not None:
+            return self
+        constants = contraction(self.coefficients, reach, felt=self.hub_force)
+        return self if constants is None else replace(self, contraction=constants)
+
+    def _contracted_forces(
+        self,
+        constants: Contraction,
+        q: Array,
+        qd: Array,
+        qdd: Array,
+        a: Array,
+        w: Array,
+        alpha: Array,
+        loads: Array | None,
+    ) -> tuple[Array, Array, Array]:
+        """Forces as :meth:`demanded` returns them, by contracted `constants`."""
+        c = self.coefficients
+        generalised, rows = constants.demanded(q, qd, qdd, a, w, alpha)
+        if c.bending is not None:
+            generalised = generalised + c.bending.forces(q)
+        if loads is not None and c.loads is not None:
+            forces = c.loads.generalised(q, loads)
+            generalised, rows = generalised - forces[..., 6:], rows - forces[..., :6] @ constants.loads
+        wrench = rows @ constants.places
+        return generalised, wrench[..., :3], wrench[..., 3:]
 
     def _moments(self, q: Array, qd: Array) -> tuple[Array, ...]:
         """Moments S, ∂S/∂q, Ṡ and J, ∂J/∂q, the angular momentum h = Σ h_i q̇_i, and the h_i, at `q` and `qd`."""

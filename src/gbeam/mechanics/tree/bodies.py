@@ -13,9 +13,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, namespace
 from gbeam.arrays.tree import record
+from gbeam.mechanics.equations.contraction import RigidRows, Roots, rigid_rows
 from gbeam.mechanics.equations.dalembert import Complete
 from gbeam.mechanics.equations.held import HeldComplete
-from gbeam.mechanics.equations.linear import Coefficients
 from gbeam.mechanics.equations.moments import Moments
 from gbeam.mechanics.fields.held import Conditions
 from gbeam.mechanics.fields.products import cross, times, turned, turned_back
@@ -23,7 +23,6 @@ from gbeam.mechanics.fields.series import SeriesField
 from gbeam.mechanics.fields.strains import StrainField
 from gbeam.mechanics.fields.taylor import Polynomials
 from gbeam.mechanics.fields.vectors import split
-from gbeam.mechanics.tree.contraction import Contraction, RigidRows, Roots, contraction, rigid_rows
 from gbeam.mechanics.tree.frames import Frame, Relative, Wrench
 from gbeam.mechanics.tree.steps import component_moments, rotation_by_vector
 
@@ -250,6 +249,15 @@ class DeformingBody:
         generalised, *wrench = self.equations.demanded(q, qd, qdd, root.a, root.w, root.alpha, loads)
         return generalised, Wrench(*wrench)
 
+    def contracted(self, carrier: Roots, root: Roots) -> DeformingBody:
+        """Contract its equations by the motion of its `carrier`, which determines that of its `root`.
+
+        The body itself is returned where that is in doubt, or would not be faster.
+        """
+        reach = carrier.reach(root) if self.size else None
+        equations = self.equations if reach is None else self.equations.contracted(reach)
+        return self if equations is self.equations else replace(self, equations=equations)
+
     def generalised_forces(self, q: Array, wrenches: list[Acting]) -> Array:
         return self.points.generalised_forces(q, wrenches)
 
@@ -263,42 +271,10 @@ class DeformingBody:
         return self.equations.elastic(q)
 
 
-@record
-class LinearBody(DeformingBody):
-    """A body whose energies end at second order in its coordinates: TLAM, FOAM, particles, modes of a mesh.
-
-    With a `contraction` the wrench at the root has those components alone that the tree asks for.
-    """
-
-    equations: Moments
-    contraction: Contraction | None = None
-
-    @property
-    def coefficients(self) -> Coefficients:
-        """Constant coefficients of the equations."""
-        return self.equations.coefficients
-
-    def demanded(self, q: Array, qd: Array, qdd: Array, root: Frame, loads: Array | None) -> tuple[Array, Wrench]:
-        if self.contraction is None:
-            return super().demanded(q, qd, qdd, root, loads)
-        constants, c = self.contraction, self.coefficients
-        generalised, rows = constants.demanded(q, qd, qdd, root.a, root.w, root.alpha)
-        if c.bending is not None:
-            generalised = generalised + c.bending.forces(q)
-        if loads is not None and c.loads is not None:
-            forces = c.loads.generalised(q, loads)
-            generalised, rows = generalised - forces[..., 6:], rows - forces[..., :6] @ constants.loads
-        wrench = rows @ constants.places
-        return generalised, Wrench(wrench[..., :3], wrench[..., 3:])
-
-    def contracted(self, carrier: Roots, root: Roots) -> LinearBody:
-        """Contract the body by the motion of its `carrier`, which determines that of its root.
-
-        The body itself is returned where that is in doubt, or would not be faster.
-        """
-        reach = None if self.equations.carried is not None or not self.size else carrier.reach(root)
-        constants = None if reach is None else contraction(self.coefficients, reach, felt=self.equations.hub_force)
-        return self if constants is None else replace(self, contraction=constants)
+def moments_of(body: Body) -> Moments | None:
+    """Equations of a body by its moments of mass, or None where it has others."""
+    equations = body.equations if isinstance(body, DeformingBody) else None
+    return equations if isinstance(equations, Moments) else None
 
 
 def momentum(body: Body, q: Array, qd: Array, root: Frame) -> tuple[Array, Wrench]:

@@ -16,7 +16,6 @@ from gbeam.mechanics.tree.bodies import (
     Body,
     DeformingBody,
     HeldPoints,
-    LinearBody,
     Points,
     PolynomialPoints,
     StrainedPoints,
@@ -75,7 +74,7 @@ def terms_of(body: Structure, *, free: bool = False) -> Body:
         points = PolynomialPoints(places.r0, places.first, second, turn, zeros)
     if isinstance(equations, Coefficients):
         mean_inertia = carried_inertia(equations) if free and body.field is None else None
-        return LinearBody(Moments(equations, mean_inertia, body.hub_force or not free), points)
+        return DeformingBody(Moments(equations, mean_inertia, hub_force=body.hub_force or not free), points)
     return DeformingBody(equations, points)
 
 

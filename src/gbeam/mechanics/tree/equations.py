@@ -13,9 +13,9 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, namespace
 from gbeam.arrays.tree import record, static
+from gbeam.mechanics.equations.contraction import Roots
 from gbeam.mechanics.fields.products import cross, turned, turned_back
-from gbeam.mechanics.tree.bodies import Acting, Body, LinearBody, Rigid, momentum
-from gbeam.mechanics.tree.contraction import Roots
+from gbeam.mechanics.tree.bodies import Acting, Body, DeformingBody, Rigid, momentum
 from gbeam.mechanics.tree.frames import Frame, Wrench
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
 
@@ -361,7 +361,7 @@ class Tree:
             if k not in acted and link.idle == len(link.steps) and link.parent >= 0:
                 carrier = link.parent if isinstance(self.links[link.parent].body, Rigid) else k
             body = link.body
-            if isinstance(body, LinearBody | Rigid):
+            if isinstance(body, DeformingBody | Rigid):
                 carrier_roots = Roots.from_frames(*(state.step_motions(carrier)[1] for state in states))
                 own_roots = Roots.from_frames(*(state.step_motions(k)[1] for state in states))
                 body = body.contracted(carrier_roots, own_roots)

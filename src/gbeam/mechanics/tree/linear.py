@@ -12,7 +12,7 @@ from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, names
 from gbeam.arrays.tree import each_leaf
 from gbeam.integrate.equations import Drive, LinearEquations, LinearTerms, masses
 from gbeam.mechanics.equations.linear import Coefficients
-from gbeam.mechanics.tree.bodies import Body, LinearBody
+from gbeam.mechanics.tree.bodies import Body, moments_of
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.numerics.eigen import positive_definite
@@ -69,7 +69,8 @@ def idle_inputs(tree: Tree, inputs: Inputs) -> Inputs | None:
 
 def _constant(body: Body) -> bool:
     """True if the coefficients of a body's equations do not change with its coordinates."""
-    return isinstance(body, LinearBody) and body.equations.carried is None and body.coefficients.bending is None
+    equations = moments_of(body)
+    return equations is not None and equations.carried is None and equations.coefficients.bending is None
 
 
 def _rests(body: Body, on: int) -> bool:
@@ -83,7 +84,7 @@ def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
 
     `drive` returns the :class:`Inputs` of the tree at times (t,).
     """
-    of_bodies = [link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size]
+    of_bodies = _coefficients(tree)
     parts = [c.terms for c in of_bodies]
     terms = LinearTerms(*(_blocks([part.arrays[k] for part in parts]) for k in range(3)))
     mass, damping, stiffness = (_diagonal([getattr(c, name) for c in of_bodies]) for name in _MATRICES)
@@ -101,6 +102,12 @@ def linear_equations(tree: Tree, drive: Drive) -> LinearEquations:
 _MATRICES = "mass", "damping", "stiffness"
 
 
+def _coefficients(tree: Tree) -> list[Coefficients]:
+    """Coefficients of the bodies that deform."""
+    equations = (moments_of(link.body) for link in tree.links if link.body.size)
+    return [moments.coefficients for moments in equations if moments is not None]
+
+
 def _roots(tree: Tree, drive: Drive, t: Array) -> Roots:
     """Motions at times (t,) of the roots of the bodies that deform, and their loads."""
     inputs: Inputs = drive(t)
@@ -113,9 +120,7 @@ def _roots(tree: Tree, drive: Drive, t: Array) -> Roots:
 
 def frozen_equations(tree: Tree, inputs: Inputs) -> tuple[Array, Array, Array, Array]:
     """M, C, K (n, n) and F (n,) of a tree that :func:`is_linear`, under the inputs of one time."""
-    body_coefficients = [
-        link.body.coefficients for link in tree.links if isinstance(link.body, LinearBody) and link.body.size
-    ]
+    body_coefficients = _coefficients(tree)
     roots = _roots(tree, lambda _: inputs, np.zeros(()))
     parts = [
         c.evaluate(root.a, root.w, root.alpha, loads) for c, (root, loads) in zip(body_coefficients, roots, strict=True)
