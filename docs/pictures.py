@@ -53,6 +53,7 @@ def main(folder: Path = DOCS, frames: int = 96) -> None:
         rails().savefig(folder / "board_on_rails.png", dpi=150)
         snapping().savefig(folder / "snapping_strip.png", dpi=150)
         warming().savefig(folder / "board_warms_up.png", dpi=150)
+        linkage().savefig(folder / "slider_crank.png", dpi=150)
     tracking, tip = study.responses["centrifuge"].plot("tracking"), study.plot("tip")
     tracking[0].figure.savefig(folder / "f16_tracking.png", dpi=150)
     tip[0].figure.savefig(folder / "f16_tip.png", dpi=150)
@@ -214,6 +215,35 @@ def warming() -> Figure:
         ylim=(0, None),
     )
     frequency.legend(title="wedge lock", loc="lower left")
+    return drawing
+
+
+def linkage() -> Figure:
+    """A slider-crank with a flexible rod, and the load in the joint that closes it."""
+    case = gb.read_scenario(EXAMPLE.parent / "slider_crank.toml")
+    response = gb.simulate(case.system, duration=0.2, initial="undeformed")
+    drawing = Figure(figsize=(7.2, 3.0), layout="constrained")
+    scene, load = drawing.subplots(1, 2)
+    chosen = [np.argmin(abs(response.q[:, 0] - turn)) for turn in (19.4, 20.4, 23.0)]
+    for step, colour in zip(chosen, ("#009E73", MACHINE, "#0072B2"), strict=True):
+        names = "crank.root", "rod.root", "rod.tip"
+        root, pin, tip = (1e3 * response.at(name)[step] for name in names)
+        scene.plot(*zip(root[::2], pin[::2], strict=True), color=colour, lw=3)
+        share = np.linspace(0.0, 1.0, 40)[:, None]
+        sag = 1e3 * response.at("rod.middle")[step] - (pin + tip) / 2
+        line = pin + share * (tip - pin)
+        line = line + 4 * share * (1 - share) * LARGER * sag
+        scene.plot(line[:, 0], line[:, 2], color=colour, lw=1.2)
+        scene.plot(tip[0], tip[2], "s", color=colour, ms=7)
+    scene.set(xlabel="x, mm", ylabel="z, mm", aspect="equal")
+    scene.set_title(f"Crank, rod and piston; bending {LARGER:g} times")
+    force = response.closures.force[:, 0]
+    time = 1e3 * response.time
+    load.plot(time, force[:, 0], color=MACHINE, lw=1.2, label="along")
+    load.plot(time, force[:, 2], color="#0072B2", lw=1.2, label="across")
+    title = "Force in the wrist, which closes the loop"
+    load.set(xlabel="time, ms", ylabel="N", title=title)
+    load.legend()
     return drawing
 
 

@@ -38,9 +38,9 @@ from .mechanics.models import Model as Model
 from .mechanics.structure import Structure as Structure
 from .mechanics.tree.control import Feedback as Feedback
 from .mechanics.tree.joints import Joint as Joint
+from .mechanics.tree.point_force import PointForce as PointForce
 from .mechanics.tree.rigid_body import Place as Place
 from .mechanics.tree.rigid_body import RigidBody as RigidBody
-from .mechanics.tree.system import PointForce as PointForce
 from .mechanics.tree.system import System as System
 from .motion.arm import plain_arm as plain_arm
 from .motion.centrifuge.centrifuge import Centrifuge as Centrifuge

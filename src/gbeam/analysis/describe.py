@@ -10,6 +10,7 @@ import numpy as np
 from gbeam.analysis.case import Case
 from gbeam.analysis.one_body import points_of
 from gbeam.analysis.outline import labels_of
+from gbeam.analysis.system.mobility import mobility_in_words
 from gbeam.guards.arguments import typed
 from gbeam.mechanics.assembly import model_of
 from gbeam.mechanics.fields.basis import FAMILIES
@@ -70,6 +71,7 @@ def describe(case: Case) -> Description:
         mass=total,
         centre=moment / total if total else np.full(3, np.nan),
         bodies={name: _body(system, name) for name in system.order},
+        loops=mobility_in_words(system) if system.closing else "",
         joints={name: _joint(joint) for name, joint in system.joints.items() if joint.steps or joint.on != GROUND},
         forces={name: ForceDescription(force.on, force.follower) for name, force in system.forces.items()},
         controllers={

@@ -33,8 +33,6 @@ from .tree.control import lead_lag as lead_lag
 from .tree.control import notch as notch
 from .tree.control import pid as pid
 from .tree.course import Course as Course
-from .tree.equations import SLIP as SLIP
-from .tree.equations import SLIPS as SLIPS
 from .tree.equations import Inputs as Inputs
 from .tree.equations import Tree as Tree
 from .tree.frames import Frame as Frame
@@ -44,6 +42,8 @@ from .tree.joints import SLIDES as SLIDES
 from .tree.linear import idle_inputs as idle_inputs
 from .tree.linear import is_linear as is_linear
 from .tree.linear import linear_equations as linear_equations
+from .tree.links import SLIP as SLIP
+from .tree.links import SLIPS as SLIPS
 from .tree.one_body import hub_system as hub_system
 from .tree.one_body import moving_system as moving_system
 from .tree.signals import measurements as measurements

@@ -237,9 +237,17 @@ class Steady:
         """Words for what each mode (n, k) moves most."""
         raise NotImplementedError
 
+    @property
+    def motions(self) -> Floats | None:
+        """Motions (n, k) of all coordinates by those of `linear`, or None where these are all."""
+        return None
+
     def vibrations(self, *, gyroscopic: bool = True) -> Vibrations:
-        """Vibrations, growing and decaying motions about it."""
-        return vibrations(self.linear, gyroscopic=gyroscopic, zero=max(self.zero, ZERO))
+        """Vibrations, growing and decaying motions about it, with modes of all coordinates."""
+        moving = vibrations(self.linear, gyroscopic=gyroscopic, zero=max(self.zero, ZERO))
+        if self.motions is None:
+            return moving
+        return moving._replace(modes=self.motions @ moving.modes, divergence=self.motions @ moving.divergence)
 
     @cached_property
     def moving(self) -> Vibrations:

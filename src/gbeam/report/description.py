@@ -116,7 +116,8 @@ def _interactions(case: Description) -> list[str]:
     ]
     gravity = () if case.gravity is None else (", ".join(f"{g:.4g}" for g in case.gravity) + " m/s²",)
     return [
-        *_listed("joints", joints), *_listed("forces", forces), *_listed("control", controllers),
+        *_listed("joints", joints), *_listed("loops", [case.loops] if case.loops else []), *_listed("forces", forces),
+        *_listed("control", controllers),
         *_listed("gravity", gravity),
     ]  # fmt: skip
 

@@ -258,6 +258,10 @@ class Description(Part):
     mass: float = fact("mass of all bodies", "kg")
     centre: Floats = entry("m", "centre of mass of all bodies at the start, undeformed", "axis", frame="ground")
     bodies: Mapping[str, BodyDescription] = rows("bodies, by name", "body")
+    loops: str = fact(
+        "free motions that joints leave where they close loops, and loads that they do not determine",
+        note="empty without loops",
+    )
     joints: Mapping[str, JointDescription] = rows(
         "joints, by name, but those that hold a body's root on the ground as it is", "joint", default_factory=dict
     )

@@ -27,6 +27,7 @@ from gbeam.results.system import (
     SPINS,
     TURNS,
     Assembly,
+    Closures,
     Invariants,
     Loop,
     Maxima,
@@ -164,6 +165,9 @@ class Response(MovedBody, Placed, Driven, Figured[str]):
     )
     loop: Loop | None = part(
         "controllers", key="loop", name=INSIDE, optional=True, note="None without any", default=None
+    )
+    closures: Closures | None = part(
+        "joints that close loops", key="closures", name="closing_", optional=True, note="None without any", default=None
     )
     hub: HubResult | None = part("motion of a hub", optional=True, default=None)
     axes: AxesResult | None = part("motion of a centrifuge", key=INSIDE, optional=True, default=None)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from gbeam.guards.checks import index_of
-from gbeam.results.declared import fact, labels, part, quantity
+from gbeam.results.declared import declared, fact, labels, part, quantity
 from gbeam.results.parts import VectorPeaks
 from gbeam.results.result import Floats, Part
 
@@ -61,6 +61,35 @@ class Loop(Part):
     )
     asked_max: Floats = quantity("", "size of the effort that the law asks for, the largest of all samples", "drive")
     applied_max: Floats = quantity("", "size of the effort that acts, the largest of all samples", "drive")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Closures(Part):
+    """Joints that close loops over time: the gap that is left in each, and its loads."""
+
+    json_rows: ClassVar[dict[str, str]] = {"closure": "joints"}
+
+    joints: tuple[str, ...] = labels("name of the joint that closes a loop", "closure")
+    gap: Floats = quantity("m", "distance of the joint's end from the point that it closes on", "time closure")
+    gap_angle: Floats = quantity("rad", "angle between the joint's end and that point", "time closure")
+    force: Floats = quantity(
+        "N", "force of the point on the joint", "time closure axis", frame="axes of the point",
+        note="NaN along a direction in which other joints hold as well: a rigid mechanism does not determine it",
+    )  # fmt: skip
+    moment: Floats = quantity(
+        "N m", "moment of the point on the joint", "time closure axis", frame="axes of the point",
+        note="NaN about such a direction",
+    )  # fmt: skip
+
+    @declared("m", "distance of the joint's end from its point, the largest", "closure", key="gap_max", name=None)
+    def largest_gap(self) -> Floats:
+        """Largest gap of each joint, (c,) m."""
+        return self.gap.max(axis=0)
+
+    @declared("rad", "angle between them, the largest", "closure", key="gap_angle_max", name=None)
+    def largest_gap_angle(self) -> Floats:
+        """Largest angle of each joint's gap, (c,) rad."""
+        return self.gap_angle.max(axis=0)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -10,8 +10,9 @@ import numpy as np
 from gbeam.analysis.system.point import in_words
 from gbeam.arrays.types import Floats
 from gbeam.integrate.equations import Trajectory
-from gbeam.mechanics.tree.equations import SLIP, SLIPS, STUCK, Inputs, Link
+from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.joints import SLIDES, SPIN, Joint
+from gbeam.mechanics.tree.links import SLIP, SLIPS, STUCK, Link
 from gbeam.mechanics.tree.signal_names import unit_of_effort
 from gbeam.mechanics.tree.system import System
 from gbeam.numerics.series import STEP
@@ -76,11 +77,10 @@ def _states(
     states = [run.q, run.qd]
     if inputs.prescribed is not None:
         states = [system.tree.complete(state, inputs.prescribed[..., k, :]) for k, state in enumerate(states)]
-    names = {joint.body: name for name, joint in system.joints.items()}
     by_link = zip(*system.tree.parted(*states), strict=True)
-    for body, link, (q, qd) in zip(system.order, system.tree.links, by_link, strict=True):
+    for name, link, (q, qd) in zip(system.linked, system.tree.links, by_link, strict=True):
         if not link.loose:
-            yield names[body], system.joints[names[body]], link, q[:-1], qd[:-1]  # the last are the body's own
+            yield name, system.joints[name], link, q[:-1], qd[:-1]  # the last are the body's own
 
 
 def _held_coordinates(system: System, run: Trajectory, inputs: Inputs) -> Iterator[tuple[str, Joint, Floats, Floats]]:

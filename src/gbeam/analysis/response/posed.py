@@ -38,9 +38,10 @@ from gbeam.integrate.driver import integrate_steps
 from gbeam.integrate.equations import LinearEquations, NonlinearEquations, Trajectory
 from gbeam.integrate.steps import Corners, Steps, join_steps, make_steps
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.equations import SLIP, Inputs
+from gbeam.mechanics.tree.equations import Inputs
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.linear import idle_inputs, is_linear, linear_equations
+from gbeam.mechanics.tree.links import SLIP
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion

@@ -38,7 +38,7 @@ from gbeam.results.errors import Errors, StepErrors
 from gbeam.results.machine import AxesResult
 from gbeam.results.parts import Base, Influence, Loads, Peaks
 from gbeam.results.response import HubResult, Response
-from gbeam.results.system import Invariants
+from gbeam.results.system import Closures, Invariants
 from gbeam.structure.beam import names_at
 
 Known = Mapping[str, tuple[Floats, Peaks]]  # displacements (t, s, 3) m at all steps, and their peaks, by the body
@@ -241,6 +241,9 @@ class Histories:
     def sampled(self) -> dict[str, Any]:
         """Histories of points, coordinates, efforts and the ground's load at the response's times, by field."""
         histories = _during(self.over_time, self.recorded)
+        if "gap" in histories:
+            keys = "gap", "gap_angle", "closing_force", "closing_moment"
+            histories["closures"] = Closures(self.run.posed.system.closing, *(histories.pop(key) for key in keys))
         if "energy" not in histories:
             return histories
         names = "momentum", "angular_momentum", "energy"
@@ -328,7 +331,8 @@ def response_of(
 def _stated(run: Run, errors: Errors, outcome: str) -> float:
     """Total error of the displacement; that of the steps alone where a body cannot be judged."""
     total, step = errors.displacement.total, errors.displacement.step
-    judged = all(body.judged for body in run.posed.system.flexible.values())
+    system = run.posed.system
+    judged = len(judged_bodies(system)) == len(system.flexible)
     stepped = run.posed.settings.estimate and outcome == "done" and not judged
     return step if stepped and math.isnan(total) else total
 

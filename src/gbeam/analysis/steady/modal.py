@@ -39,14 +39,14 @@ def modes_of(
     Each is scaled so that the largest component of its points and of its bodies' stations and edges is one.
     """
     system = state.system
-    rigid = len(state.local.y) - len(vibrations.value) - (len(vibrations.diverging) + len(vibrations.decaying)) // 2
+    rigid = len(state.linear.mass) - len(vibrations.value) - (len(vibrations.diverging) + len(vibrations.decaying)) // 2
     # Static shapes of a body bring modes where others hang on it, and beside others those that are not its own.
     hung = {joint.on.partition(".")[0] for joint in system.joints.values()}
     static = 0
     if len(system.flexible) == 1:
         ((name_of_body, body_alone),) = system.flexible.items()
         static = 0 if name_of_body in hung else body_alone.size - body_alone.resolved
-    vibrations = vibrations.oscillating(slice(len(state.local.y) - static - rigid))
+    vibrations = vibrations.oscillating(slice(len(state.linear.mass) - static - rigid))
     shape, turn = (np.einsum("pan,nk->kpa", slopes, vibrations.modes) for slopes in state.slopes_of_frames)
     bodies = dict[str, tuple[Structure, Floats, Complex]]()
     for body_name, structure in system.flexible.items():

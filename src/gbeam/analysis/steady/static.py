@@ -152,7 +152,7 @@ def rest_of(subject: Subject, state: SteadySystem, name: str = "") -> Rest:
     begun, values = values_at(system.start[0][system.tree.unknowns]), values_at(point.y)
     # Forces on the ground that are rounding beside the inertia of accelerated bodies are none.
     motions = point.tree.motion(point.y, point.yd, point.ydd, point.inputs)
-    links = zip(point.tree.links, motions.q, motions.roots, strict=True)
+    links = zip(point.tree.links, motions.q, motions.roots, strict=False)  # those that close loops have no body
     inertia = sum(float(link.body.mass_moment(q[-1])[0] * np.linalg.norm(root.a)) for link, q, root in links)
     for key, size in ("ground_force", inertia), ("ground_moment", inertia * np.abs(values["place"]).max(initial=0.0)):
         values[key] = np.where(np.abs(values[key]) > ROUNDING * size, values[key], 0.0)

@@ -55,7 +55,7 @@ from gbeam.analysis.system.solution import Solution
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError
 from gbeam.mechanics.structure import Structure
-from gbeam.mechanics.tree.equations import SLIPS
+from gbeam.mechanics.tree.links import SLIPS
 from gbeam.mechanics.tree.system import System
 from gbeam.results.errors import ErrorEstimate, Errors, largest_known
 from gbeam.results.parts import Base

@@ -15,6 +15,7 @@ from gbeam.mechanics.section_forces import section_forces
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import Acting
 from gbeam.mechanics.tree.body_terms import stations_of
+from gbeam.mechanics.tree.closures import DIRECTIONS
 from gbeam.mechanics.tree.equations import Inputs, State
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.steps import parameters_of_matrices
@@ -66,6 +67,7 @@ def histories(
     tree = system.tree
     state = tree.motion(y, yd, ydd, inputs)
     frames = state.every_point
+    inputs = tree.closed(state, inputs)
     rows, ground, acting = tree.demanded(state, inputs)
     full_state = [y, yd]
     if inputs.prescribed is not None:
@@ -85,6 +87,14 @@ def histories(
         "ground_force": -ground.force,
         "ground_moment": -ground.moment,
     }
+    if tree.closures:
+        gaps, wrenches = tree.gaps(state), np.asarray(inputs.closing)
+        gaps = gaps.reshape(*gaps.shape[:-1], -1, 2, 3)
+        lost = np.isin(np.arange(DIRECTIONS * len(tree.closures)), tree.conditions, invert=True)
+        loads = np.where(lost.reshape(-1, 2, 3), np.nan, wrenches.reshape(gaps.shape))
+        sizes = np.linalg.norm(gaps, axis=-1)
+        values |= {"gap": sizes[..., 0], "gap_angle": sizes[..., 1]}
+        values |= {"closing_force": loads[..., 0, :], "closing_moment": loads[..., 1, :]}
     if inertial:
         gravity = np.zeros(3) if system.gravity is None else as_array(system.gravity)
         momentum, spin, energy = tree.invariants(state, gravity)

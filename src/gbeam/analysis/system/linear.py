@@ -98,9 +98,13 @@ def linearize_system(
     values, (by_y, by_yd, by_ydd) = _outputs(local, read)
     slopes = by_y - by_ydd @ state.follows, by_yd, by_ydd
     b, direct = _inputs(system, local, state.names, [drivable[signal] for signal in driven], read)
+    chosen, motions = np.arange(len(state.names)), state.motions
+    if motions is not None:
+        by_y, by_yd, by_ydd = slopes
+        chosen, b, slopes = state.independent, motions.T @ b, (by_y @ motions, by_yd @ motions, by_ydd @ motions)
     driving = tuple(Signal(signal, drivable[signal].unit) for signal in driven)
     a, b, c, d = state.linear._replace(inputs=b).state_space(*slopes, direct)
-    names = state.names
+    names = [state.names[k] for k in chosen]
     suffixes = {"": "", "_rate": "/s"}  # of names and units; rotations of a ball are counted from this state
     states = [Signal(f"{q}{end}", units[q] + suffixes[end] if units.get(q) else "") for end in suffixes for q in names]
     return StateSpace(
@@ -111,7 +115,7 @@ def linearize_system(
         states=tuple(states),
         inputs=driving,
         outputs=tuple(Signal(signal, units[signal]) for signal in wanted),
-        state=np.concatenate([local.y, local.yd]),
+        state=np.concatenate([local.y[chosen], local.yd[chosen]]),
         input=np.zeros(len(driving)),
         output=values,
         model="system",

@@ -11,9 +11,10 @@ from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import InputError
 from gbeam.integrate.equations import Trajectory, values_and_slopes
-from gbeam.mechanics.tree.equations import STUCK, Inputs, Tree
+from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.linear import frozen_equations, is_linear
+from gbeam.mechanics.tree.links import STUCK
 from gbeam.mechanics.tree.signal_names import local_names, unit_of_effort
 from gbeam.mechanics.tree.steps import Ball
 from gbeam.mechanics.tree.system import System
@@ -90,7 +91,7 @@ class Point:
         """Warn of coordinates that friction, which is left out, may hold; if `resting`, how far from this place."""
         state, warnings, local = self.tree.motion(self.y, self.yd, self.ydd, self.inputs), list[str](), None
         for name, joint in system.joints.items():
-            k = system.order.index(joint.body)
+            k = system.link(name)
             rates = self.tree.links[k].spring_values(state.q[k][:-1], state.qd[k][:-1])[1] if joint.frictions else ()
             for kind, friction in joint.frictions.items():
                 i = joint.rate_names.index(kind)

@@ -19,6 +19,7 @@ from gbeam.analysis.system.steady import SteadySystem, release
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Floats
 from gbeam.errors import ComputationError, InputError
+from gbeam.mechanics.tree.closures import DIRECTIONS
 from gbeam.mechanics.tree.equations import Inputs, Tree
 from gbeam.mechanics.tree.joints import SPIN
 from gbeam.mechanics.tree.linear import is_linear
@@ -26,6 +27,7 @@ from gbeam.mechanics.tree.signal_names import unit_of_effort
 from gbeam.mechanics.tree.system import System
 
 PREDICTED = 1e-3  # of the coordinates: a state so near to where those of lower drives lead has not left their path
+CLOSED = 1e-8  # m, rad, m/s or rad/s: a larger gap, or rate of one, is that of a loop that does not stay closed
 CORRECTIONS, CLOSE = 50, 1e-12  # of joints beside bodies that are held: their number, and m or rad
 
 
@@ -36,12 +38,30 @@ def steady_state(system: System, drive: Drive, *, held: bool = False, start: Flo
     The search begins at coordinates `start`, by default those of the joints. Where it ends nowhere, or in an unstable
     state far from there, the system moves from the start down its forces, to a stable state if it can.
     """
-    state = _branch(system, drive, system.start[0] if start is None else start)
+    start = system.start[0] if start is None else start
+    if system.closing:
+        y = start[system.tree.unknowns]
+        _refuse_moving_loops(system, Point(system.tree, y, 0 * y, 0 * y, drive.inputs(system)))
+    state = _branch(system, drive, start)
+    _refuse_moving_loops(system, state.point)
     if state.accelerated and state.changing:
         names = " and ".join(motion.coordinate for motion in state.accelerated)
         problem = f"{names} is accelerated by what turns, and not evenly: hold it, or take away what pushes it"
         raise ComputationError("no equilibrium", problem)
     return release(state, held=held)
+
+
+def _refuse_moving_loops(system: System, point: Point) -> None:
+    """Raise ComputationError where loops do not stay closed in a state of rest: a prescribed joint moves them."""
+    tree = point.tree
+    if not tree.closures:
+        return
+    gaps, rates, _ = tree.gap_rates(tree.motion(point.y, point.yd, point.ydd, point.inputs))
+    sizes = np.maximum(np.abs(gaps), np.abs(rates)).reshape(-1, DIRECTIONS).max(axis=1)
+    if sizes.max() > CLOSED:
+        name = system.closing[int(sizes.argmax())]
+        problem = f"the loop that {name} closes does not stay closed there, or a prescribed joint moves it"
+        raise ComputationError("no equilibrium", f"{problem}; hold that joint, or ask for a run in time")
 
 
 def settled(system: System, drive: Drive) -> SteadySystem:
@@ -110,7 +130,11 @@ def _rubbing(system: System) -> dict[str, tuple[str, ...]]:
 
 def beginning(system: System, drive: Drive) -> SteadySystem:
     """System in motion as it starts, its bodies bent as in inertia relief, so that none of them is shaken."""
-    return SteadySystem(system, drive, starting_point(system, drive.motion, drive.time, Initial("relief")), begins=True)
+    point = starting_point(system, drive.motion, drive.time, Initial("relief"))
+    if system.closing and (point.yd.any() or any(joint.rates for joint in system.joints.values())):
+        problem = f"moves, and {system.closing[0]} closes a loop, whose small departures are those of a state of rest"
+        raise InputError("at", f'is "start", where the system {problem}', 'give at = "rest"')
+    return SteadySystem(system, drive, point, begins=True)
 
 
 def _branch(system: System, drive: Drive, start: Floats) -> SteadySystem:

@@ -20,6 +20,7 @@ from gbeam.results.parts import Base
 
 Directions = tuple[bool, bool, bool]  # flags of x, y and z
 NOT_ALL = "shapes and model are not judged of {}: neither a beam, a mesh nor matrices"
+IN_LOOPS = "shapes and models are not judged where joints close loops: compare with more shapes"
 
 
 class Richer(NamedTuple):
@@ -32,8 +33,8 @@ class Richer(NamedTuple):
 
 
 def judged_bodies(system: System) -> dict[str, Structure]:
-    """Beams and solids whose shapes and models can be judged, by name."""
-    return {name: body for name, body in system.flexible.items() if body.judged}
+    """Beams and solids whose shapes and models can be judged, by name: none where joints close loops."""
+    return {name: body for name, body in system.flexible.items() if body.judged and not system.closing}
 
 
 def judged_beams(system: System) -> dict[str, Structure]:
@@ -43,6 +44,8 @@ def judged_beams(system: System) -> dict[str, Structure]:
 
 def left_unjudged(system: System) -> str:
     """Sentence about bodies, and about meshes, that are not judged, or empty if there are none."""
+    if system.closing and any(body.size for body in system.flexible.values()):
+        return IN_LOOPS
     heavy = [name for name, body in system.bodies.items() if name not in system.flexible and body.mass > 0]
     if len(system.flexible) == 1 and not heavy:  # beside a free hub at most
         return unjudged(*system.flexible.values())

@@ -15,7 +15,8 @@ from gbeam.arrays.namespace import Array, holds_jax, namespace
 from gbeam.arrays.types import Flags, Floats
 from gbeam.errors import ComputationError
 from gbeam.integrate.equations import accelerations, masses, solve_systems
-from gbeam.mechanics.tree.equations import Inputs
+from gbeam.mechanics.tree.closing import following
+from gbeam.mechanics.tree.equations import Inputs, State, Tree
 from gbeam.mechanics.tree.signal_names import deforming
 from gbeam.mechanics.tree.system import System
 from gbeam.motion.protocol import Motion
@@ -143,7 +144,20 @@ def _solve_for_start(system: System, inputs: Inputs, initial: Initial) -> tuple[
             bent, accelerated = bent & is_held, accelerated & is_held
     if not (bent | accelerated).any():
         return Begun(y, 0 * y), bent, accelerated
+    if tree.closures:
+        tree, bent = _loosened(system, tree.motion(y, yd, 0 * y, inputs), bent, accelerated)
     return solve_start(tree, y, yd, inputs, bent=bent, accelerated=accelerated), bent, accelerated
+
+
+def _loosened(system: System, state: State, bent: Flags, accelerated: Flags) -> tuple[Tree, Flags]:
+    """Tree, and flags (n,) of the coordinates that a start bends, by which loops stay closed as bodies bend: of the
+    joints that are held, those that follow the others move along.
+    """
+    tree = system.tree
+    is_held = ~(bent | accelerated)
+    loosened = bent | (following(tree, state, is_held) & ~accelerated)
+    # What holds the others is no part of the conditions' balance.
+    return replace(tree, weights=np.where(loosened | accelerated, np.asarray(tree.weights), 0.0)), loosened
 
 
 def _body_selection(system: System, name: str) -> Floats:

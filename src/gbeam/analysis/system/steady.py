@@ -13,13 +13,14 @@ from gbeam.analysis.system.drive import Drive
 from gbeam.analysis.system.point import Point, refuse_massless
 from gbeam.analysis.system.search import NONE, adrift
 from gbeam.analysis.system.solution import Solution
-from gbeam.arrays.types import Complex, Flags, Floats
+from gbeam.arrays.types import Complex, Flags, Floats, Indices
 from gbeam.constants import BY_STRAINS
 from gbeam.errors import ComputationError
 from gbeam.mechanics.fields.products import turned_back
 from gbeam.mechanics.plausibility import elastic_bend
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.bodies import momentum
+from gbeam.mechanics.tree.closing import independent_motions
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import SLIDES
 from gbeam.mechanics.tree.rigid_body import ROOT
@@ -135,7 +136,7 @@ class SteadySystem(Steady):
             even = replace(ground, alpha=0 * ground.alpha)
             prescribed = None if prescribed is None else prescribed * [[1.0], [1.0], [0.0]]
             without = replace(self.local, inputs=replace(inputs, ground=even, prescribed=prescribed)).slopes()[1]
-            brought = self.local.slopes()[1] - without
+            (brought,) = self.along(self.local.slopes()[1] - without)
             k = k - (brought - brought.T) / 2
         return stability_margin(m, c, k, self.zero**2) > 0
 
@@ -204,7 +205,7 @@ class SteadySystem(Steady):
     @cached_property
     def linear(self) -> Linear:
         """M, C and K of small departures. ComputationError where a body's model has no positive mass."""
-        k, c, m = self.known or self.local.slopes()[1:]
+        k, c, m = self.along(*(self.known or self.local.slopes()[1:]))
         if not positive_definite(m):
             raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
         if self.point.minimal:  # of others mass is looked at where they rest
@@ -215,7 +216,30 @@ class SteadySystem(Steady):
                 columns = deforming(self.names, name)
                 q, k = self.local.y[columns], np.array(k)
                 k[np.ix_(columns, columns)] += bending.stiffness(q) - bending.slope(q)
-        return Linear(m, c, k - m @ self.follows, np.zeros((len(m), 0)))
+        return Linear(m, c, k - m @ self.along(self.follows)[0], np.zeros((len(m), 0)))
+
+    @cached_property
+    def _independent(self) -> tuple[Indices, Floats] | None:
+        """Indices (k,) of independent local coordinates, and motions (n, k) by these; None where all are."""
+        local = self.local
+        if not local.tree.closures:
+            return None
+        return independent_motions(local.tree, local.tree.motion(local.y, local.yd, local.ydd, local.inputs))
+
+    @property
+    def motions(self) -> Floats | None:
+        """Motions (n, k) of the local coordinates by those that are independent, or None where all are."""
+        return None if self._independent is None else self._independent[1]
+
+    def along(self, *matrices: Floats) -> tuple[Floats, ...]:
+        """Matrices (k, k) along the independent coordinates of matrices (n, n) of all local ones."""
+        motions = self.motions
+        return matrices if motions is None else tuple(motions.T @ matrix @ motions for matrix in matrices)
+
+    @property
+    def independent(self) -> Indices:
+        """Indices (k,) of the local coordinates that are independent."""
+        return np.arange(len(self.local.y)) if self._independent is None else self._independent[0]
 
     @cached_property
     def adrift(self) -> Flags:
@@ -318,10 +342,10 @@ class SteadySystem(Steady):
         if prescribed is not None:
             prescribed = prescribed * [[1.0], [0.0], [0.0]]  # without rates and accelerations
         at_rest = replace(inputs, ground=still, prescribed=prescribed)
-        energies = np.zeros((modes.shape[1], len(tree.links)))
+        energies = np.zeros((modes.shape[1], len(self.system.order)))
         for rates in (modes.real.T, modes.imag.T):
             state = tree.motion(np.broadcast_to(self.local.y, rates.shape), rates, 0 * rates, at_rest)
-            for k, link in enumerate(tree.links):
+            for k, link in zip(range(len(self.system.order)), tree.links, strict=False):
                 energies[:, k] += momentum(link.body, state.q[k][-1], state.qd[k][-1], state.roots[k])[0]
         return np.asarray(energies / np.maximum(energies.sum(axis=1, keepdims=True), 1e-300))
 

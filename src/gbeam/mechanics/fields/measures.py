@@ -144,7 +144,7 @@ class SectionMeasures(Measures):
         push: Any = tuple(force)
         turn: Any = NONE
         if turns:
-            vector_rate, _ = _vector_rates(rotation_vectors(self._rotation(state, q)))
+            vector_rate, _ = vector_rates(rotation_vectors(self._rotation(state, q)))
             moment = xp.zeros((*q.shape[:-1], 3, len(self.which), count))
             for k, section, axis in turns:
                 unit = np.zeros((len(self.which), count))
@@ -175,7 +175,7 @@ class SectionMeasures(Measures):
                 bent.append(field.inward(tangents, cross(push, angle), moment))
                 continue
             section_axes = self._rotation(tangents, q[..., None, :])[..., 0, section, :, :]
-            vector_rate, by_vector = _vector_rates(rotation_vectors(section_axes))
+            vector_rate, by_vector = vector_rates(rotation_vectors(section_axes))
             unit, projected = (
                 vector_rate[..., direction - 3, :],
                 turned_points[..., section, :] @ np.swapaxes(vector_rate, -1, -2),
@@ -196,7 +196,7 @@ class SectionMeasures(Measures):
         shape = (*np.broadcast_shapes(q.shape[:-1], qd.shape[:-1]), len(self.axes))
         vectors = motion.tdd, motion.turn, motion.turnd
         change, w, alpha = (joined(xp, mapped(vector, self.sections.cumulative), shape) for vector in vectors)
-        vector_rate, by_vector = _vector_rates(rotation_vectors(self._rotation(state, q)))
+        vector_rate, by_vector = vector_rates(rotation_vectors(self._rotation(state, q)))
         phi_rate = (vector_rate @ w[..., None])[..., 0]
         turned = vector_rate @ alpha[..., None] + by_vector(phi_rate) @ w[..., None]
         return components(self.which, change[..., None], turned)[..., 0]
@@ -234,7 +234,7 @@ def rotation_vectors(R: Array) -> Array:
     return xp.where(small, series, large)[..., None] * sine
 
 
-def _vector_rates(phi: Array) -> tuple[Array, Any]:
+def vector_rates(phi: Array) -> tuple[Array, Any]:
     """Matrices B (..., 3, 3) with φ̇ = B ω of rotation vectors (..., 3), and the function of φ̇ that gives Ḃ.
 
     B = 1 − ½ [φ]× + c [φ]×² with c = (1 − θ/2 cot θ/2)/θ²; ω is in the axes that do not turn.

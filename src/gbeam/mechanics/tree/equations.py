@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -15,110 +14,13 @@ from gbeam.arrays.namespace import Array, concatenated, holds_jax, is_jax, names
 from gbeam.arrays.tree import record, static
 from gbeam.mechanics.equations.contraction import Roots
 from gbeam.mechanics.fields.products import cross, turned, turned_back
-from gbeam.mechanics.tree.bodies import Acting, Body, DeformingBody, Rigid, momentum
+from gbeam.mechanics.tree.bodies import Acting, DeformingBody, Rigid, momentum
+from gbeam.mechanics.tree.closures import DIRECTIONS, Closure, closing_loads, gap, gap_with_rates, settling
 from gbeam.mechanics.tree.frames import Frame, Wrench
+from gbeam.mechanics.tree.links import Holder, Link
 from gbeam.mechanics.tree.steps import Ball, Placed, Rotation, Slide, Step, Turning
 
-SLIP = 1e-3  # rad/s or m/s: rate at which friction has 0.76 of its size
-SLIPS = f"{1e3 * SLIP:g} mm/s", f"{math.degrees(SLIP):.3g} °/s"  # in words, along and about
 SAMPLES = 40  # states by which the motions that roots can have are found
-STUCK = 3 * SLIP  # rate below which friction has less than 0.995 of its size
-
-
-@record
-class Holder:
-    """Springs and stops on the values (h,) of a joint (:meth:`Step.held_values`), dampers and friction on their rates.
-
-    The springs have no force at the values `ease`. The stops begin at `low` and `high` and have the
-    stiffness `stop`. `coupling` (h, h) is the stiffness between values, or None. Friction is smooth below rates of the
-    size `slip`.
-    """
-
-    stiffness: Array
-    ease: Array
-    damping: Array
-    friction: Array
-    low: Array
-    high: Array
-    stop: Array
-    coupling: Array | None = None
-    slip: float = static(default=SLIP)
-
-    @property
-    def bends(self) -> bool:
-        """True if a force changes its slope abruptly, as friction does near rest and a stop where it is met."""
-        return bool((self.friction > 0).any() or (self.stop > 0).any())
-
-    @property
-    def holds(self) -> bool:
-        """True if there is any force, apart from the coupling's."""
-        return any((values != 0).any() for values in (self.stiffness, self.damping, self.friction, self.stop))
-
-    def forces(self, values: Array, rates: Array) -> tuple[Array, Array]:
-        """Forces (..., h) of springs and stops on the values, and of dampers and friction on the rates."""
-        xp = namespace(values, rates, self.stiffness)
-        pull = self.stiffness * (values - self.ease) + self.stop * self._excess(values)
-        if self.coupling is not None:
-            pull = pull + (values - self.ease) @ self.coupling
-        return pull, self.damping * rates + self.friction * xp.tanh(rates / self.slip)
-
-    def stored(self, values: Array) -> Array:
-        """Energy (...) of the springs and stops, J."""
-        moved = values - self.ease
-        pull = self.stiffness * moved if self.coupling is None else self.stiffness * moved + moved @ self.coupling
-        return (pull * moved + self.stop * self._excess(values) ** 2).sum(axis=-1) / 2
-
-    def _excess(self, q: Array) -> Array:
-        """Signed distance (..., h) of values beyond their stops, zero between these."""
-        xp = namespace(q, self.low)
-        return xp.maximum(q - self.high, 0.0) - xp.maximum(self.low - q, 0.0)
-
-
-@record
-class Link:
-    """A body with the joint that holds it: a chain of steps from point `on` (index) of body `parent`, −1 for the
-    ground, and its springs, which act unless it is `loose`. A body's root is the point after its others, or −1.
-    """
-
-    steps: tuple[Step, ...]
-    holder: Holder
-    body: Body
-    parent: int = static()
-    on: int = static()
-    loose: bool = static()
-
-    @property
-    def sizes(self) -> tuple[int, ...]:
-        """Numbers of coordinates of each step, and of the body."""
-        return (*(step.size for step in self.steps), self.body.size)
-
-    @property
-    def idle(self) -> int:
-        """Number of steps before the first with coordinates."""
-        return next((k for k, step in enumerate(self.steps) if step.size), len(self.steps))
-
-    def stored(self, q: list[Array], qd: list[Array]) -> Array:
-        """Energy (...) of the joint's springs and stops, J, by coordinates of its steps and rates."""
-        return self.holder.stored(self.spring_values(q, qd)[0])
-
-    def spring_values(self, q: list[Array], qd: list[Array]) -> tuple[Array, Array]:
-        """Values (..., h) on which the joint's springs act, and their rates, by coordinates and rates of its steps."""
-        values, rates = zip(*self._values_by_step(q, qd), strict=True)
-        return concatenated(values), concatenated(rates)
-
-    def holding(self, q: list[Array], qd: list[Array]) -> list[Array]:
-        """Forces (..., k) of springs, dampers, friction and stops on the coordinates of each step."""
-        by_step = self._values_by_step(q, qd)
-        values, rates = (concatenated(list(parts)) for parts in zip(*by_step, strict=True))
-        pull, drag = self.holder.forces(values, rates)
-        sizes = [part.shape[-1] for part, _ in by_step]
-        spans = [slice(end - size, end) for end, size in zip(accumulate(sizes), sizes, strict=True)]
-        steps = zip(self.steps, q, spans, strict=True)
-        return [step.coordinate_forces(values, pull[..., span], drag[..., span]) for step, values, span in steps]
-
-    def _values_by_step(self, q: list[Array], qd: list[Array]) -> list[tuple[Array, Array]]:
-        """Values and rates, as :meth:`held_values`, of each step."""
-        return [step.spring_values(*state) for step, *state in zip(self.steps, q, qd, strict=True)]
 
 
 @record
@@ -127,7 +29,8 @@ class Inputs:
 
     They are the motion of the ground, prescribed coordinates with their rates (..., 3, k), efforts (..., n) on all
     coordinates, load components (..., l, 6) of each body, and wrenches (..., p, 6) on points. Each is None where there
-    is nothing of the kind.
+    is nothing of the kind. Wrenches `closing` loops (..., c, 6), axes of the points that they close on, are solved for
+    where they are None.
     """
 
     ground: Frame
@@ -135,6 +38,7 @@ class Inputs:
     efforts: Array | None
     loads: tuple[Array | None, ...]
     wrenches: Array | None
+    closing: Array | None = None
 
 
 @record
@@ -162,7 +66,7 @@ class State:
 
     def __init__(self, tree: Tree, y: Array, yd: Array, ydd: Array, ground: Frame) -> None:
         self.shape = np.broadcast_shapes(y.shape[:-1], yd.shape[:-1], ydd.shape[:-1])
-        self.links, self._ground = tree.links, ground
+        self.links, self._ground, self._bodies = tree.links, ground, range(len(tree.links) - len(tree.closures))
         self._moved, self._relative = dict[int, tuple[list[Any], Frame]](), dict[int, list[Any]]()
         self._points = dict[int, list[Frame]]()
         self.q, self.qd, self.qdd = tree.parted(y, yd, ydd)
@@ -195,7 +99,7 @@ class State:
     @property
     def roots(self) -> list[Frame]:
         """Motions of the roots of all bodies."""
-        return [self.step_motions(body)[1] for body in range(len(self.links))]
+        return [self.step_motions(body)[1] for body in self._bodies]
 
     def relative(self, body: int) -> list[Any]:
         """Motions of a body's points in its root's axes."""
@@ -215,7 +119,7 @@ class State:
     def places(self) -> Array:
         """Positions (..., p, 3), m, of the points of all bodies, in the order of :attr:`every_point`."""
         places = list[Array]()
-        for body, link in enumerate(self.links):
+        for body, link in zip(self._bodies, self.links, strict=False):
             root = self.step_motions(body)[1]
             relative = link.body.places_of(self.q[body][-1])
             points = root.p[..., None, :] + relative @ namespace(root.R).swapaxes(root.R, -1, -2)
@@ -225,19 +129,25 @@ class State:
     @property
     def every_point(self) -> list[Frame]:
         """Motions of the points of all bodies, one after the other, each with its root the last."""
-        return [frame for body in range(len(self.links)) for frame in self.points_of(body)]
+        return [frame for body in self._bodies for frame in self.points_of(body)]
 
 
 @record
 class Tree:
     """A tree of links, each after its parent. `fixed` are the indices of prescribed coordinates among all. With `rests`
     the ground does not move, and no equation depends on where a frame is.
+
+    Its `closures` make loops. Of their conditions, six each, those of indices `conditions` are independent. `weights`
+    are one over the inertia of each row of an unknown coordinate.
     """
 
     links: tuple[Link, ...]
     forces: tuple[Force, ...]
     fixed: tuple[int, ...] = static(default=())
     rests: bool = static(default=False)
+    closures: tuple[Closure, ...] = ()
+    conditions: tuple[int, ...] = static(default=())
+    weights: Array | None = None
 
     @property
     def size(self) -> int:
@@ -267,6 +177,8 @@ class Tree:
 
         They are slides that follow only slides from the ground and meet no stop.
         """
+        if self.closures:
+            return np.zeros(len(self.unknowns), dtype=bool)
         flags, only_slid = list[bool](), {-1: True}  # by body: only slides, and no deformation, from the ground to it
         for body, link in enumerate(self.links):
             slid, first = only_slid[link.parent], 0
@@ -285,7 +197,7 @@ class Tree:
         These are balls that follow only slides from the ground and meet no stop, and hinges that do and that nothing
         holds.
         """
-        flags, only_slid, first = list[Array](), {-1: True}, 0
+        flags, only_slid, first = list[Array](), {-1: not self.closures}, 0
         for body, link in enumerate(self.links):
             slid = only_slid[link.parent]
             for step in link.steps:
@@ -327,6 +239,8 @@ class Tree:
     def __call__(self, y: Array, yd: Array, ydd: Array, inputs: Inputs) -> Array:
         """Residual (..., n) of the equations of the unknown coordinates, or zero where they hold."""
         ground = inputs.ground
+        if self.closures:
+            return self._closed_rows(self._state(y, yd, ydd, inputs, ground), inputs)
         if self.rests:
             ground = Frame(None, None, None, None, None, None)
         elif all(force.follower for force in self.forces):  # nothing asks where the frames are
@@ -340,7 +254,7 @@ class Tree:
         Bodies with constant coefficients are contracted with the motions that their roots can have, on a `ground` with
         this constant motion (3,), or on any. These motions are found by random states.
         """
-        if holds_jax(self):
+        if holds_jax(self) or self.closures:
             return self
         random = np.random.default_rng(0)  # any numbers: none of a root's motions is left out but by chance
         y, yd, ydd = random.normal(size=(3, SAMPLES, self.size))
@@ -380,11 +294,90 @@ class Tree:
 
     def demanded(self, state: State, inputs: Inputs) -> tuple[Array, Wrench, list[list[Acting]]]:
         """Forces (..., n) and the wrench on the ground that a motion demands, and those on the points of each body."""
-        return self._demanded(state, inputs, ground=True)
+        return self._demanded(state, self.closed(state, inputs), ground=True)
+
+    def closed(self, state: State, inputs: Inputs) -> Inputs:
+        """Return inputs with the wrenches that close loops at a motion."""
+        if not self.closures or inputs.closing is not None:
+            return inputs
+        return replace(inputs, closing=self.closing_wrenches(state, inputs))
+
+    def closing_wrenches(self, state: State, inputs: Inputs) -> Array:
+        """Wrenches (..., c, 6) that closures put on their frames at a motion, in axes of the points they close on.
+
+        Those along conditions that depend on others are zero: a rigid mechanism does not determine them.
+        """
+        rows = self._demanded(state, inputs, ground=False)[0][..., self.unknowns]
+        slopes, chosen = self.closing_slopes(state, self.conditions), np.array(self.conditions, dtype=int)
+        loads = closing_loads(rows, slopes, self.weights, np.zeros(len(chosen)))
+        spread = loads @ np.eye(DIRECTIONS * len(self.closures))[chosen]
+        return spread.reshape(*spread.shape[:-1], len(self.closures), DIRECTIONS)
+
+    def gaps(self, state: State) -> Array:
+        """Gaps (..., 6 c) of the closures: places, m, and rotation vectors, rad."""
+        return concatenated([gap(*self._closed_frames(state, closure)) for closure in self.closures])
+
+    def gap_rates(self, state: State) -> tuple[Array, Array, Array]:
+        """Gaps (..., 6 c) of the closures with their two derivatives with respect to time."""
+        parts = [gap_with_rates(*self._closed_frames(state, closure)) for closure in self.closures]
+        values, rates, changes = (concatenated(list(part)) for part in zip(*parts, strict=True))
+        return values, rates, changes
+
+    def closing_slopes(self, state: State, conditions: Sequence[int] | None = None) -> Array:
+        """Derivatives G (..., m, n) of the gaps' rates, or of m of them, by those of the unknowns: the rows of unit
+        wrenches.
+        """
+        chosen = np.arange(DIRECTIONS * len(self.closures)) if conditions is None else np.array(conditions, dtype=int)
+        units = np.eye(DIRECTIONS * len(self.closures))[chosen]
+        units = np.concatenate([units, 0 * units[:1]])
+        units = units.reshape(len(units), *(1 for _ in state.shape), len(self.closures), DIRECTIONS)
+        rows = self._inboard(state, self._closing(state, units))[0][..., self.unknowns]
+        return namespace(rows).moveaxis(rows[-1] - rows[:-1], 0, -2)
+
+    def _closed_frames(self, state: State, closure: Closure) -> tuple[Frame, Frame]:
+        """Frame at the end of a closing joint, and the point where it is to be."""
+        return state.step_motions(closure.frame)[1], state.point(closure.body, closure.on)
+
+    def _closing(self, state: State, wrenches: Array) -> list[tuple[int, int, Wrench]]:
+        """Wrenches that motion demands of bodies' points, by body and point, where closures act by `wrenches`."""
+        acting = list[tuple[int, int, Wrench]]()
+        for k, closure in enumerate(self.closures):
+            frame, point = self._closed_frames(state, closure)
+            force, moment = wrenches[..., k, :3], wrenches[..., k, 3:]
+            turn = namespace(frame.R).swapaxes(frame.R, -1, -2) @ point.R
+            acting.append((closure.frame, -1, Wrench(-turned(turn, force), -turned(turn, moment))))
+            acting.append((closure.body, closure.on, Wrench(force, moment)))
+        return acting
+
+    def _closed_rows(self, state: State, inputs: Inputs) -> Array:
+        """Residual (..., n) of the unknown coordinates of a tree with loops."""
+        rows = self._demanded(state, inputs, ground=False)[0][..., self.unknowns]
+        slopes, change = self.closing_slopes(state, self.conditions), settling(*self.gap_rates(state))
+        loads = closing_loads(rows, slopes, self.weights, change[..., np.array(self.conditions, dtype=int)])
+        return rows - (loads[..., None, :] @ slopes)[..., 0, :]
 
     def _demanded(self, state: State, inputs: Inputs, *, ground: bool) -> tuple[Array, Wrench, list[list[Acting]]]:
         """Forces and wrenches as :meth:`demanded`; without `ground` that on it is left out, which saves time."""
-        xp = namespace(*state.q[0], *state.qd[0], *state.qdd[0], inputs.ground.a)
+        acting = list[tuple[int, int, Wrench]]()
+        for k, force in enumerate(self.forces):
+            frame = state.points_of(force.body)[force.on]
+            assert inputs.wrenches is not None
+            f, m = -inputs.wrenches[..., k, :3], -inputs.wrenches[..., k, 3:]
+            if not force.follower:
+                f, m = turned_back(frame.R, f), turned_back(frame.R, m)
+            acting.append((force.body, force.on, Wrench(f, m)))
+        if inputs.closing is not None:
+            acting += self._closing(state, inputs.closing)
+        demanded, *rest = self._inboard(state, acting, inputs, ground=ground)
+        return demanded if inputs.efforts is None else demanded - inputs.efforts, *rest
+
+    def _inboard(
+        self, state: State, acting: list[tuple[int, int, Wrench]], inputs: Inputs | None = None, *, ground: bool = False
+    ) -> tuple[Array, Wrench, list[list[Acting]]]:
+        """Carry wrenches from bodies' points to the ground: those `acting`, by body and point, and, with `inputs`, what
+        the motion of the bodies and their loads demand.
+        """
+        xp = namespace(*state.q[0], *state.qd[0], *state.qdd[0], *(wrench.force for *_, wrench in acting))
         on_points: list[list[Acting]] = [[] for _ in self.links]
         on_roots: list[list[Wrench]] = [[] for _ in self.links]
 
@@ -394,19 +387,16 @@ class Tree:
             else:
                 on_points[body].append(Acting(on, state.relative(body)[on], wrench))
 
-        for k, force in enumerate(self.forces):
-            frame = state.points_of(force.body)[force.on]
-            assert inputs.wrenches is not None
-            f, m = -inputs.wrenches[..., k, :3], -inputs.wrenches[..., k, 3:]
-            if not force.follower:
-                f, m = turned_back(frame.R, f), turned_back(frame.R, m)
-            act(force.body, force.on, Wrench(f, m))
+        for owner, point, demand in acting:
+            act(owner, point, demand)
         rows: list[Array] = []
         on_ground = Wrench(xp.zeros(3), xp.zeros(3))
         for k in reversed(range(len(self.links))):
             link, (steps, root) = self.links[k], state.step_motions(k)
             *joint, body = zip(state.q[k], state.qd[k], state.qdd[k], strict=True)
-            generalised, wrench = link.body.demanded(*body, root, inputs.loads[k])
+            generalised, wrench = 0 * body[0], Wrench(xp.zeros(3), xp.zeros(3))
+            if inputs is not None:
+                generalised, wrench = link.body.demanded(*body, root, inputs.loads[k])
             if on_points[k]:
                 generalised = generalised + link.body.generalised_forces(body[0], on_points[k])
             wrench = sum((acting.wrench.brought(acting.by) for acting in on_points[k]), start=wrench)
@@ -420,17 +410,16 @@ class Tree:
                 on_steps.insert(0, step.rows(*coordinates, wrench))
                 wrench = wrench if i < idle else wrench.brought(relative)
             if on_steps:
-                if not link.loose:
+                if not link.loose and inputs is not None:
                     holding = link.holding([q for q, _, _ in joint], [qd for _, qd, _ in joint])
-                    on_steps = [demand + force for demand, force in zip(on_steps, holding, strict=True)]
+                    on_steps = [demand + effort for demand, effort in zip(on_steps, holding, strict=True)]
                 generalised = concatenated([*on_steps, generalised])
             rows.insert(0, generalised)
             if link.parent < 0:
                 on_ground = on_ground + wrench if ground else on_ground
             else:
                 act(link.parent, link.on, wrench)
-        demanded = concatenated(rows)
-        return demanded if inputs.efforts is None else demanded - inputs.efforts, on_ground, on_points
+        return concatenated(rows), on_ground, on_points
 
     def invariants(self, state: State, gravity: Array) -> tuple[Array, Array, Array]:
         """Momentum, N s, and angular momentum, N m s, (..., 3) in the ground's axes, and kinetic, elastic and
@@ -474,5 +463,7 @@ class Tree:
             links.append(replace(link, steps=tuple(steps)))
         joined = (np.concatenate(arrays) for arrays in zip(*states, strict=True))
         fixed = tuple(new_numbers[k] for k in self.fixed if k in new_numbers)
-        tree = replace(self, links=tuple(links), fixed=fixed)
+        kept = [k in new_numbers for k in self.unknowns]
+        weights = None if self.weights is None else self.weights[np.array(kept, dtype=bool)]
+        tree = replace(self, links=tuple(links), fixed=fixed, weights=weights)
         return tree, *joined  # type: ignore[return-value]

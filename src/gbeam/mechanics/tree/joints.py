@@ -20,7 +20,7 @@ from gbeam.guards.kinds import Kinds, kinds
 from gbeam.guards.parameters import parameters_of
 from gbeam.guards.quantities import OfCoordinate, PositionVector, RotationVector, Shape
 from gbeam.mechanics.tree.course import Course
-from gbeam.mechanics.tree.equations import SLIP, SLIPS, Holder
+from gbeam.mechanics.tree.links import SLIP, SLIPS, Holder
 from gbeam.mechanics.tree.steps import (
     Ball,
     Placed,
@@ -173,7 +173,9 @@ class Joint(Value):
         "kind of the joint: fixed, revolute (one angle), prismatic (one displacement), cylindrical (both along one "
         "axis), universal (two angles, one after the other), spherical (any rotation) or free (any motion)",
     ]
-    body: Annotated[str, "NAME of the body that it holds, by its root"]
+    body: Annotated[
+        str, "NAME of the body that it holds, by its root, or a point that another joint moves: it closes a loop there"
+    ]
     on: Annotated[
         str, 'what it hangs on: "ground", or a point of a body, such as "bus.left"; "bus.root" is its root'
     ] = GROUND
@@ -184,9 +186,10 @@ class Joint(Value):
     ] = None
     at: Annotated[PositionVector, "place of the joint from the point: [x, y, z]"] = (0.0, 0.0, 0.0)
     turn: Annotated[
-        RotationVector,
-        "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]",
-    ] = (0.0, 0.0, 0.0)
+        RotationVector | None,
+        "rotation vector of the body's root axes in those of the point, where all coordinates are zero: [x, y, z]; "
+        "none unless given, but of a joint that closes a loop the one by which its coordinates begin at zero",
+    ] = None
     initial: Annotated[_Values, OfCoordinate("length", "angle"), "coordinate at the start"] = None
     initial_rate: Annotated[_Rates, OfCoordinate("speed", "angular rate"), "rate at the start"] = None
     stiffness: Annotated[_Values, OfCoordinate("stiffness", "rotational stiffness", "zero or more"), "spring"] = None
@@ -235,8 +238,9 @@ class Joint(Value):
         if not (np.isfinite(length).all() and (length > 0).all()):
             raise InputError("axes", f"is {self.axes!r}", "give directions of finite length above zero")
         assign(self, axes=tuple(map(tuple, axes)))
-        for name in ("at", "turn"):
-            vector(name, getattr(self, name))
+        vector("at", self.at)
+        if self.turn is not None:
+            vector("turn", self.turn)
         if self.kind == "fixed":
             for name in (*_EASY, "stops"):
                 if getattr(self, name) is not None and not isinstance(getattr(self, name), Mapping):
@@ -269,6 +273,18 @@ class Joint(Value):
             return tuple(self.coordinates.index(parameter) for parameter in _BALL)
         return (self.coordinates.index(rate),)
 
+    def start_flags(self, key: str) -> tuple[bool, ...]:
+        """Return, for each coordinate, whether its value, or rate, at the start is given; of a ball by any component.
+
+        Parameters
+        ----------
+        key : str
+            "initial" or "initial_rate".
+        """
+        named = self._named(key, getattr(self, key))
+        turns = any(name in named for name in (*_TURN, *SPIN))
+        return tuple(turns if name in _BALL else name in named for name in self.coordinates)
+
     def row(self, rate: str) -> int:
         """Return the index, among the joint's equations, of the one on which an effort along a rate acts.
 
@@ -282,7 +298,8 @@ class Joint(Value):
 
     def _chained(self) -> tuple[Step, ...]:
         """Chain of elementary motions from the point that holds the joint to the root of the body."""
-        placed = Placed(as_array(self.at), rotation_matrix(self.turn))
+        turn = (0.0, 0.0, 0.0) if self.turn is None else self.turn
+        placed = Placed(as_array(self.at), rotation_matrix(turn))
         axes = np.asarray(self.axes, dtype=float).reshape(-1, 3)
         steps = JOINT_KINDS[self.kind].steps(axes / np.linalg.norm(axes, axis=1, keepdims=True))
         if self.kind == "fixed" and self.coordinates:
@@ -291,7 +308,7 @@ class Joint(Value):
             steps = (Slide(_EYE[:, slide_axes]),) if slide_axes else ()
             steps += (Rotation(_EYE[:, turn_axes], _EYE),) if turn_axes else ()
         # The coordinates are in axes of the point, and the body is turned after them; a ball turns the body's axes.
-        moves, turns = (is_jax(vector) or bool(vector.any()) for vector in map(as_array, (self.at, self.turn)))
+        moves, turns = (is_jax(vector) or bool(vector.any()) for vector in map(as_array, (self.at, turn)))
         before = (Placed(placed.r, None),) if moves else ()
         after = (Placed(np.zeros(3), placed.R),) if turns else ()
         ball = len(steps) - JOINT_KINDS[self.kind].turns  # its index, or behind the last

@@ -31,7 +31,9 @@ def is_linear(tree: Tree) -> bool:
     """
     deforming = [link.body for link in tree.links if link.body.size]
     only_deforming = 0 < len(tree.unknowns) == sum(body.size for body in deforming)
-    if not only_deforming or not all(_constant(body) for body in deforming):  # asked first: it is cheap
+    if (
+        tree.closures or not only_deforming or not all(_constant(body) for body in deforming)
+    ):  # asked first: it is cheap
         return False
     load_points = [(link.parent, link.on) for link in tree.links if link.parent >= 0]
     load_points += [(force.body, force.on) for force in tree.forces]

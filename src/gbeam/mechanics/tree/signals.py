@@ -59,6 +59,10 @@ class Measured(Protocol):
         """Return the index of the equation on which an effort on a joint acts."""
         ...
 
+    def link(self, joint: str) -> int:
+        """Return the index of the link of a joint in the tree."""
+        ...
+
 
 class Driven(NamedTuple):
     """One number that drives a tree: the effort on coordinate `at`, component `at` of force `force` (wrenches), of the
@@ -148,7 +152,7 @@ def measurements(
         owner, _, kind = signal.rpartition(".")
         if owner in system.joints:
             joint = system.joints[owner]
-            body = system.order.index(joint.body)
+            body = system.link(owner)
             names = [*joint.values, *map(rate_signal, joint.rate_names)]
             values_and_rates = tree.links[body].spring_values(state.q[body][:-1], state.qd[body][:-1])
             columns.append(xp.broadcast_to(concatenated(list(values_and_rates))[..., names.index(kind)], state.shape))

@@ -10,79 +10,29 @@ import numpy as np
 
 from gbeam.arrays.namespace import Array, as_array, concatenated, holds_jax, namespace
 from gbeam.arrays.tree import Value, assign, follows
-from gbeam.arrays.types import Floats, Numbers
+from gbeam.arrays.types import Floats
 from gbeam.errors import InputError, naming
 from gbeam.guards.arguments import typed
 from gbeam.guards.checks import choice, vector
-from gbeam.guards.quantities import AccelerationVector, Components, Quantity, Seconds, Times
+from gbeam.guards.quantities import AccelerationVector, Seconds, Times
 from gbeam.mechanics.structure import Structure
 from gbeam.mechanics.tree.body_terms import body_of, refuse_turnless, stations_of
 from gbeam.mechanics.tree.control import Feedback
 from gbeam.mechanics.tree.course import Course
-from gbeam.mechanics.tree.equations import Force, Inputs, Link, State, Tree
+from gbeam.mechanics.tree.equations import Force, Inputs, State, Tree
 from gbeam.mechanics.tree.frames import Frame
 from gbeam.mechanics.tree.joints import GROUND, Joint
+from gbeam.mechanics.tree.links import Link
+from gbeam.mechanics.tree.loops import Ends, closed_start, looped, moved_in_words, turned_joint
+from gbeam.mechanics.tree.point_force import PointForce
 from gbeam.mechanics.tree.rigid_body import ROOT, RigidBody
 from gbeam.mechanics.tree.signals import drives_of, measurable
 from gbeam.motion.hub import Hub
-from gbeam.motion.profiles.combine import as_profile
-from gbeam.motion.profiles.profile import Profile
 from gbeam.motion.protocol import Motion
 from gbeam.printable import advise
 
 CLAMP = "clamp"  # joint of a system of one body
 Prescribed = tuple[str, tuple[int, ...], tuple[str, ...]]
-
-
-@typed
-@dataclass(frozen=True, eq=False)
-class PointForce(Value):
-    """A force and a moment on a point of a system, such as thrust.
-
-    Attributes
-    ----------
-    history : (Profile, Profile)
-        Force and moment over time.
-
-    Examples
-    --------
-    >>> gb.PointForce("bus.nozzle", force=(0, 0, 20.0), follower=True).on
-    'bus.nozzle'
-    """
-
-    on: Annotated[str, 'the point: "bus.nozzle"']
-    force: Annotated[
-        Numbers | Profile | None,
-        Quantity("force"),
-        Components(
-            "A force on a point by components, each a quantity or a profile; those left out are zero.",
-            x="component along x",
-            y="component along y",
-            z="component along z",
-        ),
-        "force on the point: { x, y, z }",
-    ] = None
-    moment: Annotated[
-        Numbers | Profile | None,
-        Quantity("torque"),
-        Components(
-            "A moment on a point by components, each a quantity or a profile; those left out are zero.",
-            x="component about x",
-            y="component about y",
-            z="component about z",
-        ),
-        "moment on the point: { x, y, z }",
-    ] = None
-    follower: Annotated[bool, "true if the components turn with the point; false if they keep to the ground's axes"] = (
-        False
-    )
-    history: tuple[Profile, Profile] = follows()
-
-    def __post_init__(self) -> None:
-        zero = (0.0, 0.0, 0.0)
-        force = as_profile("force", zero if self.force is None else self.force, 3)
-        moment = as_profile("moment", zero if self.moment is None else self.moment, 3)
-        assign(self, history=(force, moment))
 
 
 @typed
@@ -103,6 +53,10 @@ class System(Value):
         Bodies that deform, by name.
     holding : dict of str to str
         Name of the joint that holds each body.
+    closing : tuple of str
+        Names of the joints that close loops.
+    linked : tuple of str
+        Names of all joints in the order of the tree's links: those that hold bodies, then those that close loops.
     prescribed : list of (str, tuple of int, tuple of str)
         Coordinates that are prescribed together, one, or a ball's four: name of the joint, indices among its
         coordinates, and names of the rates.
@@ -110,12 +64,14 @@ class System(Value):
         The equations.
     courses : dict of str to Course
         Attitude over time of each ball whose spin is prescribed, by the joint's name.
+    start : (array, array)
+        All coordinates and their rates at the start, with loops closed and flexible bodies undeformed.
 
     Raises
     ------
     InputError
-        If a body hangs on nothing, on two joints, or on a point that is not there, joints make a loop, or an SFOAM's
-        root moves by unknowns.
+        If a body hangs on nothing, on two joints, or on a point that is not there, a loop cannot be closed, or an
+        SFOAM's root moves by unknowns.
 
     Examples
     --------
@@ -137,7 +93,9 @@ class System(Value):
         "bodies by name. Structures are those of :func:`gbeam.assemble` and :meth:`Structure.of_particles`, SFOAM only "
         "where joints prescribe how its root moves; their points are the named points of the beam, and ``tip``",
     ]
-    joints: Annotated[Mapping[str, Joint], "one for every body, which holds it by its root"]
+    joints: Annotated[
+        Mapping[str, Joint], "one for every body, which holds it by its root, and more of points, which close loops"
+    ]
     forces: Annotated[Mapping[str, PointForce], "forces and moments on points, beside the loads of the beams"] = field(
         default_factory=dict
     )
@@ -153,9 +111,12 @@ class System(Value):
     unknown_coordinates: tuple[str, ...] = follows()
     flexible: dict[str, Structure] = follows()
     holding: dict[str, str] = follows()
+    closing: tuple[str, ...] = follows()
+    linked: tuple[str, ...] = follows()
     prescribed: list[Prescribed] = follows()
     tree: Tree = follows()
     courses: dict[str, Course] = follows()
+    start: tuple[Array, Array] = follows()
 
     def __post_init__(self) -> None:
         """Check names, signals and drives, and derive the order of the bodies, the coordinates and the equations."""
@@ -167,12 +128,17 @@ class System(Value):
                     raise InputError(f"{where}.{name}", "is no name", "give letters, digits and underscores")
         if self.gravity is not None:
             vector("gravity", self.gravity)
-        assign(self, holding={joint.body: name for name, joint in self.joints.items()})
+        assign(self, closing=tuple(name for name, joint in self.joints.items() if "." in joint.body))
+        held_by = {joint.body: name for name, joint in self.joints.items() if name not in self.closing}
+        assign(self, holding=held_by)
         assign(self, flexible={name: body for name, body in self.bodies.items() if isinstance(body, Structure)})
         assign(self, order=self._ordered())
         assign(self, points=tuple(f"{body}.{point}" for body in self.order for point in self.points_of(body)))
+        assign(self, linked=(*(self.holding[body] for body in self.order), *self.closing))
         assign(self, coordinates=self._named(), prescribed=self._prescribed())
-        assign(self, tree=self._assembled())
+        assign(self, tree=self._assembled(), start=self.given_start())
+        if self.closing:
+            self._close()
         assign(self, unknown_coordinates=tuple(self.coordinates[k] for k in self.tree.unknowns))
         spun = [name for name, numbers, _ in self.prescribed if len(numbers) > 1]
         assign(self, courses={name: self.joints[name].course for name in spun})
@@ -213,7 +179,7 @@ class System(Value):
     def _ordered(self) -> tuple[str, ...]:
         """Names of the bodies, each after the one that holds it. InputError if none or two hold one, and for loops."""
         for name, joint in self.joints.items():
-            if joint.body not in self.bodies:
+            if name not in self.closing and joint.body not in self.bodies:
                 fix = f"choose from {', '.join(self.bodies)}"
                 raise InputError(f"joints.{name}.body", f"is {joint.body!r}, and there is no such body", fix)
         for body in self.bodies:
@@ -222,7 +188,7 @@ class System(Value):
                 fix = 'give a joint of this body: kind = "free" where nothing holds it'
                 raise InputError(f"bodies.{body}", "hangs on nothing", fix)
             if len(holding) > 1:
-                fix = f"keep one of {', '.join(holding)}: loops of joints are not computed"
+                fix = f'name a point, such as "{body}.{ROOT}": a joint of a point that is held closes a loop'
                 raise InputError(f"joints.{holding[1]}.body", f"is {body!r}, which {holding[0]} holds already", fix)
         order: list[str] = []
         remaining = [self.holding[body] for body in self.bodies]
@@ -313,24 +279,29 @@ class System(Value):
     @property
     def floating(self) -> tuple[str, ...]:
         """Names of the bodies that no joint but free ones connects to the ground."""
-        names = list[str]()
-        for body in self.order:
-            joint = self.joints[self.holding[body]]
-            if joint.floats or joint.on.partition(".")[0] in names:
-                names.append(body)
-        return tuple(names)
+        joined = [(joint.body.partition(".")[0], joint.on.partition(".")[0]) for joint in self.joints.values()]
+        holds = [not joint.floats for joint in self.joints.values()]
+        reached, count = {GROUND}, 0
+        while len(reached) > count:
+            count = len(reached)
+            for ends, is_held in zip(joined, holds, strict=True):
+                if is_held and reached.intersection(ends):
+                    reached.update(ends)
+        return tuple(body for body in self.order if body not in reached)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Doubts about the bodies' models, each behind the body's name."""
         bodies = self.bodies.items()
-        return tuple(f"{name}: {warning}" for name, body in bodies for warning in getattr(body, "warnings", ()))
+        doubts = tuple(f"{name}: {warning}" for name, body in bodies for warning in getattr(body, "warnings", ()))
+        return doubts + moved_in_words(self.closing, self.linked_joints, self.tree, self.start)
 
     @property
     def laden(self) -> set[str]:
         """Names of the bodies on whose points others hang or forces act."""
         hung = {self.order[link.parent] for link in self.tree.links if link.parent >= 0}
-        return hung | {self.order[force.body] for force in self.tree.forces}
+        closed_on = (closure.body for closure in self.tree.closures)
+        return hung | {self.order[body] for body in (*(force.body for force in self.tree.forces), *closed_on)}
 
     @property
     def rubbing(self) -> tuple[str, ...]:
@@ -345,26 +316,61 @@ class System(Value):
     def _named(self) -> tuple[str, ...]:
         """Names of all coordinates: those of the joints, and numbers for those of the flexible bodies."""
         names: list[str] = []
-        for body in self.order:
-            joint = self.holding[body]
+        for joint in self.linked:
             names += [f"{joint}.{coordinate}" for coordinate in self.joints[joint].coordinates]
+            body = self.joints[joint].body
             names += [f"{body}.q{k + 1}" for k in range(self._size(body))]
         return tuple(names)
 
+    def parent_of(self, joint: str) -> tuple[int, int]:
+        """Return the indices of the body, −1 for the ground, and of its point, that a joint hangs on.
+
+        Parameters
+        ----------
+        joint : str
+            Its name.
+        """
+        if self.joints[joint].on == GROUND:
+            return -1, 0
+        holding, point = self.point(f"joints.{joint}.on", self.joints[joint].on)
+        if holding in self.flexible and self.points_of(holding)[point] != ROOT:
+            refuse_turnless(f"joints.{joint}.on", self.flexible[holding], point)
+        return self.order.index(holding), point
+
+    def _close(self) -> None:
+        """Turn the joints that close loops, add them to the tree, and close it at the start."""
+        if self.holds_jax:
+            problem = "closes a loop, and neither gradients nor compiled batches of loops are computed"
+            raise InputError(f"joints.{self.closing[0]}", problem, "ask for one run at a time")
+        ends = [Ends(self.parent_of(name), self._end_of(name)) for name in self.closing]
+        state, joints = self.start_state, dict(self.joints)
+        for name, pair in zip(self.closing, ends, strict=True):
+            joints[name] = turned_joint(joints[name], pair, state)
+        tree = looped(self.tree, [joints[name] for name in self.closing], ends)
+        assign(self, joints=joints, tree=tree, start=self.given_start())
+        size = float(np.ptp(self.undeformed, axis=0).max()) or 1.0
+        tree, start = closed_start(tree, self.linked_joints, self.start, self.inputs(np.zeros(())), size)
+        assign(self, tree=tree, start=start)
+
+    def _end_of(self, joint: str) -> tuple[int, int]:
+        """Indices of the body and of the point that a joint closes a loop on."""
+        where = f"joints.{joint}.body"
+        body, point = self.point(where, self.joints[joint].body)
+        if body in self.flexible and self.points_of(body)[point] != ROOT:
+            refuse_turnless(where, self.flexible[body], point)
+        return self.order.index(body), point
+
     def _assembled(self) -> Tree:
-        """Build the equations: links, forces and the indices of the prescribed coordinates."""
+        """Build the equations of the tree: links, forces and the indices of the prescribed coordinates."""
         index = {body: k for k, body in enumerate(self.order)}
         links, free = [], set[str]()  # bodies whose root moves by unknown coordinates
         for body in self.order:
             name = self.holding[body]
             joint = self.joints[name]
-            parent, parent_point = -1, 0
-            if joint.on != GROUND:
-                holding, parent_point = self.point(f"joints.{name}.on", joint.on)
-                parent = index[holding]
+            parent, parent_point = self.parent_of(name)
+            if parent >= 0:
+                holding = self.order[parent]
                 deforms = holding in self.flexible and self.points_of(holding)[parent_point] != ROOT
-                if deforms:
-                    refuse_turnless(f"joints.{name}.on", self.flexible[holding], parent_point)
                 if holding in free or deforms:
                     free.add(body)
             if len(joint.rates) < len(joint.rate_names):
@@ -382,14 +388,27 @@ class System(Value):
 
     def _first_coordinate(self, joint: str) -> int:
         """Index of a joint's first coordinate among all, or where it would be if the joint has none."""
-        earlier_bodies = self.order[: self.order.index(self.joints[joint].body)]
-        sizes = (len(self.joints[self.holding[body]].coordinates) + self._size(body) for body in earlier_bodies)
-        return sum(sizes)
+        earlier = self.linked[: self.linked.index(joint)]
+        return sum(len(self.joints[name].coordinates) + self._size(self.joints[name].body) for name in earlier)
+
+    @property
+    def linked_joints(self) -> dict[str, Joint]:
+        """Joints by name, in the order of the tree's links."""
+        return {name: self.joints[name] for name in self.linked}
+
+    def link(self, joint: str) -> int:
+        """Return the index of the link of a joint in the tree.
+
+        Parameters
+        ----------
+        joint : str
+            Its name.
+        """
+        return self.linked.index(joint)
 
     def _size(self, body: str) -> int:
         """Number of coordinates that deform a body."""
-        flexible = self.bodies[body]
-        return 0 if isinstance(flexible, RigidBody) else flexible.size
+        return self.flexible[body].size if body in self.flexible else 0
 
     def row(self, name: str) -> int:
         """Return the index of the equation on which an effort on a joint acts.
@@ -412,12 +431,11 @@ class System(Value):
             groups += [(name, numbers, tuple(rates)) for numbers, rates in rates_by_numbers.items()]
         return groups
 
-    @property
-    def start(self) -> tuple[Array, Array]:
-        """All coordinates and their rates at the start, with flexible bodies undeformed."""
+    def given_start(self) -> tuple[Array, Array]:
+        """All coordinates and their rates as joints have them at the start, with flexible bodies undeformed."""
         q, qd = [], []
-        for body in self.order:
-            joint, zeros = self.joints[self.holding[body]], np.zeros(self._size(body))
+        for name in self.linked:
+            joint, zeros = self.joints[name], np.zeros(self._size(self.joints[name].body))
             q += [joint.start, zeros]
             qd += [joint.start_rate, zeros]
         xp = namespace(*q, *qd)
@@ -426,7 +444,7 @@ class System(Value):
     @property
     def start_state(self) -> State:
         """Frames of the bodies on a ground at rest, with the joints at the start and bodies undeformed."""
-        q, zero, zeros = self.start[0], np.zeros(3), np.zeros(self.tree.size)
+        q, zero, zeros = self.start[0][: self.tree.size], np.zeros(3), np.zeros(self.tree.size)
         return State(self.tree, q, zeros, zeros, Frame(np.eye(3), zero, zero, zero, zero, zero))
 
     @property
@@ -491,6 +509,7 @@ class System(Value):
             None if isinstance(body, RigidBody) or body.history is None else body.history(t)
             for body in (self.bodies[name] for name in self.order)
         )
+        loads += (None,) * len(self.closing)
         return Inputs(
             ground,
             concatenated(prescribed) if prescribed else None,

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from gbeam.errors import InputError
-from gbeam.mechanics.tree import system
+from gbeam.mechanics.tree import point_force, system
 from gbeam.scenario.bodies import BODIES
 from gbeam.scenario.schema.declared import chosen, table_of
 from gbeam.scenario.schema.fields import Loc, Name, refuse, wrong
@@ -25,12 +25,12 @@ def _kind(body: Any) -> str | None:
     return kind if kind is None or isinstance(kind, str) else str(kind)
 
 
-def _point_force(**arguments: Any) -> system.PointForce:
+def _point_force(**arguments: Any) -> point_force.PointForce:
     """A force and a moment on a point, such as thrust."""
     if not {"force", "moment"} & arguments.keys():
         fix = 'give force or moment, such as force = { z = "5 N" }, or { z = 0 } where a controller drives it'
         raise InputError("", "the force is missing", fix)
-    return system.PointForce(**arguments)
+    return point_force.PointForce(**arguments)
 
 
 if TYPE_CHECKING:  # type checkers make no tables
@@ -44,7 +44,7 @@ else:
     from gbeam.scenario.schema.joints import JointTable
 
     Body = chosen("kind", {name: body_kind.table for name, body_kind in BODIES.items()}, _kind)
-    Force = table_of(_point_force, system.PointForce, name="PointForce")
+    Force = table_of(_point_force, point_force.PointForce, name="PointForce")
     Surroundings = table_of(system.System, name="Surroundings", without={"bodies", "joints", "forces", "controllers"})
 
 
@@ -56,7 +56,10 @@ class Tree(Titled):
         description="bodies, each [bodies.NAME]: instead of [beam] and [model]; one alone, without joints, is a "
         "specimen on the moving base",
     )
-    joints: dict[Name, JointTable] = Field(description="one for every body, which holds it by its root: [joints.NAME]")
+    joints: dict[Name, JointTable] = Field(
+        description="[joints.NAME]: one for every body, which holds it by its root, and more of points, "
+        "which close loops"
+    )
     forces: dict[Name, Force] = Field(
         default_factory=dict, description="forces and moments on points, each [forces.NAME]"
     )
