@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import qr
 
 from gbeam.arrays.tree import each_leaf
 from gbeam.arrays.types import Flags, Floats, Indices
@@ -153,6 +152,8 @@ def _independent(tree: Tree, y: Floats, inputs: Inputs, weights: Floats, scales:
 
 def _pivots(slopes: Floats) -> tuple[tuple[int, ...], int]:
     """Indices of independent rows of a matrix, and their number."""
+    from scipy.linalg import qr  # which only loops take
+
     _, triangle, order = qr(slopes.T, mode="economic", pivoting=True)
     diagonal = np.abs(np.diag(triangle))
     rank = int((diagonal > DEPENDENT * diagonal[0]).sum()) if diagonal.size else 0
@@ -172,6 +173,8 @@ def independent_motions(tree: Tree, state: State) -> tuple[Indices, Floats]:
 
 def following(tree: Tree, state: State, candidates: Flags) -> Flags:
     """Flags (n,) of unknown coordinates that follow the others, among `candidates` (n,) if these suffice."""
+    from scipy.linalg import qr  # which only loops take
+
     slopes = np.asarray(tree.closing_slopes(state, tree.conditions)) * np.sqrt(np.asarray(tree.weights))
     _, triangle, order = qr(np.where(candidates, slopes, 0.0), mode="economic", pivoting=True)
     sizes = np.abs(np.diag(triangle))
