@@ -28,8 +28,8 @@ LONGEST = 1000  # steps in a window where one state's derivatives serve all; spe
 AHEAD = 400  # steps whose drives are evaluated at once; it changes no correction and no answer
 FEW = 64  # steps under way, up to which more follow: of many, a call costs little beside its sums; speed: 1.07, 0.95
 HALVINGS = 8  # of a correction of a single step
-# Change of states and inputs that shows rounding: of a smooth force the second difference is less than that
-SHARE, EPSILON = 1e-9, float(np.finfo(float).eps)
+SHARE = 1e-9  # of states: a change by which the second difference of a smooth force is less than rounding
+ROUNDED = 10 * float(np.finfo(float).eps)  # of forces that cancel: their second difference, with a margin
 
 
 class Window:
@@ -154,23 +154,22 @@ class Window:
             self._shorten(inverse, by_state, change)
         return np.asarray(np.abs(change).max(axis=(1, 2)))
 
-    def loads(self, stages: Stages) -> Array:
-        """Sizes (t, s n) of the loads and of the forces that cancel within bodies, by two residuals near the last one.
+    def loads(self, stages: Stages) -> tuple[Array, Array]:
+        """Sizes (t, s n) of the loads, and of the forces that cancel within bodies, by residuals near the last one.
 
-        The first difference of the three is that of the loads, if every component of an input changed by its largest
-        one: so a weight counts even where it acts only across what a joint lets move. The second difference is
-        rounding, and shows how large the forces are of which it is left. Rounding of a step stays in the following
-        ones.
+        That of the loads is the change if every component of an input changed by its largest one. So a weight counts
+        even where it acts only across what a joint lets move. What cancels is shown by its rounding, the second
+        difference where the states change. The rounding of a step stays in the following ones.
         """
 
-        def near(share: float) -> Array:
-            """Residuals where inputs change by a share of their largest, and states by the opposite one."""
-            inputs = each_leaf(lambda leaf: leaf + share * np.abs(leaf).max(initial=0.0), stages.inputs)
-            return np.asarray(self.residual(*((1 - share) * stages.states), inputs).reshape(len(self), -1))
+        def near(share: float, inputs: Any) -> Array:
+            """Residuals where the states change by a share of themselves."""
+            return np.asarray(self.residual(*((1 + share) * stages.states), inputs).reshape(len(self), -1))
 
-        before, after = near(-SHARE), near(SHARE)
-        rounding: Array = np.maximum.accumulate(np.abs(after - 2 * self.residuals + before)) / EPSILON
-        return np.asarray(np.abs(after - before) / (2 * SHARE) + rounding)
+        shifted = each_leaf(lambda leaf: leaf + SHARE * np.abs(leaf).max(initial=0.0), stages.inputs)
+        by_inputs = np.abs(near(0.0, shifted) - self.residuals) / SHARE
+        change = near(SHARE, stages.inputs) - 2 * self.residuals + near(-SHARE, stages.inputs)
+        return by_inputs, np.sqrt(np.cumsum(change**2, axis=0)) / ROUNDED
 
     @property
     def _commands(self) -> HeldCommands | None:

@@ -21,7 +21,7 @@ from gbeam.integrate.equations import NonlinearEquations, accelerations, exact_r
 from gbeam.integrate.sampled import Sampling
 from gbeam.integrate.schemes import Scheme, fitted_residual
 from gbeam.integrate.steps import Steps
-from gbeam.integrate.verdict import Judgement, Verdict, balanced_steps
+from gbeam.integrate.verdict import ROUNDING, Judgement, Verdict, balanced_steps
 from gbeam.integrate.window import Window
 
 Piece = tuple[Any, ...]
@@ -123,11 +123,12 @@ class _Solver:
             window.grow()
         if window.held is not None:
             window.held.is_settled = verdict.commands_settle
-        # The rounding of loads is computed only where corrections do not shrink: it costs two more residuals.
+        # The rounding of loads is computed only where corrections do not shrink: it costs three more residuals.
         loads, by_loads = 0 * forces, np.float64(0.0)
         if verdict.stuck_steps.any():
-            loads = window.loads(stages)
-            by_loads = derivatives.accelerations(loads)
+            loads, within_bodies = window.loads(stages)
+            near = (verdict.shares <= ROUNDING)[:, None]  # elsewhere the second difference is no rounding
+            by_loads = derivatives.accelerations(loads + np.where(near, within_bodies, 0.0))
         in_balance = balanced_steps(window.residuals, forces, loads)
         judgement = verdict.judge(by_loads, in_balance, fresh=fresh, trusted=trusted)
         derivatives.grow_old(verdict.shares, judgement.slow_steps, fast=verdict.shrinks_fast)
