@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from gbeam.mechanics.tree.closing import mobility, undetermined
+from gbeam.mechanics.tree.closures import WAYS
 from gbeam.mechanics.tree.system import System
-
-DIRECTIONS = "along x", "along y", "along z", "about x", "about y", "about z"
 
 
 def mobility_in_words(system: System) -> str:
@@ -20,7 +19,7 @@ def mobility_in_words(system: System) -> str:
         motions = f"{-free} fewer than the {shapes} coordinates that deform bodies"
     lost: dict[str, list[str]] = {}
     for closure, direction in undetermined(tree):
-        lost.setdefault(system.closing[closure], []).append(DIRECTIONS[direction])
+        lost.setdefault(system.closing[closure], []).append(WAYS[direction])
     words = f"{bodies}, {', '.join(system.closing)} closing: {motions}{beside}"
     total = sum(map(len, lost.values()))
     if not total:

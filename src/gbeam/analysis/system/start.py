@@ -157,7 +157,9 @@ def _loosened(system: System, state: State, bent: Flags, accelerated: Flags) -> 
     is_held = ~(bent | accelerated)
     loosened = bent | (following(tree, state, is_held) & ~accelerated)
     # What holds the others is no part of the conditions' balance.
-    return replace(tree, weights=np.where(loosened | accelerated, np.asarray(tree.weights), 0.0)), loosened
+    weights = np.array(tree.weights)
+    weights[tree.unknowns[~(loosened | accelerated)]] = 0.0
+    return replace(tree, weights=weights), loosened
 
 
 def _body_selection(system: System, name: str) -> Floats:

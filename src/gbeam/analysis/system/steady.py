@@ -205,17 +205,18 @@ class SteadySystem(Steady):
     @cached_property
     def linear(self) -> Linear:
         """M, C and K of small departures. ComputationError where a body's model has no positive mass."""
-        k, c, m = self.along(*(self.known or self.local.slopes()[1:]))
-        if not positive_definite(m):
-            raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
-        if self.point.minimal:  # of others mass is looked at where they rest
-            refuse_massless(self.system, self.point, m)
+        local_k, *others = self.known or self.local.slopes()[1:]
         for name, body in self.system.flexible.items():
             bending = body.coefficients.bending
             if bending is not None:
                 columns = deforming(self.names, name)
-                q, k = self.local.y[columns], np.array(k)
-                k[np.ix_(columns, columns)] += bending.stiffness(q) - bending.slope(q)
+                q, local_k = self.local.y[columns], np.array(local_k)
+                local_k[np.ix_(columns, columns)] += bending.stiffness(q) - bending.slope(q)
+        k, c, m = self.along(local_k, *others)
+        if not positive_definite(m):
+            raise ComputationError(MASSLESS, massless(self.system, self.names, self.local.y))
+        if self.point.minimal:  # of others mass is looked at where they rest
+            refuse_massless(self.system, self.point, m)
         return Linear(m, c, k - m @ self.along(self.follows)[0], np.zeros((len(m), 0)))
 
     @cached_property

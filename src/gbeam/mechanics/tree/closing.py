@@ -54,7 +54,9 @@ def close(tree: Tree, y: Floats, yd: Floats, inputs: Inputs, size: float, known:
         rates = tree.gap_rates(tree.motion(y, yd, 0 * y, inputs))[1] * scales
         yd = yd - _turned_rates(tree, y, _least(slopes, weights * may_move, rates))
     conditions = _independent(tree, y, inputs, weights, scales)
-    return Closed(replace(tree, conditions=conditions, weights=weights), y, yd, left)
+    of_all = np.ones(tree.size)
+    of_all[tree.unknowns] = weights
+    return Closed(replace(tree, conditions=conditions, weights=of_all), y, yd, left)
 
 
 def _joint_flags(tree: Tree) -> Flags:
@@ -152,12 +154,17 @@ def _independent(tree: Tree, y: Floats, inputs: Inputs, weights: Floats, scales:
 
 def _pivots(slopes: Floats) -> tuple[tuple[int, ...], int]:
     """Indices of independent rows of a matrix, and their number."""
+    order, rank = _factored(slopes.T)
+    return tuple(sorted(int(k) for k in order[:rank])), rank
+
+
+def _factored(matrix: Floats) -> tuple[Indices, int]:
+    """Columns of a matrix, the most independent first, and its rank."""
     from scipy.linalg import qr  # which only loops take
 
-    _, triangle, order = qr(slopes.T, mode="economic", pivoting=True)
+    _, triangle, order = qr(matrix, mode="economic", pivoting=True)
     diagonal = np.abs(np.diag(triangle))
-    rank = int((diagonal > DEPENDENT * diagonal[0]).sum()) if diagonal.size else 0
-    return tuple(sorted(int(k) for k in order[:rank])), rank
+    return order, int((diagonal > DEPENDENT * diagonal[0]).sum()) if diagonal.size else 0
 
 
 def independent_motions(tree: Tree, state: State) -> tuple[Indices, Floats]:
@@ -167,19 +174,18 @@ def independent_motions(tree: Tree, state: State) -> tuple[Indices, Floats]:
     Coordinates with little inertia follow those with more.
     """
     slopes = np.asarray(tree.closing_slopes(state, tree.conditions))
-    dependent = np.flatnonzero(following(tree, state, np.ones(slopes.shape[1], dtype=bool)))
+    weights = np.asarray(tree.weights)[tree.unknowns]
+    dependent = np.sort(_factored(slopes * np.sqrt(weights))[0][: len(slopes)])
     return np.delete(np.arange(slopes.shape[1]), dependent), null_basis(slopes, dependent.tolist())
 
 
 def following(tree: Tree, state: State, candidates: Flags) -> Flags:
     """Flags (n,) of unknown coordinates that follow the others, among `candidates` (n,) if these suffice."""
-    from scipy.linalg import qr  # which only loops take
-
-    slopes = np.asarray(tree.closing_slopes(state, tree.conditions)) * np.sqrt(np.asarray(tree.weights))
-    _, triangle, order = qr(np.where(candidates, slopes, 0.0), mode="economic", pivoting=True)
-    sizes = np.abs(np.diag(triangle))
-    if not candidates.all() and sizes.min() <= DEPENDENT * sizes.max():
-        return following(tree, state, np.ones(len(candidates), dtype=bool))
+    weights = np.asarray(tree.weights)[tree.unknowns]
+    slopes = np.asarray(tree.closing_slopes(state, tree.conditions)) * np.sqrt(weights)
+    order, rank = _factored(np.where(candidates, slopes, 0.0))
+    if rank < len(slopes):
+        order, _ = _factored(slopes)
     flags = np.zeros(len(candidates), dtype=bool)
     flags[order[: len(slopes)]] = True
     return flags

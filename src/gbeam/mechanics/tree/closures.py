@@ -23,7 +23,8 @@ from gbeam.mechanics.fields.products import cross, turned, turned_back
 from gbeam.mechanics.tree.frames import Frame, product
 
 SETTLING = 1.0  # 1/s: rate at which a gap closes that steps have left, as the size of Euler parameters does
-DIRECTIONS = 6  # of each closure: three of the place, three of the rotation vector
+WAYS = "along x", "along y", "along z", "about x", "about y", "about z"  # of the place and of the rotation vector
+DIRECTIONS = len(WAYS)
 
 
 @record
@@ -83,5 +84,4 @@ def settling(value: Array, rate: Array, change: Array) -> Array:
 
 def in_words_of_gap(size: float, direction: int) -> str:
     """Size of a gap in words: mm along x, y and z, the first three directions, degrees about them."""
-    axis = "xyz"[direction % 3]
-    return f"{1e3 * size:.4g} mm along {axis}" if direction < 3 else f"{np.degrees(size):.4g}° about {axis}"
+    return f"{1e3 * size:.4g} mm {WAYS[direction]}" if direction < 3 else f"{np.degrees(size):.4g}° {WAYS[direction]}"

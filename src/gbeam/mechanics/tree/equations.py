@@ -138,7 +138,7 @@ class Tree:
     the ground does not move, and no equation depends on where a frame is.
 
     Its `closures` make loops. Of their conditions, six each, those of indices `conditions` are independent. `weights`
-    are one over the inertia of each row of an unknown coordinate.
+    are one over the inertia of each row, of all coordinates.
     """
 
     links: tuple[Link, ...]
@@ -307,11 +307,19 @@ class Tree:
 
         Those along conditions that depend on others are zero: a rigid mechanism does not determine them.
         """
+        loads = self._closing_loads(state, inputs, np.zeros(DIRECTIONS * len(self.closures)))[2]
+        spread = loads @ np.eye(DIRECTIONS * len(self.closures))[np.array(self.conditions, dtype=int)]
+        return spread.reshape(*spread.shape[:-1], len(self.closures), DIRECTIONS)
+
+    def _closing_loads(self, state: State, inputs: Inputs, change: Array) -> tuple[Array, Array, Array]:
+        """Rows (..., n) of the unknowns, slopes (..., m, n) of the independent conditions, and their loads (..., m).
+
+        The loads bring a `change` (..., 6 c) of all conditions to zero.
+        """
+        assert self.weights is not None
         rows = self._demanded(state, inputs, ground=False)[0][..., self.unknowns]
         slopes, chosen = self.closing_slopes(state, self.conditions), np.array(self.conditions, dtype=int)
-        loads = closing_loads(rows, slopes, self.weights, np.zeros(len(chosen)))
-        spread = loads @ np.eye(DIRECTIONS * len(self.closures))[chosen]
-        return spread.reshape(*spread.shape[:-1], len(self.closures), DIRECTIONS)
+        return rows, slopes, closing_loads(rows, slopes, self.weights[self.unknowns], change[..., chosen])
 
     def gaps(self, state: State) -> Array:
         """Gaps (..., 6 c) of the closures: places, m, and rotation vectors, rad."""
@@ -351,9 +359,7 @@ class Tree:
 
     def _closed_rows(self, state: State, inputs: Inputs) -> Array:
         """Residual (..., n) of the unknown coordinates of a tree with loops."""
-        rows = self._demanded(state, inputs, ground=False)[0][..., self.unknowns]
-        slopes, change = self.closing_slopes(state, self.conditions), settling(*self.gap_rates(state))
-        loads = closing_loads(rows, slopes, self.weights, change[..., np.array(self.conditions, dtype=int)])
+        rows, slopes, loads = self._closing_loads(state, inputs, settling(*self.gap_rates(state)))
         return rows - (loads[..., None, :] @ slopes)[..., 0, :]
 
     def _demanded(self, state: State, inputs: Inputs, *, ground: bool) -> tuple[Array, Wrench, list[list[Acting]]]:
@@ -463,7 +469,6 @@ class Tree:
             links.append(replace(link, steps=tuple(steps)))
         joined = (np.concatenate(arrays) for arrays in zip(*states, strict=True))
         fixed = tuple(new_numbers[k] for k in self.fixed if k in new_numbers)
-        kept = [k in new_numbers for k in self.unknowns]
-        weights = None if self.weights is None else self.weights[np.array(kept, dtype=bool)]
+        weights = None if self.weights is None else self.weights[list(new_numbers)]
         tree = replace(self, links=tuple(links), fixed=fixed, weights=weights)
         return tree, *joined  # type: ignore[return-value]
